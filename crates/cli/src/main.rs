@@ -1,0 +1,2 @@
+//! The `limitmesh` program.
+fn main() {}

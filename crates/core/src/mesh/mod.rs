@@ -1,0 +1,333 @@
+//! Control meshes: manifold, oriented triangle meshes with half-edge topology, and what it takes to make one
+//! from any file's content.
+//!
+//! Takes a [`PolygonSoup`], gives a [`Mesh`] and a [`Diagnosis`] of what was found and repaired on the way.
+
+mod build;
+mod diagnosis;
+mod junctions;
+mod soup;
+mod tags;
+mod topology;
+
+pub use build::{BuildOptions, Weld};
+pub use diagnosis::{Diagnosis, Finding};
+pub use junctions::{Groups, Junctions};
+pub use soup::{PolygonFaces, PolygonSoup};
+pub use tags::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
+pub use topology::{RingNeighbours, Topology};
+
+use crate::index::{FaceId, HalfEdgeId, VertexId};
+use crate::ring::{EdgeShape, RingShape};
+use crate::vector::{DVec3, vector};
+
+/// What can be wrong with the data a mesh is made of.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// More elements than `u32` indices can name.
+    #[error("{count} {what} are too many: at most {limit} can be indexed")]
+    TooMany {
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A face names a vertex that does not exist.
+    #[error("face {face} names vertex {vertex}, but there are {count} vertices (0 to {})", count.saturating_sub(1))]
+    VertexOutOfRange {
+        /// The face at fault.
+        face: usize,
+        /// The index met.
+        vertex: u64,
+        /// Number of vertices.
+        count: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {vertex}: coordinate {} is {value}, expected a finite number", ["x", "y", "z"][*axis])]
+    NotFinite {
+        /// The vertex at fault.
+        vertex: usize,
+        /// 0, 1 or 2 for x, y or z.
+        axis: usize,
+        /// The value met.
+        value: f64,
+    },
+    /// A face names the same vertex twice.
+    #[error("face {face} names vertex {vertex} twice")]
+    RepeatedCorner {
+        /// The face at fault.
+        face: usize,
+        /// The repeated vertex.
+        vertex: usize,
+    },
+    /// An edge has more than two faces, or two faces run along it the same way.
+    #[error(
+        "the edge from vertex {from} to vertex {to} is used by face {face} and by an earlier face in the same direction"
+    )]
+    EdgeUsedTwice {
+        /// Origin of the directed edge.
+        from: usize,
+        /// Target of the directed edge.
+        to: usize,
+        /// The later of the two faces.
+        face: usize,
+    },
+    /// The faces at a vertex do not form one fan.
+    #[error("the faces at vertex {vertex} form {fans} fans, expected one")]
+    BowTie {
+        /// The vertex at fault.
+        vertex: usize,
+        /// How many fans meet there.
+        fans: usize,
+    },
+    /// A vertex is in no face.
+    #[error("vertex {vertex} is in no face")]
+    Isolated {
+        /// The vertex at fault.
+        vertex: usize,
+    },
+    /// Nothing is left to refine.
+    #[error("no face is left: {reason}")]
+    NoFaces {
+        /// How it came to that.
+        reason: String,
+    },
+    /// A repair would be needed and was forbidden.
+    #[error("the mesh needs repair, which strict mode refuses: {summary}")]
+    NeedsRepair {
+        /// What was found, in words.
+        summary: String,
+    },
+    /// An option is out of range.
+    #[error("{name} is {value}, expected {expected}")]
+    BadOption {
+        /// The option's name.
+        name: &'static str,
+        /// The value met.
+        value: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
+    /// An internal invariant is broken.
+    #[error("{what} (at {place})")]
+    Broken {
+        /// The element at fault.
+        place: String,
+        /// The invariant that does not hold.
+        what: &'static str,
+    },
+}
+
+/// A view of triangles over positions, manifold or not: what measuring, drawing and writing need.
+#[derive(Clone, Copy, Debug)]
+pub struct Triangles<'a> {
+    /// Vertex positions.
+    pub positions: &'a [[f64; 3]],
+    /// Vertex indices of each triangle, counter-clockwise seen from outside.
+    pub triangles: &'a [[u32; 3]],
+}
+
+impl<'a> Triangles<'a> {
+    /// The three corner positions of triangle `face`.
+    #[inline]
+    pub fn corners(&self, face: usize) -> [[f64; 3]; 3] {
+        self.triangles[face].map(|v| self.positions[v as usize])
+    }
+
+    /// Least and greatest coordinates over all positions; `None` without positions.
+    pub fn bounding_box(&self) -> Option<[[f64; 3]; 2]> {
+        let first = vector(*self.positions.first()?);
+        let (low, high) = self.positions.iter().fold((first, first), |(low, high), &p| {
+            let p = vector(p);
+            (low.min(p), high.max(p))
+        });
+        Some([low.to_array(), high.to_array()])
+    }
+
+    /// Length of the bounding box's diagonal; 0 without positions.
+    pub fn diagonal(&self) -> f64 {
+        self.bounding_box().map_or(0.0, |[low, high]| vector(low).distance(vector(high)))
+    }
+}
+
+/// A manifold, oriented triangle mesh: topology, positions, tags, and where cut sheets belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    topology: Topology,
+    positions: Vec<[f64; 3]>,
+    tags: Tags,
+    junctions: Junctions,
+}
+
+impl Mesh {
+    /// A mesh from triangles that are already manifold and consistently oriented; repairs nothing.
+    ///
+    /// # Errors
+    /// Names the first element that breaks a condition: an index out of range, a coordinate that is not
+    /// finite, an edge used twice in one direction, a vertex with several fans or none.
+    pub fn from_triangles(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        check_finite(&positions)?;
+        let topology = Topology::from_triangles(triangles, positions.len())?;
+        Ok(Self { topology, positions, tags: Tags::default(), junctions: Junctions::default() })
+    }
+
+    /// A mesh from whatever a file held: polygons are triangulated, equal positions welded, defects repaired
+    /// and counted.
+    ///
+    /// # Errors
+    /// Bad indices, coordinates that are not finite, nothing left to refine, or any repair under
+    /// [`BuildOptions::strict`].
+    pub fn from_soup(soup: &PolygonSoup, options: &BuildOptions) -> Result<(Self, Diagnosis), MeshError> {
+        build::build(soup, options)
+    }
+
+    /// The parts put together; `topology` and `positions` must agree.
+    pub(crate) fn from_parts(
+        topology: Topology,
+        positions: Vec<[f64; 3]>,
+        tags: Tags,
+        junctions: Junctions,
+    ) -> Self {
+        debug_assert_eq!(topology.vertex_count(), positions.len());
+        Self { topology, positions, tags, junctions }
+    }
+
+    /// Connectivity.
+    #[inline]
+    pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// Vertex positions.
+    #[inline]
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// Replaces the positions, for example by limit positions.
+    ///
+    /// # Errors
+    /// The count differs or a coordinate is not finite.
+    pub fn with_positions(mut self, positions: Vec<[f64; 3]>) -> Result<Self, MeshError> {
+        if positions.len() != self.positions.len() {
+            return Err(MeshError::Broken {
+                place: format!("{} positions", positions.len()),
+                what: "one position for each vertex is needed",
+            });
+        }
+        check_finite(&positions)?;
+        self.positions = positions;
+        Ok(self)
+    }
+
+    /// Crease and corner tags.
+    pub fn tags(&self) -> &Tags {
+        &self.tags
+    }
+
+    /// Replaces the tags.
+    ///
+    /// # Errors
+    /// A tag names a vertex that does not exist or an edge that no face has.
+    pub fn with_tags(mut self, tags: Tags) -> Result<Self, MeshError> {
+        tags.check(&self.topology)?;
+        self.tags = tags;
+        Ok(self)
+    }
+
+    /// Vertices and boundary edges of different sheets that stand at the same place and must stay together.
+    pub fn junctions(&self) -> &Junctions {
+        &self.junctions
+    }
+
+    /// Vertex indices of each face, counter-clockwise seen from outside.
+    #[inline]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        self.topology.triangles()
+    }
+
+    /// Number of vertices.
+    #[inline]
+    pub fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Number of faces.
+    #[inline]
+    pub fn face_count(&self) -> usize {
+        self.topology.face_count()
+    }
+
+    /// Positions and triangles alone.
+    #[inline]
+    pub fn as_triangles(&self) -> Triangles<'_> {
+        Triangles { positions: &self.positions, triangles: self.topology.triangles() }
+    }
+
+    /// Length of the bounding box's diagonal.
+    pub fn diagonal(&self) -> f64 {
+        self.as_triangles().diagonal()
+    }
+
+    /// The shape of the one-ring of `vertex`, which decides its rules.
+    #[inline]
+    pub fn ring_shape(&self, vertex: VertexId) -> RingShape {
+        let (valence, open) = self.topology.valence_and_openness(vertex);
+        RingShape { valence, open, corner: self.tags.is_corner(vertex) }
+    }
+
+    /// The shapes of the rings at both ends of `edge`, and where it stands in them.
+    pub fn edge_shape(&self, edge: HalfEdgeId) -> EdgeShape {
+        let [from, to] = self.topology.ends(edge);
+        let (origin, target) = (self.ring_shape(from), self.ring_shape(to));
+        let slot = |at: VertexId, shape: RingShape, other: VertexId| {
+            if !shape.open {
+                return 0;
+            }
+            self.topology.ring(at).position(|u| u == other).map_or(0, |slot| slot as u32)
+        };
+        EdgeShape { origin, origin_slot: slot(from, origin, to), target, target_slot: slot(to, target, from) }
+    }
+
+    /// Twice the area of `face` times its unit normal.
+    #[inline]
+    pub fn face_normal(&self, face: FaceId) -> [f64; 3] {
+        self.face_normal_vector(face.index()).to_array()
+    }
+
+    #[inline]
+    pub(crate) fn face_normal_vector(&self, face: usize) -> DVec3 {
+        let [a, b, c] = self.topology.triangles()[face].map(|v| vector(self.positions[v as usize]));
+        (b - a).cross(c - a)
+    }
+
+    /// Checks every invariant of the mesh: topology, finite positions, tags and junctions.
+    ///
+    /// # Errors
+    /// Names the first element that breaks one.
+    pub fn validate(&self) -> Result<(), MeshError> {
+        self.topology.validate()?;
+        if self.positions.len() != self.topology.vertex_count() {
+            return Err(MeshError::Broken {
+                place: format!("{} positions", self.positions.len()),
+                what: "one position for each vertex is needed",
+            });
+        }
+        check_finite(&self.positions)?;
+        self.tags.check(&self.topology)?;
+        self.junctions.validate(&self.topology, &self.positions)
+    }
+}
+
+/// Refuses NaN and infinity.
+pub(crate) fn check_finite(positions: &[[f64; 3]]) -> Result<(), MeshError> {
+    for (vertex, p) in positions.iter().enumerate() {
+        if let Some(axis) = (0..3).find(|&axis| !p[axis].is_finite()) {
+            return Err(MeshError::NotFinite { vertex, axis, value: p[axis] });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,78 @@
+//! A polygon soup: what a file held, before anything is checked or repaired.
+
+use super::{CornerTag, CreaseTag};
+
+/// Polygons of any number of corners, stored one after another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PolygonFaces {
+    /// Start of each polygon in `corners`, and the end of the last.
+    starts: Vec<u32>,
+    corners: Vec<u32>,
+}
+
+impl Default for PolygonFaces {
+    fn default() -> Self {
+        Self { starts: vec![0], corners: Vec::new() }
+    }
+}
+
+impl PolygonFaces {
+    /// No polygons, with room for `faces` polygons of `corners` corners together.
+    pub fn with_capacity(faces: usize, corners: usize) -> Self {
+        let mut starts = Vec::with_capacity(faces + 1);
+        starts.push(0);
+        Self { starts, corners: Vec::with_capacity(corners) }
+    }
+
+    /// Adds a polygon with the given vertex indices, counter-clockwise seen from outside.
+    pub fn push(&mut self, corners: &[u32]) {
+        self.corners.extend_from_slice(corners);
+        self.starts.push(self.corners.len() as u32);
+    }
+
+    /// Number of polygons.
+    pub fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Number of corners of all polygons together.
+    pub fn corner_count(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// The vertex indices of polygon `face`.
+    pub fn get(&self, face: usize) -> &[u32] {
+        &self.corners[self.starts[face] as usize..self.starts[face + 1] as usize]
+    }
+
+    /// All polygons in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[u32]> {
+        self.starts.windows(2).map(|w| &self.corners[w[0] as usize..w[1] as usize])
+    }
+}
+
+impl<'a> FromIterator<&'a [u32]> for PolygonFaces {
+    fn from_iter<I: IntoIterator<Item = &'a [u32]>>(faces: I) -> Self {
+        let mut result = Self::default();
+        faces.into_iter().for_each(|face| result.push(face));
+        result
+    }
+}
+
+/// What a file held: positions, polygons, tags. Indices may be anything; [`super::Mesh::from_soup`] checks.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct PolygonSoup {
+    /// Vertex positions in the file's units.
+    pub positions: Vec<[f64; 3]>,
+    /// Polygons over `positions`.
+    pub faces: PolygonFaces,
+    /// Sharp edges.
+    pub creases: Vec<CreaseTag>,
+    /// Sharp vertices.
+    pub corners: Vec<CornerTag>,
+}

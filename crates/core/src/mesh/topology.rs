@@ -1,0 +1,372 @@
+//! Half-edge connectivity of a manifold, oriented triangle mesh; it knows no positions.
+//!
+//! Half-edge `h = 3·face + corner` runs from that corner to the next one, so that next, previous and face are
+//! arithmetic; only the twins and one outgoing half-edge a vertex are stored. Invariants (see
+//! [`Topology::validate`]): twins are mutual and run the opposite way; the faces at a vertex form one fan; the
+//! outgoing half-edge stored for a boundary vertex is the one without a twin, so that turning counter-clockwise
+//! from it meets every face.
+
+use super::MeshError;
+use crate::index::{FaceId, HalfEdgeId, VertexId};
+
+/// Stands for "no half-edge".
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// Faces that half-edge indices can number: 3·faces − 1 must stay below [`NONE`].
+pub(crate) const MAX_FACES: usize = (u32::MAX as usize) / 3 - 1;
+
+/// Connectivity of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Topology {
+    triangles: Vec<[u32; 3]>,
+    twins: Vec<u32>,
+    outgoing: Vec<u32>,
+}
+
+impl Topology {
+    /// Connects triangles over `vertex_count` vertices.
+    ///
+    /// # Errors
+    /// As for [`super::Mesh::from_triangles`], but for positions.
+    pub fn from_triangles(triangles: Vec<[u32; 3]>, vertex_count: usize) -> Result<Self, MeshError> {
+        check_indices(&triangles, vertex_count)?;
+        let twins = match_twins(&triangles, vertex_count)?;
+        let outgoing = outgoing_half_edges(&triangles, &twins, vertex_count);
+        let topology = Self { triangles, twins, outgoing };
+        topology.check_fans()?;
+        Ok(topology)
+    }
+
+    /// The parts as they are; the caller vouches for the invariants.
+    pub(crate) fn from_parts(triangles: Vec<[u32; 3]>, twins: Vec<u32>, outgoing: Vec<u32>) -> Self {
+        Self { triangles, twins, outgoing }
+    }
+
+    /// Number of vertices.
+    #[inline]
+    pub fn vertex_count(&self) -> usize {
+        self.outgoing.len()
+    }
+
+    /// Number of faces.
+    #[inline]
+    pub fn face_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Number of half-edges: three a face.
+    #[inline]
+    pub fn half_edge_count(&self) -> usize {
+        self.twins.len()
+    }
+
+    /// Number of edges: a pair of twins counts once.
+    pub fn edge_count(&self) -> usize {
+        self.half_edges().filter(|&h| self.twin(h).is_none_or(|twin| h < twin)).count()
+    }
+
+    /// All half-edges, in order.
+    pub fn half_edges(&self) -> impl Iterator<Item = HalfEdgeId> + use<> {
+        (0..self.twins.len() as u32).map(HalfEdgeId)
+    }
+
+    /// All vertices, in order.
+    pub fn vertices(&self) -> impl Iterator<Item = VertexId> + use<> {
+        (0..self.outgoing.len() as u32).map(VertexId)
+    }
+
+    /// Vertex indices of each face.
+    #[inline]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The half-edge along the same edge in the neighbouring face; `None` on a boundary.
+    #[inline]
+    pub fn twin(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
+        let twin = self.twins[h.index()];
+        (twin != NONE).then_some(HalfEdgeId(twin))
+    }
+
+    /// Twins of all half-edges, [`NONE`] on boundaries.
+    #[inline]
+    pub(crate) fn raw_twins(&self) -> &[u32] {
+        &self.twins
+    }
+
+    /// The vertex that `h` leaves.
+    #[inline]
+    pub fn origin(&self, h: HalfEdgeId) -> VertexId {
+        VertexId(self.triangles.as_flattened()[h.index()])
+    }
+
+    /// The vertex that `h` reaches.
+    #[inline]
+    pub fn target(&self, h: HalfEdgeId) -> VertexId {
+        self.origin(h.next())
+    }
+
+    /// The vertex of the face of `h` that is not on `h`.
+    #[inline]
+    pub fn opposite(&self, h: HalfEdgeId) -> VertexId {
+        self.origin(h.previous())
+    }
+
+    /// Origin and target of `h`.
+    #[inline]
+    pub fn ends(&self, h: HalfEdgeId) -> [VertexId; 2] {
+        [self.origin(h), self.target(h)]
+    }
+
+    /// A half-edge that leaves `vertex`; for a boundary vertex the one that lies on the boundary.
+    #[inline]
+    pub fn outgoing(&self, vertex: VertexId) -> HalfEdgeId {
+        HalfEdgeId(self.outgoing[vertex.index()])
+    }
+
+    /// Whether `vertex` lies on a boundary.
+    #[inline]
+    pub fn is_boundary(&self, vertex: VertexId) -> bool {
+        self.twins[self.outgoing[vertex.index()] as usize] == NONE
+    }
+
+    /// The neighbours of `vertex`, counter-clockwise; at a boundary from one boundary neighbour to the other.
+    #[inline]
+    pub fn ring(&self, vertex: VertexId) -> RingNeighbours<'_> {
+        let first = self.outgoing(vertex);
+        RingNeighbours { topology: self, first: first.0, next: first.0, last: NONE }
+    }
+
+    /// The outgoing half-edges of `vertex`, counter-clockwise: one for each face.
+    #[inline]
+    pub fn outgoing_ring(&self, vertex: VertexId) -> impl Iterator<Item = HalfEdgeId> + use<'_> {
+        let first = self.outgoing(vertex);
+        core::iter::successors(Some(first), move |h| self.twin(h.previous()).filter(|&next| next != first))
+    }
+
+    /// The number of edges at `vertex` and whether its ring is open.
+    #[inline]
+    pub fn valence_and_openness(&self, vertex: VertexId) -> (u32, bool) {
+        let faces = self.outgoing_ring(vertex).count() as u32;
+        let open = self.is_boundary(vertex);
+        (faces + u32::from(open), open)
+    }
+
+    /// A half-edge along the edge between `a` and `b`, whichever way it runs.
+    pub fn edge_between(&self, a: VertexId, b: VertexId) -> Option<HalfEdgeId> {
+        self.outgoing_ring(a).find_map(|h| {
+            if self.target(h) == b {
+                Some(h)
+            } else if self.opposite(h) == b {
+                Some(h.previous())
+            } else {
+                None
+            }
+        })
+    }
+
+    /// Vertices − edges + faces.
+    pub fn euler_characteristic(&self) -> i64 {
+        self.vertex_count() as i64 - self.edge_count() as i64 + self.face_count() as i64
+    }
+
+    /// Number of half-edges without a twin.
+    pub fn boundary_edge_count(&self) -> usize {
+        self.twins.iter().filter(|&&twin| twin == NONE).count()
+    }
+
+    /// Checks every invariant.
+    ///
+    /// # Errors
+    /// Names the first element that breaks one.
+    pub fn validate(&self) -> Result<(), MeshError> {
+        check_indices(&self.triangles, self.vertex_count())?;
+        let broken = |place: String, what| Err(MeshError::Broken { place, what });
+        if self.twins.len() != 3 * self.triangles.len() {
+            return broken(format!("{} twins", self.twins.len()), "each face has three half-edges");
+        }
+        for h in self.half_edges() {
+            let twin = self.twins[h.index()];
+            if twin == NONE {
+                continue;
+            }
+            if twin as usize >= self.twins.len() {
+                return broken(h.to_string(), "a twin is a half-edge of the mesh");
+            }
+            let twin = HalfEdgeId(twin);
+            if self.twin(twin) != Some(h) || twin == h {
+                return broken(h.to_string(), "twins are mutual");
+            }
+            if self.origin(h) != self.target(twin) || self.target(h) != self.origin(twin) {
+                return broken(h.to_string(), "twins run along one edge in opposite directions");
+            }
+        }
+        for v in self.vertices() {
+            let h = self.outgoing[v.index()];
+            if h == NONE {
+                return Err(MeshError::Isolated { vertex: v.index() });
+            }
+            if h as usize >= self.twins.len() || self.origin(HalfEdgeId(h)) != v {
+                return broken(v.to_string(), "its outgoing half-edge leaves it");
+            }
+        }
+        match_twins(&self.triangles, self.vertex_count())?;
+        self.check_fans()
+    }
+
+    /// Checks that turning round each vertex meets all its faces.
+    fn check_fans(&self) -> Result<(), MeshError> {
+        let mut faces = vec![0u32; self.vertex_count()];
+        for &v in self.triangles.as_flattened() {
+            faces[v as usize] += 1;
+        }
+        for v in self.vertices() {
+            if self.outgoing[v.index()] == NONE {
+                return Err(MeshError::Isolated { vertex: v.index() });
+            }
+            // A ring that never came back would be longer than the vertex has faces.
+            let limit = faces[v.index()] as usize + 1;
+            let met = self.outgoing_ring(v).take(limit).count();
+            if met != faces[v.index()] as usize {
+                return Err(MeshError::BowTie { vertex: v.index(), fans: self.count_fans(v) });
+            }
+        }
+        Ok(())
+    }
+
+    /// Number of separate fans of faces at `vertex`.
+    fn count_fans(&self, vertex: VertexId) -> usize {
+        let mut left: Vec<HalfEdgeId> = self.half_edges().filter(|&h| self.origin(h) == vertex).collect();
+        let mut fans = 0;
+        while let Some(start) = left.pop() {
+            fans += 1;
+            let mut pending = vec![start];
+            while let Some(h) = pending.pop() {
+                let neighbours = [self.twin(h.previous()), self.twin(h).map(HalfEdgeId::next)];
+                for next in neighbours.into_iter().flatten() {
+                    if let Some(i) = left.iter().position(|&x| x == next) {
+                        left.swap_remove(i);
+                        pending.push(next);
+                    }
+                }
+            }
+        }
+        fans
+    }
+}
+
+/// The neighbours of a vertex in counter-clockwise order.
+#[derive(Clone, Debug)]
+pub struct RingNeighbours<'a> {
+    topology: &'a Topology,
+    first: u32,
+    next: u32,
+    /// The last neighbour of an open ring, once its half-edges are used up.
+    last: u32,
+}
+
+impl Iterator for RingNeighbours<'_> {
+    type Item = VertexId;
+
+    #[inline]
+    fn next(&mut self) -> Option<VertexId> {
+        if self.next == NONE {
+            let last = core::mem::replace(&mut self.last, NONE);
+            return (last != NONE).then_some(VertexId(last));
+        }
+        let h = HalfEdgeId(self.next);
+        let before = h.previous();
+        let turned = self.topology.twins[before.index()];
+        if turned == NONE {
+            self.last = self.topology.origin(before).0;
+        }
+        self.next = if turned == self.first { NONE } else { turned };
+        Some(self.topology.target(h))
+    }
+}
+
+fn check_indices(triangles: &[[u32; 3]], vertex_count: usize) -> Result<(), MeshError> {
+    if triangles.len() > MAX_FACES {
+        return Err(MeshError::TooMany { what: "faces", count: triangles.len(), limit: MAX_FACES });
+    }
+    if vertex_count > NONE as usize {
+        let limit = NONE as usize;
+        return Err(MeshError::TooMany { what: "vertices", count: vertex_count, limit });
+    }
+    for (face, &[a, b, c]) in triangles.iter().enumerate() {
+        for v in [a, b, c] {
+            if v as usize >= vertex_count {
+                return Err(MeshError::VertexOutOfRange { face, vertex: u64::from(v), count: vertex_count });
+            }
+        }
+        if a == b || a == c {
+            return Err(MeshError::RepeatedCorner { face, vertex: a as usize });
+        }
+        if b == c {
+            return Err(MeshError::RepeatedCorner { face, vertex: b as usize });
+        }
+    }
+    Ok(())
+}
+
+/// Finds the twin of every half-edge: the half-edges that leave each vertex are sorted by where they go.
+fn match_twins(triangles: &[[u32; 3]], vertex_count: usize) -> Result<Vec<u32>, MeshError> {
+    let origins = triangles.as_flattened();
+    let target = |h: u32| origins[HalfEdgeId(h).next().index()];
+    let (starts, mut leaving) = half_edges_by_origin(origins, vertex_count);
+    for v in 0..vertex_count {
+        let list = &mut leaving[starts[v] as usize..starts[v + 1] as usize];
+        list.sort_unstable_by_key(|&h| (target(h), h));
+        if let Some(pair) = list.windows(2).find(|pair| target(pair[0]) == target(pair[1])) {
+            let (to, face) = (target(pair[0]) as usize, (pair[1] / 3) as usize);
+            return Err(MeshError::EdgeUsedTwice { from: v, to, face });
+        }
+    }
+    let mut twins = vec![NONE; origins.len()];
+    for (h, &from) in origins.iter().enumerate() {
+        let to = target(h as u32) as usize;
+        let list = &leaving[starts[to] as usize..starts[to + 1] as usize];
+        if let Ok(i) = list.binary_search_by_key(&from, |&g| target(g)) {
+            twins[h] = list[i];
+        }
+    }
+    Ok(twins)
+}
+
+/// The half-edges that leave each vertex, in ascending order: list starts, and the lists.
+pub(crate) fn half_edges_by_origin(origins: &[u32], vertex_count: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0u32; vertex_count + 1];
+    for &v in origins {
+        starts[v as usize + 1] += 1;
+    }
+    for v in 0..vertex_count {
+        starts[v + 1] += starts[v];
+    }
+    let mut fill = starts.clone();
+    let mut leaving = vec![0u32; origins.len()];
+    for (h, &v) in origins.iter().enumerate() {
+        leaving[fill[v as usize] as usize] = h as u32;
+        fill[v as usize] += 1;
+    }
+    (starts, leaving)
+}
+
+/// One outgoing half-edge a vertex, the boundary one where there is one; [`NONE`] for isolated vertices.
+pub(crate) fn outgoing_half_edges(triangles: &[[u32; 3]], twins: &[u32], vertex_count: usize) -> Vec<u32> {
+    let mut outgoing = vec![NONE; vertex_count];
+    for (h, &v) in triangles.as_flattened().iter().enumerate() {
+        let slot = &mut outgoing[v as usize];
+        if *slot == NONE || twins[h] == NONE {
+            *slot = h as u32;
+        }
+    }
+    outgoing
+}
+
+/// The triangle's faces as ids, for callers that walk them.
+impl Topology {
+    /// All faces, in order.
+    pub fn faces(&self) -> impl Iterator<Item = FaceId> + use<> {
+        (0..self.triangles.len() as u32).map(FaceId)
+    }
+}

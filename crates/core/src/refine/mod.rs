@@ -1,0 +1,81 @@
+//! Refinement: uniform, and the paper's stepwise adaptive method.
+//!
+//! Takes a control mesh, a scheme and what decides (levels, a criterion); gives a finer mesh and a report.
+
+mod stepwise;
+mod uniform;
+
+pub use stepwise::{SeamRule, StepwiseOptions, stepwise};
+pub use uniform::{UniformOptions, uniform};
+
+use core::ops::ControlFlow;
+use core::time::Duration;
+
+use crate::limit::LimitError;
+use crate::mesh::{Mesh, MeshError};
+
+/// Why a refinement gave no mesh.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RefineError {
+    /// A limit position or normal does not exist.
+    #[error(transparent)]
+    Limit(#[from] LimitError),
+    /// The result would not be a mesh, or an option is out of range.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The observer asked to stop.
+    #[error("cancelled after {steps} steps")]
+    Cancelled {
+        /// Steps done by then.
+        steps: usize,
+    },
+}
+
+/// What one step did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct StepReport {
+    /// 1 for the first step.
+    pub step: usize,
+    /// Faces before the step.
+    pub faces_before: usize,
+    /// Faces that the criterion called divisible.
+    pub divisible: usize,
+    /// Indivisible faces with 0, 1, 2 and 3 split edges: the cases (a) to (d) of the paper's Figure 5.
+    pub closure: [usize; 4],
+    /// Faces after the step.
+    pub faces_after: usize,
+    /// Time taken.
+    pub duration: Duration,
+}
+
+/// Why a refinement ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Stop {
+    /// All the levels asked for were done.
+    Levels,
+    /// No face was divisible any more.
+    Satisfied,
+    /// The next step would have passed the triangle cap.
+    TriangleCap {
+        /// Triangles that the step would have given.
+        needed: usize,
+    },
+}
+
+/// A refined mesh and how it came about.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Refinement {
+    /// The refined mesh.
+    pub mesh: Mesh,
+    /// What each step did.
+    pub steps: Vec<StepReport>,
+    /// Why there were no more steps.
+    pub stop: Stop,
+}
+
+/// Called after each step; may cancel.
+pub type Observer<'a> = &'a (dyn Fn(&StepReport) -> ControlFlow<()> + Sync);
