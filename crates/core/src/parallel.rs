@@ -37,3 +37,82 @@ pub(crate) fn for_each_chunk<T: Send, F: Fn(usize, &mut [T]) + Sync + Send>(
     }
     slots.chunks_mut(piece).enumerate().for_each(|(i, chunk)| f(i, chunk));
 }
+
+/// Number of elements that one piece of a prefix sum covers.
+const PIECE: usize = 1 << 14;
+
+/// `[0, c(0), c(0)+c(1), …]`: where each element's items start when element `i` has `c(i)` of them, and their
+/// total as the last entry. `None` where the total does not fit.
+pub(crate) fn starts<F: Fn(usize) -> u32 + Sync + Send>(n: usize, count: F) -> Option<Vec<u32>> {
+    let pieces = n.div_ceil(PIECE);
+    let range = |piece: usize| piece * PIECE..((piece + 1) * PIECE).min(n);
+    let totals = map_few(pieces, |piece| range(piece).map(|i| u64::from(count(i))).sum::<u64>());
+    let mut before = Vec::with_capacity(pieces);
+    let mut total = 0u64;
+    for piece_total in totals {
+        before.push(total);
+        total += piece_total;
+    }
+    let total = u32::try_from(total).ok()?;
+    let mut starts = vec![0u32; n + 1];
+    starts[n] = total;
+    for_each_chunk(&mut starts[..n], PIECE, |piece, slots| {
+        let mut running = before[piece] as u32;
+        for (slot, i) in slots.iter_mut().zip(range(piece)) {
+            *slot = running;
+            running += count(i);
+        }
+    });
+    Some(starts)
+}
+
+/// Like [`map`], for a few long calls.
+fn map_few<T: Send, F: Fn(usize) -> T + Sync + Send>(n: usize, f: F) -> Vec<T> {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        if n > 1 && rayon::current_num_threads() > 1 {
+            return (0..n).into_par_iter().map(f).collect();
+        }
+    }
+    (0..n).map(f).collect()
+}
+
+/// For elements that own consecutive runs of two arrays of items, `a[starts[i]..starts[i+1]]` and likewise in
+/// `b`: calls `f(i, run of a, run of b)` for each element.
+pub(crate) fn for_each_run<A: Send, B: Send, F: Fn(usize, &mut [A], &mut [B]) + Sync + Send>(
+    starts: &[u32],
+    a: &mut [A],
+    b: &mut [B],
+    f: F,
+) {
+    let n = starts.len().saturating_sub(1);
+    let mut pieces = Vec::with_capacity(n.div_ceil(PIECE));
+    let (mut rest_a, mut rest_b) = (a, b);
+    let mut first = 0;
+    while first < n {
+        let last = (first + PIECE).min(n);
+        let items = (starts[last] - starts[first]) as usize;
+        let (head_a, tail_a) = rest_a.split_at_mut(items);
+        let (head_b, tail_b) = rest_b.split_at_mut(items);
+        pieces.push((first, last, head_a, head_b));
+        (rest_a, rest_b) = (tail_a, tail_b);
+        first = last;
+    }
+    let work = |(first, last, a, b): (usize, usize, &mut [A], &mut [B])| {
+        let base = starts[first] as usize;
+        for i in first..last {
+            let run = starts[i] as usize - base..starts[i + 1] as usize - base;
+            f(i, &mut a[run.clone()], &mut b[run]);
+        }
+    };
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        if pieces.len() > 1 && rayon::current_num_threads() > 1 {
+            pieces.into_par_iter().for_each(work);
+            return;
+        }
+    }
+    pieces.into_iter().for_each(work);
+}

@@ -1,10 +1,16 @@
 //! The paper's criterion, equation (2), and its view-dependent form, equation (11).
 
+use super::view::Threshold;
 use super::{Criterion, View};
 use crate::limit::{LimitError, LimitTable};
 use crate::mesh::Mesh;
+use crate::parallel;
+use crate::vector::{unit_or_zero, vector};
 
-/// A face is divided where its normal leaves the cone of angle α around the limit normal of one of its vertices.
+/// A face is divided where its normal leaves the cone of angle α around the limit normal of one of its vertices:
+/// `min_i N_Vi · N_f < cos α`.
+///
+/// Faces without area and vertices without a limit normal have no say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LimitNormal {
@@ -25,6 +31,15 @@ impl LimitNormal {
         self.view = Some(view);
         self
     }
+
+    /// The threshold for face `face`, whose unit normal is given.
+    fn threshold(&self, mesh: &Mesh, face: usize, normal: crate::vector::DVec3) -> Threshold {
+        let Some(view) = self.view else {
+            return Threshold::Angle(self.angle);
+        };
+        let [a, b, c] = mesh.as_triangles().corners(face).map(vector);
+        view.threshold(self.angle, view.direction((a + b + c) / 3.0).dot(normal))
+    }
 }
 
 impl Criterion for LimitNormal {
@@ -32,7 +47,28 @@ impl Criterion for LimitNormal {
         "limit-normal"
     }
 
-    fn divisible(&self, mesh: &Mesh, _limits: &LimitTable<'_>) -> Result<Vec<bool>, LimitError> {
-        Ok(vec![true; mesh.face_count()])
+    fn divisible(&self, mesh: &Mesh, limits: &LimitTable<'_>) -> Result<Vec<bool>, LimitError> {
+        let normals = limits.normals(mesh)?;
+        // Without a view the cosine is the same for all faces.
+        let plain_cosine = self.angle.cos();
+        Ok(parallel::map(mesh.face_count(), |face| {
+            let normal = unit_or_zero(mesh.face_normal_vector(face));
+            if normal.length_squared() == 0.0 {
+                return false;
+            }
+            let cosine = if self.view.is_none() {
+                plain_cosine
+            } else {
+                match self.threshold(mesh, face, normal) {
+                    Threshold::Never => return false,
+                    Threshold::Always => return true,
+                    Threshold::Angle(angle) => angle.cos(),
+                }
+            };
+            mesh.triangles()[face].iter().any(|&v| {
+                let limit_normal = vector(normals[v as usize]);
+                limit_normal.length_squared() > 0.0 && limit_normal.dot(normal) < cosine
+            })
+        }))
     }
 }

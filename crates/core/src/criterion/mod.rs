@@ -9,7 +9,7 @@ mod view;
 
 pub use limit_normal::LimitNormal;
 pub use neighbour_normal::NeighbourNormal;
-pub use view::{Sight, View};
+pub use view::{Sight, Threshold, View};
 
 use crate::limit::{LimitError, LimitTable};
 use crate::mesh::Mesh;

@@ -1,10 +1,15 @@
 //! The criterion of Amresh, Farin and Razdan (2000), with which the paper compares itself.
 
 use super::Criterion;
+use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::{LimitError, LimitTable};
 use crate::mesh::Mesh;
+use crate::parallel;
+use crate::vector::unit_or_zero;
 
 /// A face is divided where its normal and that of an edge neighbour differ by more than an angle.
+///
+/// Faces without area have no say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct NeighbourNormal {
@@ -25,6 +30,18 @@ impl Criterion for NeighbourNormal {
     }
 
     fn divisible(&self, mesh: &Mesh, _limits: &LimitTable<'_>) -> Result<Vec<bool>, LimitError> {
-        Ok(vec![true; mesh.face_count()])
+        let normals = parallel::map(mesh.face_count(), |f| unit_or_zero(mesh.face_normal_vector(f)));
+        let cosine = self.angle.cos();
+        Ok(parallel::map(mesh.face_count(), |face| {
+            let normal = normals[face];
+            normal.length_squared() > 0.0
+                && (0..3).any(|corner| {
+                    let h = HalfEdgeId::of(FaceId(face as u32), corner);
+                    mesh.topology().twin(h).is_some_and(|twin| {
+                        let other = normals[twin.face().index()];
+                        other.length_squared() > 0.0 && other.dot(normal) < cosine
+                    })
+                })
+        }))
     }
 }

@@ -1,9 +1,13 @@
 //! View-dependent adaptation (the paper's section 3.3, equations 11 to 13).
 
+use core::f64::consts::PI;
+
+use crate::vector::{DVec3, unit_or_zero, vector};
+
 /// Where the viewer looks from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sight {
-    /// Parallel projection: the direction of sight `N_view`, from the viewer into the scene.
+    /// Parallel projection: the direction of sight `N_view`, from the viewer into the scene; any length but 0.
     Direction([f64; 3]),
     /// Perspective: the eye point; each face has the direction from the eye to its centroid.
     Eye([f64; 3]),
@@ -14,6 +18,85 @@ pub enum Sight {
 pub struct View {
     /// Where the viewer looks from.
     pub sight: Sight,
-    /// The paper's dilatant factor k (1 in most of its experiments).
+    /// The paper's dilatant factor k (1 in most of its experiments): the greater, the coarser the faces that
+    /// look at the viewer.
     pub dilatation: f64,
+}
+
+/// What a face's place in the view makes of the cone's angle α.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Threshold {
+    /// The face looks away: never divided (α f(β) = π).
+    Never,
+    /// The face is seen edge-on: always divided (α f(β) = 0).
+    Always,
+    /// Divided where its normal deviates by more than this angle, in radians, from a limit normal.
+    Angle(f64),
+}
+
+impl View {
+    /// `α·f(β)` of equations (11) and (12), with `f(β) = π/α` for `β < π/2` and `k·cos(π − β)` from there on,
+    /// clamped to [0, π].
+    ///
+    /// `cosine` is that of β, the angle between the direction of sight and the face's normal. For sight along
+    /// −z it is −z of the unit normal, and this is equation (13).
+    pub fn threshold(&self, angle: f64, cosine: f64) -> Threshold {
+        if cosine > 0.0 {
+            return Threshold::Never;
+        }
+        let scaled = angle * self.dilatation * -cosine;
+        if scaled > 0.0 { Threshold::Angle(scaled.min(PI)) } else { Threshold::Always }
+    }
+
+    /// The unit direction of sight towards a face with that centroid.
+    pub(super) fn direction(&self, centroid: DVec3) -> DVec3 {
+        match self.sight {
+            Sight::Direction(direction) => unit_or_zero(vector(direction)),
+            Sight::Eye(eye) => unit_or_zero(centroid - vector(eye)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DEGREE: f64 = PI / 180.0;
+
+    fn view(dilatation: f64) -> View {
+        View { sight: Sight::Direction([0.0, 0.0, -1.0]), dilatation }
+    }
+
+    /// Equation (13) as the paper prints it for sight along −z.
+    fn equation_13(z: f64, angle: f64, k: f64) -> f64 {
+        angle * if z < 0.0 { PI / angle } else { k * z }
+    }
+
+    #[test]
+    fn the_general_form_is_the_simplified_one_along_z() {
+        for i in -20..=20 {
+            let z = f64::from(i) / 20.0;
+            for k in [0.5, 1.0, 3.0] {
+                let expected = equation_13(z, 10.0 * DEGREE, k);
+                let found = match view(k).threshold(10.0 * DEGREE, -z) {
+                    Threshold::Never => PI,
+                    Threshold::Always => 0.0,
+                    Threshold::Angle(a) => a,
+                };
+                assert!((found - expected).abs() < 1e-15, "z {z}, k {k}: {found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn back_faces_never_and_the_silhouette_always() {
+        assert_eq!(view(1.0).threshold(0.1, 1e-300), Threshold::Never);
+        assert_eq!(view(1.0).threshold(0.1, 0.0), Threshold::Always);
+        assert_eq!(view(1.0).threshold(0.1, -0.0), Threshold::Always);
+    }
+
+    #[test]
+    fn a_large_dilatation_does_not_wrap_round() {
+        assert_eq!(view(1e6).threshold(0.1, -1.0), Threshold::Angle(PI));
+    }
 }
