@@ -15,6 +15,7 @@ pub use diagnosis::{Diagnosis, Finding};
 pub use junctions::{Groups, Junctions};
 pub use soup::{PolygonFaces, PolygonSoup};
 pub use tags::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
+pub(crate) use topology::{MAX_FACES, NONE};
 pub use topology::{RingNeighbours, Topology};
 
 use crate::index::{FaceId, HalfEdgeId, VertexId};

@@ -2,6 +2,11 @@
 //!
 //! Takes a control mesh, a scheme and what decides (levels, a criterion); gives a finer mesh and a report.
 
+mod driver;
+mod junctions;
+mod masks;
+mod split;
+mod step;
 mod stepwise;
 mod uniform;
 

@@ -1,8 +1,14 @@
 //! The paper's adaptive refinement: flags on the current mesh, Figure 5's four cases, points from old positions.
 
-use super::{Observer, RefineError, Refinement, Stop};
+use super::driver::Driver;
+use super::junctions::agree;
+use super::split::SplitEdges;
+use super::{Observer, RefineError, Refinement};
 use crate::criterion::Criterion;
+use crate::index::{HalfEdgeId, VertexId};
+use crate::limit::LimitTable;
 use crate::mesh::Mesh;
+use crate::parallel;
 use crate::scheme::Scheme;
 
 /// Which vertices take their new position in a step; the paper does not say.
@@ -73,13 +79,43 @@ impl<'a> StepwiseOptions<'a> {
 
 /// Refines `mesh` where `criterion` asks for it.
 ///
+/// Each step's mesh is the next step's control mesh. Its faces are flagged, every edge of a flagged face is
+/// split, the other faces are closed by the cases of Figure 5, and all points are computed from the old
+/// positions: so each step leaves a conforming mesh, and the limit surface is that of the current mesh.
+///
 /// # Errors
 /// See [`RefineError`].
 pub fn stepwise(
     mesh: &Mesh,
-    _scheme: &dyn Scheme,
-    _criterion: &dyn Criterion,
-    _options: &StepwiseOptions<'_>,
+    scheme: &dyn Scheme,
+    criterion: &dyn Criterion,
+    options: &StepwiseOptions<'_>,
 ) -> Result<Refinement, RefineError> {
-    Ok(Refinement { mesh: mesh.clone(), steps: Vec::new(), stop: Stop::Levels })
+    let limits = LimitTable::new(scheme);
+    let flags = |mesh: &Mesh| Ok(criterion.divisible(mesh, &limits)?);
+    let driver = Driver {
+        scheme,
+        levels: options.levels,
+        limit: options.limit,
+        max_triangles: options.max_triangles,
+        observer: options.observer,
+    };
+    driver.run(mesh, flags, |mesh, split| moving_vertices(mesh, split, options.seam))
+}
+
+/// Which vertices take their new position under a seam rule; `None` for all.
+fn moving_vertices(mesh: &Mesh, split: &SplitEdges, seam: SeamRule) -> Option<Vec<bool>> {
+    let topology = mesh.topology();
+    let divided = |h: HalfEdgeId| split.count(h.face().index()) == 3;
+    let combine: fn(bool, bool) -> bool = match seam {
+        SeamRule::All => return None,
+        SeamRule::Any => |a, b| a | b,
+        SeamRule::Inner => |a, b| a & b,
+    };
+    let mut moves = parallel::map(mesh.vertex_count(), |v| {
+        let faces = topology.outgoing_ring(VertexId(v as u32));
+        faces.map(divided).reduce(combine).unwrap_or(false)
+    });
+    agree(&mut moves, &mesh.junctions().vertices, combine);
+    Some(moves)
 }

@@ -1,6 +1,7 @@
 //! Uniform refinement: every triangle is split in four at each level.
 
-use super::{Observer, RefineError, Refinement, Stop};
+use super::driver::Driver;
+use super::{Observer, RefineError, Refinement};
 use crate::mesh::Mesh;
 use crate::scheme::Scheme;
 
@@ -56,8 +57,16 @@ impl<'a> UniformOptions<'a> {
 /// See [`RefineError`].
 pub fn uniform(
     mesh: &Mesh,
-    _scheme: &dyn Scheme,
-    _options: &UniformOptions<'_>,
+    scheme: &dyn Scheme,
+    options: &UniformOptions<'_>,
 ) -> Result<Refinement, RefineError> {
-    Ok(Refinement { mesh: mesh.clone(), steps: Vec::new(), stop: Stop::Levels })
+    let all = |mesh: &Mesh| Ok(vec![true; mesh.face_count()]);
+    let driver = Driver {
+        scheme,
+        levels: options.levels,
+        limit: options.limit,
+        max_triangles: options.max_triangles,
+        observer: options.observer,
+    };
+    driver.run(mesh, all, |_, _| None)
 }

@@ -1,0 +1,79 @@
+//! The loop that both refinements share: flags, cap, one step, report, until something ends it.
+
+use std::time::Instant;
+
+use super::junctions::join_copies;
+use super::split::SplitEdges;
+use super::step::advance;
+use super::{Observer, RefineError, Refinement, StepReport, Stop};
+use crate::limit::LimitTable;
+use crate::mesh::{Mesh, check_finite};
+use crate::scheme::Scheme;
+
+/// What a run of steps needs to know besides how to flag faces.
+pub(super) struct Driver<'a> {
+    pub(super) scheme: &'a dyn Scheme,
+    pub(super) levels: usize,
+    pub(super) limit: bool,
+    pub(super) max_triangles: Option<usize>,
+    pub(super) observer: Option<Observer<'a>>,
+}
+
+impl Driver<'_> {
+    /// Refines until the levels are done, no face is flagged, the cap is near or the observer says stop.
+    pub(super) fn run(
+        &self,
+        control: &Mesh,
+        flags: impl Fn(&Mesh) -> Result<Vec<bool>, RefineError>,
+        moves: impl Fn(&Mesh, &SplitEdges) -> Option<Vec<bool>>,
+    ) -> Result<Refinement, RefineError> {
+        let mut refined: Option<Mesh> = None;
+        let mut steps = Vec::new();
+        let mut stop = Stop::Levels;
+        for step in 1..=self.levels {
+            let start = Instant::now();
+            let mesh = refined.as_ref().unwrap_or(control);
+            let divisible = flags(mesh)?;
+            let divisible_count = divisible.iter().filter(|&&flag| flag).count();
+            if divisible_count == 0 {
+                stop = Stop::Satisfied;
+                break;
+            }
+            let split = SplitEdges::of_divisible(mesh, &divisible);
+            let needed = split.triangle_count();
+            if self.max_triangles.is_some_and(|cap| needed > cap) {
+                stop = Stop::TriangleCap { needed };
+                break;
+            }
+            let closure = split.closure_cases(&divisible);
+            drop(divisible);
+            let moving = moves(mesh, &split);
+            let next = advance(mesh, self.scheme, split, moving.as_deref())?;
+            let report = StepReport {
+                step,
+                faces_before: mesh.face_count(),
+                divisible: divisible_count,
+                closure,
+                faces_after: next.face_count(),
+                duration: start.elapsed(),
+            };
+            refined = Some(next);
+            steps.push(report);
+            if self.observer.is_some_and(|observer| observer(&report).is_break()) {
+                return Err(RefineError::Cancelled { steps: step });
+            }
+        }
+        let mesh = refined.unwrap_or_else(|| control.clone());
+        let mesh = if self.limit { at_limit(mesh, self.scheme)? } else { mesh };
+        // Coordinates near the greatest number may overflow in a weighted sum.
+        check_finite(mesh.positions())?;
+        Ok(Refinement { mesh, steps, stop })
+    }
+}
+
+/// The mesh with its vertices moved to its limit surface.
+fn at_limit(mesh: Mesh, scheme: &dyn Scheme) -> Result<Mesh, RefineError> {
+    let mut positions = LimitTable::new(scheme).positions(&mesh)?;
+    join_copies(&mut positions, &mesh.junctions().vertices);
+    Ok(mesh.with_positions(positions)?)
+}

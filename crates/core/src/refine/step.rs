@@ -1,0 +1,55 @@
+//! One step of refinement: a mesh, its split edges and its moving vertices give the next mesh.
+//!
+//! All points are computed from the old positions and committed together.
+
+use super::RefineError;
+use super::junctions::{edge_groups, join_copies, vertex_groups};
+use super::masks::Masks;
+use super::split::{SplitEdges, SplitTopology};
+use crate::index::VertexId;
+use crate::mesh::{INFINITELY_SHARP, Junctions, Mesh, Tags};
+use crate::parallel;
+use crate::scheme::Scheme;
+
+/// The mesh after one step. `moves` says which old vertices take their new position; `None` means all.
+pub(super) fn advance(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    mut split: SplitEdges,
+    moves: Option<&[bool]>,
+) -> Result<Mesh, RefineError> {
+    let numbered = SplitTopology::number(mesh, &split)?;
+    let mut positions = new_positions(mesh, scheme, &numbered, moves);
+    let vertices = vertex_groups(mesh, &split, &numbered);
+    join_copies(&mut positions, &vertices);
+    split.choose_diagonals(mesh, &numbered, &positions);
+    let junctions = Junctions { vertices, edges: edge_groups(mesh, &split, &numbered) };
+    let topology = numbered.connect(mesh, &split);
+    Ok(Mesh::from_parts(topology, positions, lasting_tags(mesh.tags()), junctions))
+}
+
+/// Old vertices, moved or not, and then the new ones.
+fn new_positions(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    numbered: &SplitTopology,
+    moves: Option<&[bool]>,
+) -> Vec<[f64; 3]> {
+    let masks = Masks::new(mesh, scheme);
+    let old = mesh.vertex_count();
+    parallel::map(old + numbered.edges.len(), |v| {
+        if v >= old {
+            masks.edge_point(numbered.edges[v - old]).to_array()
+        } else if moves.is_none_or(|moves| moves[v]) {
+            masks.vertex_point(VertexId(v as u32)).to_array()
+        } else {
+            mesh.positions()[v]
+        }
+    })
+}
+
+/// The tags that hold for the next mesh: corners that stay for ever. Old vertices keep their numbers.
+fn lasting_tags(tags: &Tags) -> Tags {
+    let lasting = |tag: &&crate::mesh::CornerTag| tag.sharpness >= INFINITELY_SHARP;
+    Tags { creases: Vec::new(), corners: tags.corners.iter().filter(lasting).copied().collect() }
+}
