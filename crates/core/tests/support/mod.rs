@@ -1,0 +1,201 @@
+//! Meshes for tests, and a brute-force Loop subdivision that shares no code with the library.
+#![allow(dead_code, missing_docs)]
+
+use std::collections::BTreeMap;
+
+use limitmesh::Mesh;
+
+pub type Point = [f64; 3];
+
+/// A small deterministic generator, so that tests do not depend on a crate's stream of random numbers.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678_9abc_def1)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    /// Uniform in [−1, 1).
+    pub fn signed(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+}
+
+pub fn octahedron() -> Mesh {
+    let positions = vec![
+        [1.0, 0.0, 0.0],
+        [-1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, -1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.0, 0.0, -1.0],
+    ];
+    let triangles =
+        vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+    Mesh::from_triangles(positions, triangles).unwrap()
+}
+
+/// A torus-like grid of `m` by `n` quads, each cut in two: every vertex has valence 6.
+pub fn torus(m: u32, n: u32) -> Mesh {
+    let tau = std::f64::consts::TAU;
+    let mut positions = Vec::new();
+    for i in 0..m {
+        for j in 0..n {
+            let (u, v) = (tau * f64::from(i) / f64::from(m), tau * f64::from(j) / f64::from(n));
+            let r = 2.0 + 0.7 * v.cos();
+            positions.push([r * u.cos(), r * u.sin(), 0.7 * v.sin()]);
+        }
+    }
+    let at = |i: u32, j: u32| (i % m) * n + j % n;
+    let mut triangles = Vec::new();
+    for i in 0..m {
+        for j in 0..n {
+            triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+            triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+        }
+    }
+    Mesh::from_triangles(positions, triangles).unwrap()
+}
+
+/// An open sheet of `m` by `n` quads with diagonals either way, so that valences vary inside and on the boundary.
+pub fn sheet(m: u32, n: u32, seed: u64) -> Mesh {
+    let mut random = Random::new(seed);
+    let mut positions = Vec::new();
+    for i in 0..=m {
+        for j in 0..=n {
+            let mut jitter = || 0.2 * random.signed();
+            positions.push([f64::from(i) + jitter(), f64::from(j) + jitter(), 3.0 * jitter()]);
+        }
+    }
+    let at = |i: u32, j: u32| i * (n + 1) + j;
+    let mut triangles = Vec::new();
+    for i in 0..m {
+        for j in 0..n {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            if random.below(2) == 0 {
+                triangles.extend([[a, b, c], [a, c, d]]);
+            } else {
+                triangles.extend([[a, b, d], [b, c, d]]);
+            }
+        }
+    }
+    Mesh::from_triangles(positions, triangles).unwrap()
+}
+
+/// A closed surface with valences from 3 up: an octahedron whose faces are split at random and whose vertices
+/// are then moved.
+pub fn lumpy(splits: usize, seed: u64) -> Mesh {
+    let mut random = Random::new(seed);
+    let base = octahedron();
+    let mut positions = base.positions().to_vec();
+    let mut triangles = base.triangles().to_vec();
+    for _ in 0..splits {
+        let f = random.below(triangles.len());
+        let [a, b, c] = triangles[f];
+        let middle = positions.len() as u32;
+        let centre: Point = std::array::from_fn(|axis| {
+            [a, b, c].iter().map(|&v| positions[v as usize][axis]).sum::<f64>() / 2.4
+        });
+        positions.push(centre);
+        triangles[f] = [a, b, middle];
+        triangles.extend([[b, c, middle], [c, a, middle]]);
+    }
+    for p in &mut positions {
+        *p = p.map(|x| x + 0.1 * random.signed());
+    }
+    Mesh::from_triangles(positions, triangles).unwrap()
+}
+
+/// One level of Loop subdivision (the paper's equation 1; boundaries 1/8, 3/4, 1/8) from edge maps alone.
+/// Old vertices keep their numbers; the new vertex of each edge is returned by its ends.
+pub struct BruteForceLoop {
+    pub positions: Vec<Point>,
+    pub triangles: Vec<[u32; 3]>,
+    pub edge_vertices: BTreeMap<[u32; 2], u32>,
+}
+
+pub fn brute_force_loop(positions: &[Point], triangles: &[[u32; 3]]) -> BruteForceLoop {
+    let mut opposite: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
+    for &[a, b, c] in triangles {
+        for [p, q, r] in [[a, b, c], [b, c, a], [c, a, b]] {
+            opposite.entry([p.min(q), p.max(q)]).or_default().push(r);
+        }
+    }
+    let combine = |terms: &[(f64, u32)]| -> Point {
+        std::array::from_fn(|axis| terms.iter().map(|&(w, v)| w * positions[v as usize][axis]).sum())
+    };
+    let mut neighbours = vec![Vec::new(); positions.len()];
+    let mut boundary = vec![Vec::new(); positions.len()];
+    for ([a, b], faces) in &opposite {
+        for (from, to) in [(*a, *b), (*b, *a)] {
+            neighbours[from as usize].push(to);
+            if faces.len() == 1 {
+                boundary[from as usize].push(to);
+            }
+        }
+    }
+    let mut refined: Vec<Point> = (0..positions.len())
+        .map(|v| {
+            let own = v as u32;
+            if let [a, b] = boundary[v][..] {
+                return combine(&[(0.75, own), (0.125, a), (0.125, b)]);
+            }
+            let k = neighbours[v].len() as f64;
+            let c = 3.0 / 8.0 + (2.0 * std::f64::consts::PI / k).cos() / 4.0;
+            let beta = (5.0 / 8.0 - c * c) / k;
+            let mut terms = vec![(1.0 - k * beta, own)];
+            terms.extend(neighbours[v].iter().map(|&u| (beta, u)));
+            combine(&terms)
+        })
+        .collect();
+    let mut edge_vertices = BTreeMap::new();
+    for (&[a, b], faces) in &opposite {
+        edge_vertices.insert([a, b], refined.len() as u32);
+        refined.push(match faces[..] {
+            [c, d] => combine(&[(0.375, a), (0.375, b), (0.125, c), (0.125, d)]),
+            _ => combine(&[(0.5, a), (0.5, b)]),
+        });
+    }
+    let on = |p: u32, q: u32| edge_vertices[&[p.min(q), p.max(q)]];
+    let split = triangles
+        .iter()
+        .flat_map(|&[a, b, c]| {
+            let [ab, bc, ca] = [on(a, b), on(b, c), on(c, a)];
+            [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
+        })
+        .collect();
+    BruteForceLoop { positions: refined, triangles: split, edge_vertices }
+}
+
+pub fn distance(a: Point, b: Point) -> f64 {
+    (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Each triangle's corner positions, rotated so that the least comes first, all sorted: a mesh without its
+/// numbering, rounded to `digits` decimals.
+pub fn unnumbered(mesh: &Mesh, digits: i32) -> Vec<[[i64; 3]; 3]> {
+    let scale = 10f64.powi(digits);
+    let mut all: Vec<[[i64; 3]; 3]> = mesh
+        .triangles()
+        .iter()
+        .map(|t| {
+            let mut corners = t.map(|v| mesh.positions()[v as usize].map(|x| (x * scale).round() as i64));
+            let least = (0..3).min_by_key(|&i| corners[i]).unwrap();
+            corners.rotate_left(least);
+            corners
+        })
+        .collect();
+    all.sort_unstable();
+    all
+}
