@@ -1,1 +1,37 @@
-//! stub
+//! OBJ, PLY, STL and OFF files: read into a [`PolygonSoup`], written from triangles.
+//!
+//! The format is chosen by the file's extension and checked against its content. Reading keeps every number
+//! at the precision the file has it; a damaged file is an [error](ReadError) that names the line or byte, the
+//! element, what was met there and what was expected. Writing is whole or not at all: a failed write leaves an
+//! earlier file of that name as it was.
+//!
+//! | | read | written |
+//! |---|---|---|
+//! | OBJ | polygons, relative indices, `t crease` and `t corner` tags | `f64` digits, normals, colours, tags |
+//! | PLY | ASCII and binary of both byte orders, triangle strips | `f64`, binary (or ASCII), normals, colours, quality |
+//! | STL | ASCII and binary, several solids; three vertices a facet, not merged | `f32`, binary (or ASCII) |
+//! | OFF | polygons; extra columns are skipped | `f64` digits, normals, colours |
+//!
+//! ```
+//! use limitmesh_io::{Format, Output, WriteOptions, read_bytes, write_to};
+//!
+//! let soup = read_bytes(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", Format::Obj)?;
+//! let (mesh, _) = limitmesh::Mesh::from_soup(&soup, &Default::default())?;
+//! let mut bytes = Vec::new();
+//! write_to(&mut bytes, Format::Ply, &Output::new(mesh.as_triangles()), &WriteOptions::default())?;
+//! assert_eq!(read_bytes(&bytes, Format::Ply)?.positions, soup.positions);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`PolygonSoup`]: limitmesh::mesh::PolygonSoup
+
+mod error;
+mod format;
+mod read;
+mod scan;
+mod write;
+
+pub use error::{Flaw, Place, ReadError, WriteError};
+pub use format::{Format, UnknownFormat};
+pub use read::{read, read_bytes};
+pub use write::{Output, WriteOptions, write, write_to, write_whole};

@@ -1,0 +1,225 @@
+//! What can go wrong with a file, and where.
+
+use crate::format::{Format, UnknownFormat};
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a file could not be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The extension is none of the known ones.
+    #[error("{0}")]
+    UnknownFormat(UnknownFormat),
+    /// The system refused: no such file, a folder, no permission.
+    #[error("cannot read {}: {reason}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        reason: io::Error,
+    },
+    /// There is not a single byte.
+    #[error("{}the file is empty, expected {format} content", prefix(path))]
+    Empty {
+        /// The file, if it was one.
+        path: Option<PathBuf>,
+        /// The format it is named as.
+        format: Format,
+    },
+    /// The content is plainly of another kind than the name says.
+    #[error("{}named as {format}, but the content looks like {looks_like}", prefix(path))]
+    OtherContent {
+        /// The file, if it was one.
+        path: Option<PathBuf>,
+        /// The format it is named as.
+        format: Format,
+        /// What it seems to be.
+        looks_like: &'static str,
+    },
+    /// Something in the content breaks the rules of the format.
+    #[error("{}{format} {flaw}", prefix(path))]
+    Flaw {
+        /// The file, if it was one.
+        path: Option<PathBuf>,
+        /// The format.
+        format: Format,
+        /// What is wrong, and where.
+        flaw: Flaw,
+    },
+}
+
+impl From<UnknownFormat> for ReadError {
+    fn from(unknown: UnknownFormat) -> Self {
+        Self::UnknownFormat(unknown)
+    }
+}
+
+impl ReadError {
+    /// The same error with the file's name.
+    pub(crate) fn in_file(mut self, file: &Path) -> Self {
+        match &mut self {
+            Self::Empty { path, .. } | Self::OtherContent { path, .. } | Self::Flaw { path, .. } => {
+                *path = Some(file.to_owned());
+            }
+            Self::UnknownFormat(_) | Self::Io { .. } => {}
+        }
+        self
+    }
+}
+
+fn prefix(path: &Option<PathBuf>) -> String {
+    path.as_ref().map_or_else(String::new, |path| format!("{}: ", path.display()))
+}
+
+/// A place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A line, counted from 1.
+    Line(usize),
+    /// A byte, counted from 0.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(out, "line {line}"),
+            Self::Byte(byte) => write!(out, "byte {byte}"),
+        }
+    }
+}
+
+/// Something that breaks the rules of a format.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Flaw {
+    /// Where.
+    pub place: Place,
+    /// The element there, such as `vertex 5`, counted from 0; empty outside elements.
+    pub element: String,
+    /// What was met.
+    pub met: String,
+    /// What the format asks for.
+    pub expected: String,
+}
+
+impl Flaw {
+    pub(crate) fn new(place: Place, met: impl Into<String>, expected: impl Into<String>) -> Self {
+        Self { place, element: String::new(), met: met.into(), expected: expected.into() }
+    }
+
+    /// The same flaw with the element it is in.
+    pub(crate) fn element(mut self, name: &str, index: usize) -> Self {
+        self.element = format!("{name} {index}");
+        self
+    }
+
+    pub(crate) fn in_format(self, format: Format) -> ReadError {
+        ReadError::Flaw { path: None, format, flaw: self }
+    }
+}
+
+impl fmt::Display for Flaw {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{}", self.place)?;
+        if !self.element.is_empty() {
+            write!(out, ", {}", self.element)?;
+        }
+        write!(out, ": met {}, expected {}", self.met, self.expected)
+    }
+}
+
+/// Why a file could not be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The extension is none of the known ones.
+    #[error("{0}")]
+    UnknownFormat(UnknownFormat),
+    /// The system refused: no such folder, no permission, no space.
+    #[error("cannot write {}: {reason}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        reason: io::Error,
+    },
+    /// The writer that was given failed.
+    #[error("cannot write: {reason}")]
+    Writer {
+        /// What it says.
+        reason: io::Error,
+    },
+    /// There is not one attribute for each vertex.
+    #[error("{count} {what} for {vertices} vertices, expected one for each")]
+    AttributeCount {
+        /// Which attribute.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// A triangle or a tag names a vertex that does not exist.
+    #[error("{what} {index} names vertex {vertex}, but there are {vertices} vertices")]
+    VertexOutOfRange {
+        /// What names it: `triangle`, `crease tag` or `corner tag`.
+        what: &'static str,
+        /// Which one, counted from 0.
+        index: usize,
+        /// The vertex named.
+        vertex: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// A number is NaN or infinite, or too large for the format's `f32`.
+    #[error(
+        "{what} of vertex {vertex} is {value}, which {format} files cannot hold, expected a finite number"
+    )]
+    NotFinite {
+        /// Which number: `position`, `normal` or `quality`.
+        what: &'static str,
+        /// The vertex.
+        vertex: usize,
+        /// The value.
+        value: f64,
+        /// The format.
+        format: Format,
+    },
+    /// More elements than the format can count.
+    #[error("{count} {what} are too many for {format} files, which count to {limit}")]
+    TooMany {
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        limit: u32,
+        /// The format.
+        format: Format,
+    },
+}
+
+impl From<UnknownFormat> for WriteError {
+    fn from(unknown: UnknownFormat) -> Self {
+        Self::UnknownFormat(unknown)
+    }
+}
+
+impl From<io::Error> for WriteError {
+    fn from(reason: io::Error) -> Self {
+        Self::Writer { reason }
+    }
+}
+
+impl WriteError {
+    /// The same error with the file's name, if it is one of input and output.
+    pub(crate) fn in_file(self, path: &Path) -> Self {
+        match self {
+            Self::Writer { reason } => Self::File { path: path.to_owned(), reason },
+            other => other,
+        }
+    }
+}

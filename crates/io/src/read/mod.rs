@@ -1,0 +1,64 @@
+//! Reading: from a file or its bytes to a polygon soup.
+
+mod obj;
+mod off;
+mod ply;
+mod stl;
+
+use crate::error::{Flaw, Place, ReadError};
+use crate::format::{Format, looks_like_other};
+use limitmesh::mesh::{PolygonFaces, PolygonSoup};
+use std::path::Path;
+
+/// Reads a mesh file in the format of its extension.
+///
+/// # Errors
+/// The extension is unknown, the file cannot be read, its content is plainly of another format, or it breaks
+/// the rules of its format; each names the file, and the last the line or byte as well.
+pub fn read(path: &Path) -> Result<PolygonSoup, ReadError> {
+    let format = Format::from_path(path)?;
+    let bytes = std::fs::read(path).map_err(|reason| ReadError::Io { path: path.to_owned(), reason })?;
+    read_bytes(&bytes, format).map_err(|error| error.in_file(path))
+}
+
+/// Reads the bytes of a mesh file in the given format.
+///
+/// # Errors
+/// As for [`read`].
+pub fn read_bytes(bytes: &[u8], format: Format) -> Result<PolygonSoup, ReadError> {
+    if bytes.is_empty() {
+        return Err(ReadError::Empty { path: None, format });
+    }
+    if let Some(looks_like) = looks_like_other(bytes, format) {
+        return Err(ReadError::OtherContent { path: None, format, looks_like });
+    }
+    let soup = match format {
+        Format::Obj => obj::read(bytes),
+        Format::Ply => ply::read(bytes),
+        Format::Stl => stl::read(bytes),
+        Format::Off => off::read(bytes),
+    };
+    soup.map_err(|flaw| flaw.in_format(format))
+}
+
+/// Most elements of a kind that `u32` indices can name.
+const MOST: usize = u32::MAX as usize;
+
+/// Refuses counts that `u32` indices cannot name.
+fn check_count(count: u64, what: &str, place: Place) -> Result<usize, Flaw> {
+    match usize::try_from(count) {
+        Ok(count) if count <= MOST => Ok(count),
+        _ => Err(Flaw::new(place, format!("{count} {what}"), format!("at most {MOST}"))),
+    }
+}
+
+/// Adds a face, unless all faces together would have more corners than can be counted.
+#[inline]
+fn push_face(faces: &mut PolygonFaces, corners: &[u32], place: impl Fn() -> Place) -> Result<(), Flaw> {
+    if corners.len() > MOST - faces.corner_count() {
+        let met = format!("more than {MOST} face corners");
+        return Err(Flaw::new(place(), met, format!("at most {MOST}")));
+    }
+    faces.push(corners);
+    Ok(())
+}

@@ -1,0 +1,214 @@
+//! Wavefront OBJ: `v` and `f` statements, and the `t crease` and `t corner` tags of OpenSubdiv.
+//!
+//! Indices of faces count from 1, negative ones back from the latest vertex; a face may stand before its
+//! vertices. Indices of tags count from 0, as in OpenSubdiv's shapes. Texture coordinates, normals, weights,
+//! colours, groups, materials and all other statements are passed over.
+
+use super::push_face;
+use crate::error::Flaw;
+use crate::scan::{Scanner, Syntax, integer, number, quoted};
+use limitmesh::mesh::{CornerTag, CreaseTag, PolygonFaces, PolygonSoup};
+
+pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
+    let scanner = Scanner::new(bytes, Syntax { comments: true, continuations: true });
+    let (vertices, faces) = count_statements(bytes);
+    let soup = PolygonSoup {
+        positions: Vec::with_capacity(vertices),
+        faces: PolygonFaces::with_capacity(faces, 3 * faces),
+        ..PolygonSoup::default()
+    };
+    Reader {
+        scanner,
+        soup,
+        polygon: Vec::new(),
+        highest_corner: Latest::default(),
+        highest_tag: Latest::default(),
+    }
+    .run()
+}
+
+/// How many lines begin with `v ` and `f `: what to make room for. Each of them takes bytes of the file, so
+/// that the room is bounded by its size.
+fn count_statements(bytes: &[u8]) -> (usize, usize) {
+    let mut counts = (0, 0);
+    let mut start = 0;
+    while let Some(&[kind, blank]) = bytes.get(start..start + 2) {
+        let separated = blank == b' ' || blank == b'\t';
+        counts.0 += usize::from(separated && kind == b'v');
+        counts.1 += usize::from(separated && kind == b'f');
+        match memchr::memchr(b'\n', &bytes[start..]) {
+            Some(length) => start += length + 1,
+            None => break,
+        }
+    }
+    counts
+}
+
+/// The greatest index met so far and its line; indices may name vertices that come later in the file.
+#[derive(Default)]
+struct Latest {
+    count_needed: usize,
+    line: usize,
+}
+
+impl Latest {
+    fn note(&mut self, index: u32, line: usize) {
+        let needed = index as usize + 1;
+        if needed > self.count_needed {
+            *self = Self { count_needed: needed, line };
+        }
+    }
+}
+
+struct Reader<'a> {
+    scanner: Scanner<'a>,
+    soup: PolygonSoup,
+    /// The corners of the face that is being read.
+    polygon: Vec<u32>,
+    highest_corner: Latest,
+    highest_tag: Latest,
+}
+
+impl Reader<'_> {
+    fn run(mut self) -> Result<PolygonSoup, Flaw> {
+        while let Some(keyword) = self.scanner.first_word() {
+            match keyword {
+                b"v" => self.vertex()?,
+                b"f" | b"fo" => self.face()?,
+                b"t" => self.tag()?,
+                _ => {}
+            }
+            self.scanner.next_line();
+        }
+        self.check_indices()?;
+        self.soup.positions.shrink_to_fit();
+        Ok(self.soup)
+    }
+
+    fn vertex(&mut self) -> Result<(), Flaw> {
+        let index = self.soup.positions.len();
+        super::check_count(index as u64 + 1, "vertices", self.scanner.place())?;
+        let point = self.scanner.point().map_err(|flaw| flaw.element("vertex", index))?;
+        self.soup.positions.push(point);
+        Ok(())
+    }
+
+    fn face(&mut self) -> Result<(), Flaw> {
+        self.polygon.clear();
+        while let Some(word) = self.scanner.word() {
+            let index = self.corner(word)?;
+            if index as usize >= self.soup.positions.len() {
+                self.highest_corner.note(index, self.scanner.line());
+            }
+            self.polygon.push(index);
+        }
+        push_face(&mut self.soup.faces, &self.polygon, || self.scanner.place())
+    }
+
+    /// The vertex, counted from 0, that a corner such as `7`, `-1`, `7/2`, `7//3` or `7/2/3` names.
+    #[inline]
+    fn corner(&self, word: &[u8]) -> Result<u32, Flaw> {
+        let vertex = word.split(|&b| b == b'/').next().unwrap_or_default();
+        let latest = self.soup.positions.len() as i64;
+        let index = match integer(vertex) {
+            Some(index) if index > 0 => Some(index - 1),
+            Some(index) if index < 0 => Some(latest + index),
+            _ => None,
+        };
+        // One less than u32::MAX, because that many vertices are the most there can be.
+        index.and_then(|i| u32::try_from(i).ok()).filter(|&i| i < u32::MAX).ok_or_else(|| {
+            let face = self.soup.faces.len();
+            Flaw::new(
+                self.scanner.place(),
+                quoted(word),
+                format!(
+                    "a vertex index from 1, or one from -{latest} to -1, counting back from the latest vertex"
+                ),
+            )
+            .element("face", face)
+        })
+    }
+
+    /// `t NAME INTEGERS/FLOATS/STRINGS` and that many values. Names other than `crease` and `corner` are
+    /// passed over.
+    fn tag(&mut self) -> Result<(), Flaw> {
+        let crease = match self.scanner.word() {
+            Some(b"crease") => true,
+            Some(b"corner") => false,
+            _ => return Ok(()),
+        };
+        let (integers, floats) = self.tag_counts()?;
+        let ends = if crease { 2 } else { 1 };
+        let (vertices, sharpness) = (self.tag_vertices(integers)?, self.tag_sharpness(floats)?);
+        let tags = vertices.len() / ends;
+        if vertices.len() % ends != 0 || sharpness.len() != 1 && sharpness.len() != tags {
+            let met = format!("a tag of {integers} integers and {floats} floats");
+            let expected = format!("{ends} for each tagged place, and one sharpness for all or for each");
+            return Err(Flaw::new(self.scanner.place(), met, expected));
+        }
+        for (i, place) in vertices.chunks_exact(ends).enumerate() {
+            let sharpness = sharpness[if sharpness.len() == 1 { 0 } else { i }];
+            match *place {
+                [a, b] => self.soup.creases.push(CreaseTag { vertices: [a, b], sharpness }),
+                [vertex] => self.soup.corners.push(CornerTag { vertex, sharpness }),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn tag_counts(&mut self) -> Result<(usize, usize), Flaw> {
+        let word = self.scanner.word();
+        let parse = |word: &[u8]| {
+            let mut counts =
+                word.split(|&b| b == b'/').map(|w| integer(w).and_then(|n| usize::try_from(n).ok()));
+            Some((counts.next()??, counts.next()??))
+        };
+        word.and_then(parse).ok_or_else(|| self.scanner.unexpected(word, "the tag's counts, as in 2/1/0"))
+    }
+
+    fn tag_vertices(&mut self, count: usize) -> Result<Vec<u32>, Flaw> {
+        let mut vertices = Vec::new();
+        for _ in 0..count {
+            let word = self.scanner.word();
+            let index = word.and_then(integer).and_then(|i| u32::try_from(i).ok()).filter(|&i| i < u32::MAX);
+            let Some(index) = index else {
+                return Err(self.scanner.unexpected(word, "a vertex index from 0 in a tag"));
+            };
+            self.highest_tag.note(index, self.scanner.line());
+            vertices.push(index);
+        }
+        Ok(vertices)
+    }
+
+    fn tag_sharpness(&mut self, count: usize) -> Result<Vec<f64>, Flaw> {
+        let mut values = Vec::new();
+        for _ in 0..count {
+            let word = self.scanner.word();
+            match word.and_then(number) {
+                Some(value) if value >= 0.0 => values.push(value),
+                _ => return Err(self.scanner.unexpected(word, "a sharpness of at least 0")),
+            }
+        }
+        Ok(values)
+    }
+
+    /// Whether all the vertices that faces and tags name have come.
+    fn check_indices(&self) -> Result<(), Flaw> {
+        let count = self.soup.positions.len();
+        if count == 0 {
+            return Err(self.scanner.unexpected(None, "at least one vertex (v X Y Z)"));
+        }
+        if self.highest_corner.count_needed > count {
+            let met = format!("vertex index {} in a face", self.highest_corner.count_needed);
+            let expected = format!("at most {count}, the number of vertices");
+            return Err(Flaw::new(crate::Place::Line(self.highest_corner.line), met, expected));
+        }
+        if self.highest_tag.count_needed > count {
+            let met = format!("vertex index {} in a tag", self.highest_tag.count_needed - 1);
+            let expected = format!("at most {} (tags count vertices from 0)", count - 1);
+            return Err(Flaw::new(crate::Place::Line(self.highest_tag.line), met, expected));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,255 @@
+//! The header of a PLY file: which elements with which properties follow, how many, and in which encoding.
+
+use crate::error::{Flaw, Place};
+use crate::read::check_count;
+use crate::scan::{integer, quoted};
+
+/// How the values after the header are written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Encoding {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+/// The type of a number.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn from_name(name: &[u8]) -> Option<Self> {
+        Some(match name {
+            b"char" | b"int8" => Self::I8,
+            b"uchar" | b"uint8" => Self::U8,
+            b"short" | b"int16" => Self::I16,
+            b"ushort" | b"uint16" => Self::U16,
+            b"int" | b"int32" => Self::I32,
+            b"uint" | b"uint32" => Self::U32,
+            b"float" | b"float32" => Self::F32,
+            b"double" | b"float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    /// Bytes of a binary value.
+    pub(super) fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    fn is_integer(self) -> bool {
+        !matches!(self, Self::F32 | Self::F64)
+    }
+}
+
+/// One value, or a count and that many values.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Kind {
+    Scalar(Scalar),
+    List { count: Scalar, item: Scalar },
+}
+
+impl Kind {
+    /// Least bytes that a property of this kind takes.
+    fn least_size(self, encoding: Encoding) -> usize {
+        match (encoding, self) {
+            // A digit and what separates it from the next.
+            (Encoding::Ascii, _) => 2,
+            (_, Self::Scalar(scalar)) => scalar.size(),
+            (_, Self::List { count, .. }) => count.size(),
+        }
+    }
+}
+
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct Property {
+    pub(super) name: String,
+    pub(super) kind: Kind,
+}
+
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct Element {
+    pub(super) name: String,
+    pub(super) count: usize,
+    pub(super) properties: Vec<Property>,
+    /// The line that declares it.
+    pub(super) line: usize,
+}
+
+impl Element {
+    /// Least bytes that one such element takes in the file.
+    pub(super) fn least_size(&self, encoding: Encoding) -> usize {
+        self.properties.iter().map(|p| p.kind.least_size(encoding)).sum()
+    }
+
+    /// Whether every such element takes equally many bytes in a binary file.
+    pub(super) fn has_fixed_size(&self) -> bool {
+        self.properties.iter().all(|p| matches!(p.kind, Kind::Scalar(_)))
+    }
+
+    /// The place of the property with one of these names.
+    pub(super) fn find(&self, names: &[&str]) -> Option<usize> {
+        self.properties.iter().position(|p| names.contains(&p.name.as_str()))
+    }
+}
+
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct Header {
+    pub(super) encoding: Encoding,
+    pub(super) elements: Vec<Element>,
+    /// Where the body begins: byte, and line counted from 1.
+    pub(super) body: (usize, usize),
+}
+
+/// Reads the header at the beginning of `bytes`.
+pub(super) fn read(bytes: &[u8]) -> Result<Header, Flaw> {
+    let mut lines = Lines::new(bytes);
+    let first = lines.next()?;
+    if first.trim_ascii() != b"ply" {
+        return Err(lines.flaw(quoted(first), "the word ply alone on the first line"));
+    }
+    let mut encoding = None;
+    let mut elements: Vec<Element> = Vec::new();
+    loop {
+        let line = lines.next()?;
+        let words: Vec<&[u8]> = line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).collect();
+        match *words.as_slice() {
+            [] | [b"comment" | b"obj_info", ..] => {}
+            [b"format", name, version] => encoding = Some(read_format(&lines, name, version)?),
+            [b"element", name, count] => {
+                let element = read_element(&lines, name, count)?;
+                if elements.iter().any(|e| e.name == element.name) {
+                    return Err(lines.flaw(format!("a second element {}", quoted(name)), "one of each name"));
+                }
+                elements.push(element);
+            }
+            [b"property", ref words @ ..] => {
+                let property = read_property(&lines, words)?;
+                let Some(element) = elements.last_mut() else {
+                    return Err(lines.flaw("a property before any element", "an element"));
+                };
+                if element.properties.iter().any(|p| p.name == property.name) {
+                    let met = format!("a second property {}", quoted(property.name.as_bytes()));
+                    return Err(lines.flaw(met, "one of each name"));
+                }
+                element.properties.push(property);
+            }
+            [b"end_header"] => break,
+            _ => {
+                let expected =
+                    "format NAME 1.0, element NAME COUNT, property TYPE NAME, comment or end_header";
+                return Err(lines.flaw(quoted(line), expected));
+            }
+        }
+    }
+    let Some(encoding) = encoding else {
+        return Err(lines.flaw("a header without a format", "format ascii 1.0 or a binary one"));
+    };
+    Ok(Header { encoding, elements, body: (lines.at, lines.line + 1) })
+}
+
+fn read_format(lines: &Lines<'_>, name: &[u8], version: &[u8]) -> Result<Encoding, Flaw> {
+    if version != b"1.0" {
+        return Err(lines.flaw(format!("version {}", quoted(version)), "version 1.0"));
+    }
+    match name {
+        b"ascii" => Ok(Encoding::Ascii),
+        b"binary_little_endian" => Ok(Encoding::LittleEndian),
+        b"binary_big_endian" => Ok(Encoding::BigEndian),
+        _ => Err(lines.flaw(quoted(name), "ascii, binary_little_endian or binary_big_endian")),
+    }
+}
+
+fn read_element(lines: &Lines<'_>, name: &[u8], count: &[u8]) -> Result<Element, Flaw> {
+    let Some(count) = integer(count).and_then(|n| u64::try_from(n).ok()) else {
+        return Err(lines.flaw(quoted(count), "the number of elements"));
+    };
+    let name = String::from_utf8_lossy(name).into_owned();
+    let count = check_count(count, &format!("elements {}", quoted(name.as_bytes())), lines.place())?;
+    Ok(Element { name, count, properties: Vec::new(), line: lines.line })
+}
+
+fn read_property(lines: &Lines<'_>, words: &[&[u8]]) -> Result<Property, Flaw> {
+    let scalar = |name: &[u8]| {
+        Scalar::from_name(name).ok_or_else(|| {
+            lines.flaw(
+                format!("type {}", quoted(name)),
+                "char, uchar, short, ushort, int, uint, float or double, or int8 to uint32, float32 or float64",
+            )
+        })
+    };
+    let (name, kind) = match *words {
+        [b"list", count, item, name] => {
+            let (count, item) = (scalar(count)?, scalar(item)?);
+            if !count.is_integer() {
+                return Err(lines.flaw("a list whose length is no integer", "an integer type"));
+            }
+            (name, Kind::List { count, item })
+        }
+        [kind, name] => (name, Kind::Scalar(scalar(kind)?)),
+        _ => return Err(lines.flaw("a property of another form", "TYPE NAME or list TYPE TYPE NAME")),
+    };
+    Ok(Property { name: String::from_utf8_lossy(name).into_owned(), kind })
+}
+
+/// The lines of the header. All end as the first one does, since a binary body may begin with any byte.
+struct Lines<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    line: usize,
+    end: &'static [u8],
+}
+
+impl<'a> Lines<'a> {
+    fn new(bytes: &'a [u8]) -> Self {
+        let first = bytes.iter().position(|&b| b == b'\n' || b == b'\r').unwrap_or(bytes.len());
+        let end: &[u8] = match bytes[first..] {
+            [b'\r', b'\n', ..] => b"\r\n",
+            [b'\r', ..] => b"\r",
+            _ => b"\n",
+        };
+        Self { bytes, at: 0, line: 0, end }
+    }
+
+    fn next(&mut self) -> Result<&'a [u8], Flaw> {
+        self.line += 1;
+        let rest = &self.bytes[self.at..];
+        let Some(length) = memchr::memmem::find(rest, self.end) else {
+            return Err(self.flaw("the end of the file within the header", "end_header"));
+        };
+        self.at += length + self.end.len();
+        Ok(&rest[..length])
+    }
+
+    fn place(&self) -> Place {
+        Place::Line(self.line)
+    }
+
+    fn flaw(&self, met: impl Into<String>, expected: impl Into<String>) -> Flaw {
+        Flaw::new(self.place(), met, expected)
+    }
+}
+
+/// Checks that a list holds indices.
+pub(super) fn check_index_list(element: &Element, property: &Property) -> Result<(), Flaw> {
+    match property.kind {
+        Kind::List { item, .. } if item.is_integer() => Ok(()),
+        _ => {
+            let met = format!("property {} of element {}", property.name, element.name);
+            Err(Flaw::new(Place::Line(element.line), met, "a list of integers"))
+        }
+    }
+}

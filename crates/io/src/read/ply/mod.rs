@@ -1,0 +1,223 @@
+//! Stanford PLY 1.0: ASCII and binary of both byte orders.
+//!
+//! Takes `x`, `y`, `z` of element `vertex` (any number types), the list `vertex_indices` or `vertex_index` of
+//! element `face`, and the same list of element `tristrips`, where -1 ends a strip. All other properties and
+//! elements are passed over, and so is what follows the last element.
+
+mod header;
+mod source;
+
+use super::{check_count, push_face};
+use crate::error::{Flaw, Place};
+use header::{Element, Encoding, Header, Kind};
+use limitmesh::mesh::{PolygonFaces, PolygonSoup};
+use source::{Binary, Source, Text};
+
+const INDEX_NAMES: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
+    let header = header::read(bytes)?;
+    match header.encoding {
+        Encoding::Ascii => read_body(&header, Text::new(bytes, header.body)),
+        Encoding::LittleEndian => read_body(&header, Binary::<false>::new(bytes, header.body.0)),
+        Encoding::BigEndian => read_body(&header, Binary::<true>::new(bytes, header.body.0)),
+    }
+}
+
+fn read_body(header: &Header, mut source: impl Source) -> Result<PolygonSoup, Flaw> {
+    let Some(vertices) = header.elements.iter().find(|e| e.name == "vertex") else {
+        return Err(Flaw::new(Place::Line(header.body.1 - 1), "a header without element vertex", "one"));
+    };
+    let vertices = vertices.count;
+    let mut soup = PolygonSoup::default();
+    for element in &header.elements {
+        check_room(header.encoding, element, &source)?;
+        match element.name.as_str() {
+            "vertex" => soup.positions = read_vertices(element, &mut source)?,
+            "face" => read_polygons(element, &mut source, vertices, &mut soup.faces)?,
+            "tristrips" => read_strips(element, &mut source, vertices, &mut soup.faces)?,
+            _ => skip_element(element, &mut source)?,
+        }
+    }
+    Ok(soup)
+}
+
+/// Refuses a count that the rest of the file cannot hold, before any room is made for it.
+fn check_room(encoding: Encoding, element: &Element, source: &impl Source) -> Result<(), Flaw> {
+    let size = element.least_size(encoding);
+    let left = source.remaining();
+    if element.count as u128 * size as u128 <= left as u128 {
+        return Ok(());
+    }
+    let exact = encoding != Encoding::Ascii && element.has_fixed_size();
+    let at_least = if exact { "" } else { "at least " };
+    let expected = format!(
+        "{} elements {} of {at_least}{size} bytes each, as line {} promises",
+        element.count, element.name, element.line
+    );
+    let flaw = Flaw::new(source.place(), format!("{left} bytes up to the end of the file"), expected);
+    Err(if exact { flaw.element(&element.name, left / size) } else { flaw })
+}
+
+fn read_vertices(element: &Element, source: &mut impl Source) -> Result<Vec<[f64; 3]>, Flaw> {
+    let mut axes = [0; 3];
+    for (axis, name) in axes.iter_mut().zip(["x", "y", "z"]) {
+        let found = element.find(&[name]).filter(|&p| matches!(element.properties[p].kind, Kind::Scalar(_)));
+        *axis = found.ok_or_else(|| {
+            let met = format!("element vertex without property {name}");
+            Flaw::new(Place::Line(element.line), met, "x, y and z, each one number")
+        })?;
+    }
+    let mut positions = Vec::with_capacity(element.count);
+    for index in 0..element.count {
+        let point = read_vertex(element, source, axes).map_err(|flaw| flaw.element("vertex", index))?;
+        positions.push(point);
+    }
+    Ok(positions)
+}
+
+#[inline]
+fn read_vertex(element: &Element, source: &mut impl Source, axes: [usize; 3]) -> Result<[f64; 3], Flaw> {
+    let mut point = [0.0; 3];
+    for (i, property) in element.properties.iter().enumerate() {
+        match (property.kind, axes.iter().position(|&a| a == i)) {
+            (Kind::Scalar(scalar), Some(axis)) => {
+                let value = source.number(scalar)?;
+                if !value.is_finite() {
+                    let expected = format!("a finite number for {}", property.name);
+                    return Err(Flaw::new(source.place(), value.to_string(), expected));
+                }
+                point[axis] = value;
+            }
+            (kind, _) => skip_property(kind, source)?,
+        }
+    }
+    source.end_element()?;
+    Ok(point)
+}
+
+/// Hands the indices of each element's list to `take`, with the source to name places by.
+fn read_lists<S: Source>(
+    element: &Element,
+    source: &mut S,
+    mut take: impl FnMut(&[i64], &S) -> Result<(), Flaw>,
+) -> Result<(), Flaw> {
+    let Some(list) = element.find(&INDEX_NAMES) else {
+        let met = format!("element {} without a list vertex_indices", element.name);
+        return Err(Flaw::new(Place::Line(element.line), met, "one"));
+    };
+    header::check_index_list(element, &element.properties[list])?;
+    let mut indices = Vec::new();
+    for index in 0..element.count {
+        let mut read = || {
+            for (i, property) in element.properties.iter().enumerate() {
+                match property.kind {
+                    Kind::List { count, item } if i == list => {
+                        let count = list_length(source.integer(count)?, source)?;
+                        indices.clear();
+                        for _ in 0..count {
+                            indices.push(source.integer(item)?);
+                        }
+                    }
+                    kind => skip_property(kind, source)?,
+                }
+            }
+            take(&indices, source)?;
+            source.end_element()
+        };
+        read().map_err(|flaw| flaw.element(&element.name, index))?;
+    }
+    Ok(())
+}
+
+fn read_polygons<S: Source>(
+    element: &Element,
+    source: &mut S,
+    vertices: usize,
+    faces: &mut PolygonFaces,
+) -> Result<(), Flaw> {
+    // Counted first, so that the room made is exact and what the file really holds.
+    let mut corners = 0;
+    read_lists(element, &mut source.fork(), |indices, _| {
+        corners += indices.len();
+        Ok(())
+    })?;
+    check_count(corners as u64, "face corners", source.place())?;
+    let strips = std::mem::replace(faces, PolygonFaces::with_capacity(element.count, corners));
+    strips.iter().for_each(|triangle| faces.push(triangle));
+    let mut polygon = Vec::new();
+    read_lists(element, source, |indices, source| {
+        polygon.clear();
+        for &index in indices {
+            polygon.push(vertex_index(index, vertices, source)?);
+        }
+        push_face(faces, &polygon, || source.place())
+    })
+}
+
+/// Strips of triangles: each vertex after the second makes one with the two before it, turned every other time.
+fn read_strips<S: Source>(
+    element: &Element,
+    source: &mut S,
+    vertices: usize,
+    faces: &mut PolygonFaces,
+) -> Result<(), Flaw> {
+    read_lists(element, source, |indices, source| {
+        for strip in indices.split(|&i| i == -1) {
+            for (i, corners) in strip.windows(3).enumerate() {
+                let mut triangle = [0; 3];
+                for (corner, &index) in triangle.iter_mut().zip(corners) {
+                    *corner = vertex_index(index, vertices, source)?;
+                }
+                if i % 2 == 1 {
+                    triangle.swap(0, 1);
+                }
+                push_face(faces, &triangle, || source.place())?;
+            }
+        }
+        Ok(())
+    })
+}
+
+#[inline]
+fn vertex_index(index: i64, vertices: usize, source: &impl Source) -> Result<u32, Flaw> {
+    match u32::try_from(index) {
+        Ok(i) if (i as usize) < vertices => Ok(i),
+        _ => {
+            let expected = format!("an index below {vertices}, the number of vertices");
+            Err(Flaw::new(source.place(), format!("vertex index {index}"), expected))
+        }
+    }
+}
+
+fn list_length(count: i64, source: &impl Source) -> Result<usize, Flaw> {
+    usize::try_from(count)
+        .map_err(|_| Flaw::new(source.place(), format!("a list of length {count}"), "at least 0"))
+}
+
+fn skip_element(element: &Element, source: &mut impl Source) -> Result<(), Flaw> {
+    if source.skip_all(element) {
+        return Ok(());
+    }
+    for index in 0..element.count {
+        let mut skip = || {
+            for property in &element.properties {
+                skip_property(property.kind, source)?;
+            }
+            source.end_element()
+        };
+        skip().map_err(|flaw| flaw.element(&element.name, index))?;
+    }
+    Ok(())
+}
+
+#[inline]
+fn skip_property(kind: Kind, source: &mut impl Source) -> Result<(), Flaw> {
+    match kind {
+        Kind::Scalar(scalar) => source.skip(scalar, 1),
+        Kind::List { count, item } => {
+            let count = list_length(source.integer(count)?, source)?;
+            source.skip(item, count)
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! The values of a PLY file one after another, whether they are text or bytes of either order.
+
+use super::header::{Element, Scalar};
+use crate::error::{Flaw, Place};
+use crate::scan::{Scanner, integer, number, quoted};
+
+/// Gives the values of the body in order.
+pub(super) trait Source {
+    /// The next value.
+    fn number(&mut self, scalar: Scalar) -> Result<f64, Flaw>;
+
+    /// The next value, of an integer type.
+    fn integer(&mut self, scalar: Scalar) -> Result<i64, Flaw>;
+
+    /// Steps over `count` values.
+    fn skip(&mut self, scalar: Scalar, count: usize) -> Result<(), Flaw>;
+
+    /// Called after the last value of each element.
+    fn end_element(&mut self) -> Result<(), Flaw>;
+
+    /// Steps over all of `element` if that can be done without looking at each.
+    fn skip_all(&mut self, element: &Element) -> bool;
+
+    /// How many bytes are left.
+    fn remaining(&self) -> usize;
+
+    /// Where the source stands, for errors.
+    fn place(&self) -> Place;
+
+    /// The same place once more, to go over some elements twice.
+    fn fork(&self) -> Self;
+}
+
+/// Values in text, the elements one to a line.
+#[derive(Clone)]
+pub(super) struct Text<'a> {
+    scanner: Scanner<'a>,
+    /// Whether the scanner stands before the first value of an element.
+    fresh: bool,
+}
+
+impl<'a> Text<'a> {
+    pub(super) fn new(bytes: &'a [u8], (at, line): (usize, usize)) -> Self {
+        Self { scanner: Scanner::starting_at(bytes, at, line), fresh: true }
+    }
+
+    fn word(&mut self) -> Option<&'a [u8]> {
+        if std::mem::take(&mut self.fresh) { self.scanner.first_word() } else { self.scanner.word() }
+    }
+}
+
+impl Source for Text<'_> {
+    fn number(&mut self, _: Scalar) -> Result<f64, Flaw> {
+        let word = self.word();
+        word.and_then(number).ok_or_else(|| self.scanner.unexpected(word, "a number"))
+    }
+
+    fn integer(&mut self, _: Scalar) -> Result<i64, Flaw> {
+        let word = self.word();
+        word.and_then(integer).ok_or_else(|| self.scanner.unexpected(word, "an integer"))
+    }
+
+    fn skip(&mut self, _: Scalar, count: usize) -> Result<(), Flaw> {
+        for _ in 0..count {
+            let word = self.word();
+            if word.is_none() {
+                return Err(self.scanner.unexpected(word, "a number"));
+            }
+        }
+        Ok(())
+    }
+
+    fn end_element(&mut self) -> Result<(), Flaw> {
+        if let Some(word) = self.scanner.word() {
+            return Err(self.scanner.unexpected(Some(word), "the end of the line after the last property"));
+        }
+        self.scanner.next_line();
+        self.fresh = true;
+        Ok(())
+    }
+
+    fn skip_all(&mut self, element: &Element) -> bool {
+        element.properties.is_empty()
+    }
+
+    fn remaining(&self) -> usize {
+        // The last line may lack its end.
+        self.scanner.remaining() + 1
+    }
+
+    fn place(&self) -> Place {
+        self.scanner.place()
+    }
+
+    fn fork(&self) -> Self {
+        self.clone()
+    }
+}
+
+/// Values in binary, `BIG` endian or little.
+pub(super) struct Binary<'a, const BIG: bool> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a, const BIG: bool> Binary<'a, BIG> {
+    pub(super) fn new(bytes: &'a [u8], at: usize) -> Self {
+        Self { bytes, at }
+    }
+
+    #[cold]
+    fn too_short(&self, needed: usize) -> Flaw {
+        let expected = format!("{needed} bytes from byte {}", self.at);
+        Flaw::new(Place::Byte(self.bytes.len()), "the end of the file", expected)
+    }
+
+    #[inline]
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], Flaw> {
+        let Some(&value) = self.bytes[self.at..].first_chunk::<N>() else { return Err(self.too_short(N)) };
+        self.at += N;
+        Ok(value)
+    }
+}
+
+impl<const BIG: bool> Source for Binary<'_, BIG> {
+    #[inline]
+    fn number(&mut self, scalar: Scalar) -> Result<f64, Flaw> {
+        Ok(match scalar {
+            Scalar::F32 if BIG => f64::from(f32::from_be_bytes(self.take()?)),
+            Scalar::F32 => f64::from(f32::from_le_bytes(self.take()?)),
+            Scalar::F64 if BIG => f64::from_be_bytes(self.take()?),
+            Scalar::F64 => f64::from_le_bytes(self.take()?),
+            // At most 32 bits, which an f64 holds exactly.
+            integer => self.integer(integer)? as f64,
+        })
+    }
+
+    #[inline]
+    fn integer(&mut self, scalar: Scalar) -> Result<i64, Flaw> {
+        Ok(match scalar {
+            Scalar::U8 => i64::from(u8::from_le_bytes(self.take()?)),
+            Scalar::I8 => i64::from(i8::from_le_bytes(self.take()?)),
+            Scalar::I16 if BIG => i64::from(i16::from_be_bytes(self.take()?)),
+            Scalar::I16 => i64::from(i16::from_le_bytes(self.take()?)),
+            Scalar::U16 if BIG => i64::from(u16::from_be_bytes(self.take()?)),
+            Scalar::U16 => i64::from(u16::from_le_bytes(self.take()?)),
+            Scalar::I32 if BIG => i64::from(i32::from_be_bytes(self.take()?)),
+            Scalar::I32 => i64::from(i32::from_le_bytes(self.take()?)),
+            Scalar::U32 if BIG => i64::from(u32::from_be_bytes(self.take()?)),
+            Scalar::U32 => i64::from(u32::from_le_bytes(self.take()?)),
+            Scalar::F32 | Scalar::F64 => {
+                let value = self.number(scalar)?;
+                return Err(Flaw::new(self.place(), quoted(value.to_string().as_bytes()), "an integer"));
+            }
+        })
+    }
+
+    #[inline]
+    fn skip(&mut self, scalar: Scalar, count: usize) -> Result<(), Flaw> {
+        let needed = scalar.size().saturating_mul(count);
+        if needed > self.remaining() {
+            return Err(self.too_short(needed));
+        }
+        self.at += needed;
+        Ok(())
+    }
+
+    fn end_element(&mut self) -> Result<(), Flaw> {
+        Ok(())
+    }
+
+    fn skip_all(&mut self, element: &Element) -> bool {
+        let size: usize = element.least_size(super::header::Encoding::LittleEndian);
+        let all = size.saturating_mul(element.count);
+        let skips = element.has_fixed_size() && all <= self.remaining();
+        if skips {
+            self.at += all;
+        }
+        skips
+    }
+
+    fn remaining(&self) -> usize {
+        self.bytes.len() - self.at
+    }
+
+    fn place(&self) -> Place {
+        Place::Byte(self.at)
+    }
+
+    fn fork(&self) -> Self {
+        Self { bytes: self.bytes, at: self.at }
+    }
+}

@@ -1,0 +1,182 @@
+//! Writing: from triangles and what is known of their vertices to a file.
+
+mod numbers;
+mod obj;
+mod off;
+mod ply;
+mod stl;
+mod whole;
+
+pub use whole::write_whole;
+
+use crate::error::WriteError;
+use crate::format::Format;
+use limitmesh::mesh::{CornerTag, CreaseTag, Triangles};
+use std::io::Write;
+use std::path::Path;
+
+/// What is to be written: triangles and, for each vertex, what else is known.
+#[derive(Clone, Copy, Debug)]
+pub struct Output<'a> {
+    /// Positions and triangles.
+    pub surface: Triangles<'a>,
+    /// A normal for each vertex. OBJ, PLY (as `float`) and OFF hold them.
+    pub normals: Option<&'a [[f64; 3]]>,
+    /// Red, green and blue for each vertex. OBJ (after the coordinates), PLY and OFF hold them.
+    pub colours: Option<&'a [[u8; 3]]>,
+    /// A number for each vertex, such as a distance. PLY holds it, as property `quality`.
+    pub quality: Option<&'a [f64]>,
+    /// Sharp edges. OBJ holds them.
+    pub creases: &'a [CreaseTag],
+    /// Sharp vertices. OBJ holds them.
+    pub corners: &'a [CornerTag],
+}
+
+impl<'a> Output<'a> {
+    /// The triangles alone.
+    pub fn new(surface: Triangles<'a>) -> Self {
+        Self { surface, normals: None, colours: None, quality: None, creases: &[], corners: &[] }
+    }
+
+    /// Sets [`Self::normals`].
+    pub fn normals(mut self, normals: &'a [[f64; 3]]) -> Self {
+        self.normals = Some(normals);
+        self
+    }
+
+    /// Sets [`Self::colours`].
+    pub fn colours(mut self, colours: &'a [[u8; 3]]) -> Self {
+        self.colours = Some(colours);
+        self
+    }
+
+    /// Sets [`Self::quality`].
+    pub fn quality(mut self, quality: &'a [f64]) -> Self {
+        self.quality = Some(quality);
+        self
+    }
+
+    /// Sets [`Self::creases`].
+    pub fn creases(mut self, creases: &'a [CreaseTag]) -> Self {
+        self.creases = creases;
+        self
+    }
+
+    /// Sets [`Self::corners`].
+    pub fn corners(mut self, corners: &'a [CornerTag]) -> Self {
+        self.corners = corners;
+        self
+    }
+}
+
+/// How a file is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct WriteOptions {
+    /// Text where the format has a binary form as well (PLY, STL). Default: binary there.
+    pub ascii: bool,
+}
+
+impl WriteOptions {
+    /// Sets [`Self::ascii`].
+    pub fn ascii(mut self, ascii: bool) -> Self {
+        self.ascii = ascii;
+        self
+    }
+}
+
+/// Writes a mesh file in the format of its extension, whole or not at all (see [`write_whole`]).
+///
+/// What the format cannot hold is left out: [`Output`] says which holds what. Positions keep every bit in
+/// OBJ, PLY and OFF; STL rounds them to `f32` and repeats them in each facet.
+///
+/// # Errors
+/// The extension is unknown, the output does not fit together or into the format, or the system refuses.
+pub fn write(path: &Path, output: &Output<'_>, options: &WriteOptions) -> Result<(), WriteError> {
+    let format = Format::from_path(path)?;
+    check(output, format)?;
+    whole::write_whole_with(path, |writer| write_checked(writer, format, output, options))
+}
+
+/// Writes a mesh in the given format to any writer. On an error, part of it may have been written.
+///
+/// # Errors
+/// The output does not fit together or into the format, or the writer fails.
+pub fn write_to(
+    writer: &mut dyn Write,
+    format: Format,
+    output: &Output<'_>,
+    options: &WriteOptions,
+) -> Result<(), WriteError> {
+    check(output, format)?;
+    write_checked(writer, format, output, options)
+}
+
+fn write_checked(
+    writer: &mut dyn Write,
+    format: Format,
+    output: &Output<'_>,
+    options: &WriteOptions,
+) -> Result<(), WriteError> {
+    match format {
+        Format::Obj => obj::write(writer, output)?,
+        Format::Ply => ply::write(writer, output, options.ascii)?,
+        Format::Stl => stl::write(writer, output, options.ascii)?,
+        Format::Off => off::write(writer, output)?,
+    }
+    Ok(writer.flush()?)
+}
+
+/// Checks that the parts of the output fit together and into the format.
+fn check(output: &Output<'_>, format: Format) -> Result<(), WriteError> {
+    let Triangles { positions, triangles } = output.surface;
+    let vertices = positions.len();
+    let counts = [
+        ("normals", output.normals.map(<[_]>::len)),
+        ("colours", output.colours.map(<[_]>::len)),
+        ("quality values", output.quality.map(<[_]>::len)),
+    ];
+    for (what, count) in counts {
+        if let Some(count) = count.filter(|&count| count != vertices) {
+            return Err(WriteError::AttributeCount { what, count, vertices });
+        }
+    }
+    for (what, count) in [("vertices", vertices), ("triangles", triangles.len())] {
+        if count > u32::MAX as usize {
+            return Err(WriteError::TooMany { what, count, limit: u32::MAX, format });
+        }
+    }
+    let named = [
+        ("triangle", first_beyond(triangles.iter().map(<[u32; 3]>::as_slice), vertices)),
+        ("crease tag", first_beyond(output.creases.iter().map(|tag| tag.vertices.as_slice()), vertices)),
+        (
+            "corner tag",
+            first_beyond(output.corners.iter().map(|tag| std::slice::from_ref(&tag.vertex)), vertices),
+        ),
+    ];
+    for (what, beyond) in named {
+        if let Some((index, vertex)) = beyond {
+            return Err(WriteError::VertexOutOfRange { what, index, vertex, vertices });
+        }
+    }
+    check_finite("position", positions.as_flattened(), 3, format)?;
+    check_finite("normal", output.normals.unwrap_or_default().as_flattened(), 3, format)?;
+    check_finite("quality", output.quality.unwrap_or_default(), 1, format)
+}
+
+/// The first of `groups` that names a vertex that does not exist, and that vertex.
+fn first_beyond<'g>(groups: impl Iterator<Item = &'g [u32]>, vertices: usize) -> Option<(usize, u32)> {
+    groups
+        .enumerate()
+        .find_map(|(index, group)| Some((index, *group.iter().find(|&&v| v as usize >= vertices)?)))
+}
+
+/// Refuses what the readers of files refuse: NaN, infinity and what becomes infinite as `f32`.
+fn check_finite(what: &'static str, values: &[f64], width: usize, format: Format) -> Result<(), WriteError> {
+    let single = format == Format::Stl || what == "normal";
+    let fits = |v: f64| if single { (v as f32).is_finite() } else { v.is_finite() };
+    match values.iter().position(|&v| !fits(v)) {
+        Some(i) => Err(WriteError::NotFinite { what, vertex: i / width, value: values[i], format }),
+        None => Ok(()),
+    }
+}

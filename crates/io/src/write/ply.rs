@@ -1,0 +1,84 @@
+//! Stanford PLY 1.0, little-endian or ASCII: `double` positions, and normals, colours and quality if there are any.
+
+use super::Output;
+use super::numbers::Pieces;
+use std::io::{self, Write};
+
+pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) -> io::Result<()> {
+    let mut out = Pieces::new(writer);
+    out.bytes(header(output, ascii).as_bytes());
+    for vertex in 0..output.surface.positions.len() {
+        if ascii { vertex_text(&mut out, output, vertex)? } else { vertex_bytes(&mut out, output, vertex)? }
+    }
+    for triangle in output.surface.triangles {
+        if ascii {
+            out.bytes(b"3");
+            triangle.iter().for_each(|&v| out.integer(v));
+            out.end_line()?;
+        } else {
+            out.bytes(&[3]);
+            triangle.iter().for_each(|v| out.bytes(&v.to_le_bytes()));
+            out.end()?;
+        }
+    }
+    out.finish()
+}
+
+fn header(output: &Output<'_>, ascii: bool) -> String {
+    let (positions, triangles) = (output.surface.positions, output.surface.triangles);
+    let encoding = if ascii { "ascii" } else { "binary_little_endian" };
+    let mut header = format!("ply\nformat {encoding} 1.0\ncomment written by limitmesh\n");
+    let mut element = |name: &str, count: usize, properties: &[(&str, &str)]| {
+        header += &format!("element {name} {count}\n");
+        for (kind, name) in properties {
+            header += &format!("property {kind} {name}\n");
+        }
+    };
+    let mut properties = vec![("double", "x"), ("double", "y"), ("double", "z")];
+    if output.normals.is_some() {
+        properties.extend(["nx", "ny", "nz"].map(|name| ("float", name)));
+    }
+    if output.colours.is_some() {
+        properties.extend(["red", "green", "blue"].map(|name| ("uchar", name)));
+    }
+    if output.quality.is_some() {
+        properties.push(("double", "quality"));
+    }
+    element("vertex", positions.len(), &properties);
+    // Many readers know signed indices only, which reach far enough unless there are more than 2³¹ vertices.
+    let index = if positions.len() > i32::MAX as usize { "list uchar uint" } else { "list uchar int" };
+    element("face", triangles.len(), &[(index, "vertex_indices")]);
+    header + "end_header\n"
+}
+
+#[inline]
+fn vertex_bytes(out: &mut Pieces<'_>, output: &Output<'_>, vertex: usize) -> io::Result<()> {
+    output.surface.positions[vertex].iter().for_each(|x| out.bytes(&x.to_le_bytes()));
+    if let Some(normals) = output.normals {
+        normals[vertex].iter().for_each(|&x| out.bytes(&(x as f32).to_le_bytes()));
+    }
+    if let Some(colours) = output.colours {
+        out.bytes(&colours[vertex]);
+    }
+    if let Some(quality) = output.quality {
+        out.bytes(&quality[vertex].to_le_bytes());
+    }
+    out.end()
+}
+
+fn vertex_text(out: &mut Pieces<'_>, output: &Output<'_>, vertex: usize) -> io::Result<()> {
+    let [x, y, z] = output.surface.positions[vertex];
+    out.bare_number(x);
+    out.number(y);
+    out.number(z);
+    if let Some(normals) = output.normals {
+        normals[vertex].iter().for_each(|&x| out.single(x as f32));
+    }
+    if let Some(colours) = output.colours {
+        colours[vertex].iter().for_each(|&c| out.integer(u32::from(c)));
+    }
+    if let Some(quality) = output.quality {
+        out.number(quality[vertex]);
+    }
+    out.end_line()
+}
