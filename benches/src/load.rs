@@ -1,0 +1,45 @@
+//! Reading, repairing and connecting a large file: seconds and peak memory.
+
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::{Context, Result, ensure};
+
+use crate::mesh;
+
+/// Runs [`child`] in a process of its own, three times.
+pub(crate) fn load(file: &Path) -> Result<()> {
+    println!("\n{} read, repaired, topology built", file.file_name().unwrap_or_default().to_string_lossy());
+    for _ in 0..3 {
+        let output = Command::new(std::env::current_exe()?).arg("load-child").arg(file).output()?;
+        ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        print!("{}", String::from_utf8_lossy(&output.stdout));
+    }
+    Ok(())
+}
+
+/// Loads one file and tells how long it took and how much memory the process had at its peak.
+pub(crate) fn child(file: &Path) -> Result<()> {
+    let before = peak_bytes()?;
+    let start = Instant::now();
+    let loaded = mesh(file)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let peak = peak_bytes()?;
+    println!(
+        "{} triangles in {seconds:.3} s, peak {:.1} MB above the empty process: {:.0} bytes a triangle",
+        loaded.face_count(),
+        (peak - before) as f64 / 1e6,
+        (peak - before) as f64 / loaded.face_count() as f64
+    );
+    Ok(())
+}
+
+/// The greatest resident memory this process has had (Linux).
+fn peak_bytes() -> Result<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").context("peak memory needs Linux's /proc")?;
+    let line =
+        status.lines().find(|line| line.starts_with("VmHWM:")).context("no VmHWM in /proc/self/status")?;
+    let kilobytes: u64 = line.split_whitespace().nth(1).context("no number after VmHWM")?.parse()?;
+    Ok(kilobytes * 1024)
+}

@@ -1,0 +1,71 @@
+//! Peers: built or found where they are installed, left out where not.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+use limitmesh::Mesh;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("peers")
+}
+
+/// Least CPU seconds of OpenSubdiv's uniform refinement; `None` where `libosd-dev` or a C++ compiler is missing.
+pub(crate) fn opensubdiv_far(model: &Path, level: usize, repeats: usize) -> Result<Option<f64>> {
+    let build = folder().join("build");
+    std::fs::create_dir_all(&build)?;
+    let program = build.join("opensubdiv_far");
+    if !program.exists() {
+        let compiler = Command::new("g++")
+            .args(["-O3", "-march=native", "-o"])
+            .arg(&program)
+            .arg(folder().join("opensubdiv_far.cpp"))
+            .arg("-losdCPU")
+            .output();
+        if !compiler.is_ok_and(|output| output.status.success()) {
+            return Ok(None);
+        }
+    }
+    let output =
+        Command::new(&program).arg(model).arg(level.to_string()).arg(repeats.to_string()).output()?;
+    ensure!(output.status.success(), "OpenSubdiv's program failed on {}", model.display());
+    let text = String::from_utf8(output.stdout)?;
+    let seconds = text.lines().filter_map(|line| line.split_whitespace().nth(1)?.parse().ok());
+    Ok(seconds.reduce(f64::min))
+}
+
+/// MeshLab's one-sided distances and the seconds that both took together.
+pub(crate) struct MeshLab {
+    pub(crate) forward: f64,
+    pub(crate) backward: f64,
+    pub(crate) seconds: f64,
+}
+
+/// MeshLab's `get_hausdorff_distance`, both ways; `None` where Python has no `pymeshlab`.
+pub(crate) fn meshlab_distance(a: &Mesh, b: &Mesh, samples: usize) -> Result<Option<MeshLab>> {
+    let found = Command::new("python3").args(["-c", "import pymeshlab"]).output();
+    if !found.is_ok_and(|output| output.status.success()) {
+        return Ok(None);
+    }
+    let folder_of_files = tempfile::tempdir()?;
+    let write = |name: &str, mesh: &Mesh| -> Result<PathBuf> {
+        let path = folder_of_files.path().join(name);
+        let output = limitmesh_io::Output::new(mesh.as_triangles());
+        limitmesh_io::write(&path, &output, &Default::default())?;
+        Ok(path)
+    };
+    let (a, b) = (write("a.ply", a)?, write("b.ply", b)?);
+    let output = Command::new("python3")
+        .arg(folder().join("meshlab_distance.py"))
+        .args([&a, &b])
+        .arg(samples.to_string())
+        .output()?;
+    ensure!(output.status.success(), "MeshLab: {}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout)?;
+    let line = text.lines().last().context("MeshLab's script printed nothing")?;
+    let numbers = line.split_whitespace().map(str::parse).collect::<Result<Vec<f64>, _>>()?;
+    let [forward, backward, seconds] = numbers[..] else {
+        anyhow::bail!("MeshLab's script printed {line}, expected three numbers");
+    };
+    Ok(Some(MeshLab { forward, backward, seconds }))
+}
