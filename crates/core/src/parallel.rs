@@ -1,5 +1,7 @@
 //! Loops over elements that give the same bytes for any number of threads: every slot is computed from the
-//! input alone and written by exactly one call; nothing is reduced across threads.
+//! input alone and written by exactly one call; sums are taken over pieces of fixed length, in order.
+
+use core::ops::Range;
 
 /// Below this many elements a loop stays on the calling thread: starting workers would cost more than the work.
 #[cfg(feature = "parallel")]
@@ -38,16 +40,33 @@ pub(crate) fn for_each_chunk<T: Send, F: Fn(usize, &mut [T]) + Sync + Send>(
     slots.chunks_mut(piece).enumerate().for_each(|(i, chunk)| f(i, chunk));
 }
 
-/// Number of elements that one piece of a prefix sum covers.
+/// Number of elements that one piece of a sum or search covers: fixed, so that results do not depend on threads.
 const PIECE: usize = 1 << 14;
+
+/// Cuts `0..n` into pieces of fixed length and returns `f` of each, in order.
+pub(crate) fn pieces<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(n: usize, f: F) -> Vec<T> {
+    let range = |piece: usize| piece * PIECE..((piece + 1) * PIECE).min(n);
+    let count = n.div_ceil(PIECE);
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        if count > 1 && rayon::current_num_threads() > 1 {
+            return (0..count).into_par_iter().map(|piece| f(range(piece))).collect();
+        }
+    }
+    (0..count).map(|piece| f(range(piece))).collect()
+}
+
+/// The least `i` below `n` for which `found(i)` holds.
+pub(crate) fn first<F: Fn(usize) -> bool + Sync + Send>(n: usize, found: F) -> Option<usize> {
+    pieces(n, |mut piece| piece.find(|&i| found(i))).into_iter().flatten().next()
+}
 
 /// `[0, c(0), c(0)+c(1), …]`: where each element's items start when element `i` has `c(i)` of them, and their
 /// total as the last entry. `None` where the total does not fit.
 pub(crate) fn starts<F: Fn(usize) -> u32 + Sync + Send>(n: usize, count: F) -> Option<Vec<u32>> {
-    let pieces = n.div_ceil(PIECE);
-    let range = |piece: usize| piece * PIECE..((piece + 1) * PIECE).min(n);
-    let totals = map_few(pieces, |piece| range(piece).map(|i| u64::from(count(i))).sum::<u64>());
-    let mut before = Vec::with_capacity(pieces);
+    let totals = pieces(n, |piece| piece.map(|i| u64::from(count(i))).sum::<u64>());
+    let mut before = Vec::with_capacity(totals.len());
     let mut total = 0u64;
     for piece_total in totals {
         before.push(total);
@@ -58,24 +77,12 @@ pub(crate) fn starts<F: Fn(usize) -> u32 + Sync + Send>(n: usize, count: F) -> O
     starts[n] = total;
     for_each_chunk(&mut starts[..n], PIECE, |piece, slots| {
         let mut running = before[piece] as u32;
-        for (slot, i) in slots.iter_mut().zip(range(piece)) {
+        for (i, slot) in slots.iter_mut().enumerate() {
             *slot = running;
-            running += count(i);
+            running += count(piece * PIECE + i);
         }
     });
     Some(starts)
-}
-
-/// Like [`map`], for a few long calls.
-fn map_few<T: Send, F: Fn(usize) -> T + Sync + Send>(n: usize, f: F) -> Vec<T> {
-    #[cfg(feature = "parallel")]
-    {
-        use rayon::prelude::*;
-        if n > 1 && rayon::current_num_threads() > 1 {
-            return (0..n).into_par_iter().map(f).collect();
-        }
-    }
-    (0..n).map(f).collect()
 }
 
 /// For elements that own consecutive runs of two arrays of items, `a[starts[i]..starts[i+1]]` and likewise in

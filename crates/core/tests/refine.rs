@@ -1,5 +1,7 @@
 //! Refinement against brute force and another implementation, and what must hold for every refined mesh.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 mod support;
 
 use std::ops::ControlFlow;

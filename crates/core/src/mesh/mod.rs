@@ -325,10 +325,12 @@ impl Mesh {
 
 /// Refuses NaN and infinity.
 pub(crate) fn check_finite(positions: &[[f64; 3]]) -> Result<(), MeshError> {
-    for (vertex, p) in positions.iter().enumerate() {
-        if let Some(axis) = (0..3).find(|&axis| !p[axis].is_finite()) {
-            return Err(MeshError::NotFinite { vertex, axis, value: p[axis] });
+    let bad_axis = |p: &[f64; 3]| (0..3).find(|&axis| !p[axis].is_finite());
+    match crate::parallel::first(positions.len(), |v| bad_axis(&positions[v]).is_some()) {
+        None => Ok(()),
+        Some(vertex) => {
+            let axis = bad_axis(&positions[vertex]).unwrap_or(0);
+            Err(MeshError::NotFinite { vertex, axis, value: positions[vertex][axis] })
         }
     }
-    Ok(())
 }

@@ -66,14 +66,21 @@ impl SplitEdges {
 
     /// Number of triangles after the split.
     pub(super) fn triangle_count(&self) -> usize {
-        (0..self.faces.len()).map(|face| 1 + self.count(face)).sum()
+        parallel::pieces(self.faces.len(), |piece| piece.map(|f| 1 + self.count(f)).sum::<usize>())
+            .into_iter()
+            .sum()
     }
 
     /// Number of indivisible faces by their split edges: the cases (a) to (d) of Figure 5.
     pub(super) fn closure_cases(&self, divisible: &[bool]) -> [usize; 4] {
+        let of_piece = |piece: core::ops::Range<usize>| {
+            let mut cases = [0; 4];
+            piece.filter(|&face| !divisible[face]).for_each(|face| cases[self.count(face)] += 1);
+            cases
+        };
         let mut cases = [0; 4];
-        for (face, _) in divisible.iter().enumerate().filter(|&(_, &divisible)| !divisible) {
-            cases[self.count(face)] += 1;
+        for piece in parallel::pieces(divisible.len(), of_piece) {
+            (0..4).for_each(|case| cases[case] += piece[case]);
         }
         cases
     }
