@@ -1,5 +1,5 @@
 //! Meshes for tests, and a brute-force Loop subdivision that shares no code with the library.
-#![allow(dead_code, missing_docs, clippy::unwrap_used)]
+#![allow(dead_code, missing_docs, unreachable_pub, clippy::unwrap_used)]
 
 use std::collections::BTreeMap;
 
