@@ -1,14 +1,24 @@
 //! Measurement: distances between surfaces, watertightness, triangle quality.
+//!
+//! Takes [`Triangles`], manifold or not; knows nothing of how they came about.
 
 mod bvh;
+mod frame;
 mod hausdorff;
+mod limit_reference;
+mod pieces;
 mod quality;
+mod samples;
+mod triangle;
 mod watertight;
 
 pub use bvh::{Bvh, ClosestPoint};
-pub use hausdorff::{Hausdorff, OneSided, SamplingOptions, distances_to, hausdorff};
+pub use hausdorff::{Hausdorff, OneSided, SamplingOptions, distances_to, hausdorff, hausdorff_between};
+pub use limit_reference::limit_reference;
 pub use quality::{TriangleQuality, triangle_quality};
 pub use watertight::{Watertightness, watertightness};
+
+use crate::mesh::Triangles;
 
 /// Why something could not be measured.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -19,6 +29,14 @@ pub enum MeasureError {
     Empty {
         /// Which of the two.
         which: &'static str,
+    },
+    /// More triangles than `u32` indices can name.
+    #[error("the {which} surface has {count} triangles, at most {} can be measured", u32::MAX)]
+    TooMany {
+        /// Which of the two surfaces.
+        which: &'static str,
+        /// How many there are.
+        count: usize,
     },
     /// A triangle names a vertex that does not exist.
     #[error("triangle {face} of the {which} surface names vertex {vertex}, but there are {count} vertices")]
@@ -44,4 +62,37 @@ pub enum MeasureError {
         /// The value met.
         value: f64,
     },
+}
+
+/// Refuses what has no distances: no triangles, an index out of range, a coordinate that is not finite. `which`
+/// names the surface in the error.
+fn check(surface: Triangles<'_>, which: &'static str) -> Result<(), MeasureError> {
+    if surface.triangles.is_empty() {
+        return Err(MeasureError::Empty { which });
+    }
+    if surface.triangles.len() > u32::MAX as usize {
+        return Err(MeasureError::TooMany { which, count: surface.triangles.len() });
+    }
+    let count = surface.positions.len();
+    let out_of_range = |face: &usize| surface.triangles[*face].iter().any(|&v| v as usize >= count);
+    let faults = pieces::map_pieces(surface.triangles.len(), PIECE, |mut faces| faces.find(out_of_range));
+    if let Some(face) = faults.into_iter().flatten().next() {
+        let vertex = surface.triangles[face].into_iter().find(|&v| v as usize >= count).unwrap_or_default();
+        return Err(MeasureError::VertexOutOfRange { which, face, vertex, count });
+    }
+    check_finite(surface.positions, which)
+}
+
+/// Elements checked together.
+const PIECE: usize = 1 << 14;
+
+/// Refuses NaN and infinity, and names the first place.
+fn check_finite(points: &[[f64; 3]], which: &'static str) -> Result<(), MeasureError> {
+    let not_finite = |vertex: &usize| !points[*vertex].iter().all(|x| x.is_finite());
+    let faults = pieces::map_pieces(points.len(), PIECE, |mut vertices| vertices.find(not_finite));
+    if let Some(vertex) = faults.into_iter().flatten().next() {
+        let axis = points[vertex].iter().position(|x| !x.is_finite()).unwrap_or_default();
+        return Err(MeasureError::NotFinite { which, vertex, axis, value: points[vertex][axis] });
+    }
+    Ok(())
 }

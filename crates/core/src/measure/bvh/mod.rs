@@ -1,0 +1,323 @@
+//! A bounding-volume hierarchy over triangles, for closest points.
+//!
+//! Takes the triangles of a surface, manifold or not; gives the closest point to any point, exact in double
+//! precision: single-precision boxes, rounded outwards, only decide which triangles are looked at. The
+//! answer is the triangle at the least computed distance, the one with the least index among equals, whatever
+//! the order of the search, the guess that it started from, or the number of threads that built the hierarchy.
+//!
+//! The tree is four children wide and implicit: [`build`] orders the triangles so that every 4^k consecutive
+//! ones form a node, so that no child pointers are stored.
+
+mod build;
+
+use glam::Vec4;
+
+use super::MeasureError;
+use super::frame::{Frame, Located, distance};
+use super::triangle::{Foot, closest_to_origin};
+use crate::mesh::Triangles;
+use crate::vector::{DVec3, vector};
+
+/// Children of a node.
+const WIDTH: usize = 4;
+
+/// Single-precision boxes of four children, one lane each; lanes without a child hold an empty box.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    low: [Vec4; 3],
+    high: [Vec4; 3],
+}
+
+/// The corners of a triangle and which triangle it is, in the order of the tree.
+#[derive(Clone, Copy, Debug)]
+struct Slot {
+    corners: [u32; 3],
+    face: u32,
+}
+
+/// The closest point of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClosestPoint {
+    /// The point on the surface.
+    pub point: [f64; 3],
+    /// Its distance.
+    pub distance: f64,
+    /// The triangle that it lies on.
+    pub face: u32,
+}
+
+/// A hierarchy of boxes over the triangles of a surface.
+///
+/// It borrows the surface and takes about 48 bytes a triangle.
+pub struct Bvh<'a> {
+    surface: Triangles<'a>,
+    frame: Frame,
+    /// Box of the triangles, in the surface's own coordinates.
+    bounds: [DVec3; 2],
+    /// Triangles in the order of the tree.
+    slots: Vec<Slot>,
+    /// Nodes level by level, the root first; level `l` holds `starts[l] .. starts[l + 1]`.
+    nodes: Vec<Node>,
+    starts: Vec<usize>,
+}
+
+/// What a search has found so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nearest {
+    /// Squared distance in the frame.
+    pub(super) squared: f64,
+    /// The triangle.
+    pub(super) face: u32,
+}
+
+impl Nearest {
+    /// Nothing found yet.
+    const NONE: Self = Self { squared: f64::INFINITY, face: u32::MAX };
+
+    /// Takes the candidate if it is nearer, or as near with a lesser index.
+    #[inline]
+    fn offer(&mut self, squared: f64, face: u32) -> bool {
+        let better = squared < self.squared || (squared == self.squared && face < self.face);
+        if better {
+            *self = Self { squared, face };
+        }
+        better
+    }
+
+    /// What a box may be away at most and still hold a triangle as near as this, with slack for the rounding of
+    /// the box test.
+    ///
+    /// The test's gaps are within 2^-23 of their size or within half the boxes' margin of the truth
+    /// ([`build::MARGIN`]), their squares and sum add less than 2^-22; 2^-20 covers both and the conversion. Below
+    /// single precision's normal numbers nothing is rejected.
+    #[inline]
+    fn bound(&self) -> f32 {
+        ((self.squared * (1.0 + 1.0 / 1_048_576.0)) as f32).clamp(f32::MIN_POSITIVE, f32::MAX)
+    }
+}
+
+/// Nodes waiting to be visited. A tree over 2^32 triangles has 16 levels, and a visited level leaves at most
+/// three nodes waiting.
+const STACK: usize = 64;
+
+/// The low bits of a stack entry's distance, which hold its level instead: clearing them only lowers the
+/// distance.
+const LEVEL_MASK: u32 = 0xf;
+
+impl<'a> Bvh<'a> {
+    /// Builds the hierarchy.
+    ///
+    /// # Errors
+    /// No triangles, an index out of range, a coordinate that is not finite.
+    pub fn new(surface: Triangles<'a>) -> Result<Self, MeasureError> {
+        Self::named(surface, "reference")
+    }
+
+    /// The same; `which` names the surface in errors.
+    pub(super) fn named(surface: Triangles<'a>, which: &'static str) -> Result<Self, MeasureError> {
+        super::check(surface, which)?;
+        Ok(build::build(surface, 0.0))
+    }
+
+    /// A hierarchy of boxes enlarged by a share of the triangle's size, to find triangles near which a point lies.
+    /// The surface has triangles, and all that they name exists and is finite.
+    pub(super) fn padded(surface: Triangles<'a>, share: f64) -> Self {
+        build::build(surface, share)
+    }
+
+    /// Whether `test` holds for any triangle whose box contains the point. It is given the corners and the point,
+    /// scaled alike.
+    pub(super) fn any_around(&self, point: DVec3, test: impl Fn([DVec3; 3], DVec3) -> bool) -> bool {
+        let at = self.frame.locate(point);
+        let deepest = self.starts.len() - 2;
+        let local = at.local.to_array().map(|x| Vec4::splat(x as f32));
+        let mut stack = [(0, 0); STACK];
+        let mut waiting = 1;
+        while waiting > 0 {
+            waiting -= 1;
+            let (level, index) = stack[waiting % STACK];
+            let squared = self.nodes[self.starts[level] + index].squared_distances(local);
+            let mut around = squared.cmple(Vec4::ZERO).bitmask();
+            while around != 0 {
+                let child = index * WIDTH + around.trailing_zeros() as usize;
+                around &= around - 1;
+                if level < deepest {
+                    stack[waiting % STACK] = (level + 1, child);
+                    waiting += 1;
+                } else if test(self.scaled_corners(child), at.scaled) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// The surface.
+    pub fn surface(&self) -> Triangles<'a> {
+        self.surface
+    }
+
+    /// Least and greatest coordinates of the triangles; vertices that no triangle uses do not count.
+    pub fn bounding_box(&self) -> [[f64; 3]; 2] {
+        self.bounds.map(|corner| corner.to_array())
+    }
+
+    /// Bytes that the hierarchy takes beside the surface it borrows.
+    pub fn memory(&self) -> usize {
+        size_of_val(self.slots.as_slice())
+            + size_of_val(self.nodes.as_slice())
+            + size_of_val(self.starts.as_slice())
+    }
+
+    /// The point of the surface closest to `point`; NaN with face 0 if a coordinate of `point` is not finite.
+    pub fn closest(&self, point: [f64; 3]) -> ClosestPoint {
+        self.closest_with_guess(point, None)
+    }
+
+    /// The same, faster where `guess` is a triangle near the closest one, for example the answer for a
+    /// neighbouring point. The answer does not depend on the guess, and a guess out of range is ignored.
+    pub fn closest_from(&self, point: [f64; 3], guess: u32) -> ClosestPoint {
+        self.closest_with_guess(point, Some(guess))
+    }
+
+    fn closest_with_guess(&self, point: [f64; 3], guess: Option<u32>) -> ClosestPoint {
+        if !point.iter().all(|x| x.is_finite()) {
+            return ClosestPoint { point: [f64::NAN; 3], distance: f64::NAN, face: 0 };
+        }
+        let from = vector(point);
+        let at = self.frame.locate(from);
+        let nearest = self.search(&at, guess);
+        let foot = self.foot(nearest.face, &at);
+        let [a, b, c] = self.surface.corners(nearest.face as usize).map(vector);
+        let on_surface = a * foot.weights[0] + b * foot.weights[1] + c * foot.weights[2];
+        let distance =
+            if at.pulled_in { distance(from, on_surface) } else { self.frame.length(nearest.squared.sqrt()) };
+        ClosestPoint { point: on_surface.to_array(), distance, face: nearest.face }
+    }
+
+    /// The distance of a finite point and the triangle nearest to it, starting from a guess.
+    #[inline]
+    pub(super) fn distance_from(&self, point: DVec3, guess: u32) -> (f64, u32) {
+        let at = self.frame.locate(point);
+        if at.pulled_in {
+            let closest = self.closest_from(point.to_array(), guess);
+            return (closest.distance, closest.face);
+        }
+        let nearest = self.search(&at, Some(guess));
+        (self.frame.length(nearest.squared.sqrt()), nearest.face)
+    }
+
+    /// Vertices of the triangle at place `slot` of the tree's order, in which neighbours are near in space.
+    #[inline]
+    pub(super) fn in_order(&self, slot: usize) -> [u32; 3] {
+        self.slots[slot].corners
+    }
+
+    /// Corners of that triangle.
+    #[inline]
+    pub(super) fn corners(&self, slot: usize) -> [DVec3; 3] {
+        self.slots[slot].corners.map(|v| vector(self.surface.positions[v as usize]))
+    }
+
+    /// The same, scaled so that squares and products neither overflow nor vanish.
+    #[inline]
+    pub(super) fn scaled_corners(&self, slot: usize) -> [DVec3; 3] {
+        self.corners(slot).map(|p| self.frame.scale_point(p))
+    }
+
+    /// The point of triangle `face` closest to a point.
+    #[inline]
+    fn foot(&self, face: u32, at: &Located) -> Foot {
+        self.foot_on(self.surface.triangles[face as usize], at)
+    }
+
+    #[inline]
+    fn foot_on(&self, corners: [u32; 3], at: &Located) -> Foot {
+        let [a, b, c] =
+            corners.map(|v| self.frame.scale_point(vector(self.surface.positions[v as usize])) - at.scaled);
+        closest_to_origin(a, b, c)
+    }
+
+    /// Searches the tree, nearest children first, skipping boxes that are farther than the best so far.
+    fn search(&self, at: &Located, guess: Option<u32>) -> Nearest {
+        let mut nearest = Nearest::NONE;
+        if let Some(face) = guess.filter(|&face| (face as usize) < self.surface.triangles.len()) {
+            nearest.offer(self.foot(face, at).squared, face);
+        }
+        let mut bound = nearest.bound();
+        let point = at.local.to_array().map(|x| Vec4::splat(x as f32));
+        let deepest = self.starts.len() - 2;
+        let mut stack = [0u64; STACK];
+        let mut waiting = 1;
+        while waiting > 0 {
+            waiting -= 1;
+            let entry = stack[waiting];
+            let key = (entry >> 32) as u32;
+            if f32::from_bits(key & !LEVEL_MASK) > bound {
+                continue;
+            }
+            let (level, index) = ((key & LEVEL_MASK) as usize, entry as u32 as usize);
+            let node = &self.nodes[self.starts[level] + index];
+            let (lanes, count) = node.sorted_within(point, bound);
+            if level == deepest {
+                for &lane in &lanes[..count] {
+                    if f32::from_bits((lane >> 32) as u32) > bound {
+                        break;
+                    }
+                    let slot = &self.slots[index * WIDTH + (lane & 3) as usize];
+                    if nearest.offer(self.foot_on(slot.corners, at).squared, slot.face) {
+                        bound = nearest.bound();
+                    }
+                }
+            } else {
+                for &lane in lanes[..count].iter().rev() {
+                    let key = ((lane >> 32) as u32 & !LEVEL_MASK) | (level as u32 + 1);
+                    stack[waiting % STACK] =
+                        (key as u64) << 32 | (index * WIDTH + (lane & 3) as usize) as u64;
+                    waiting += 1;
+                }
+            }
+        }
+        nearest
+    }
+}
+
+impl Node {
+    /// An empty box in every lane.
+    const EMPTY: Self = Self { low: [Vec4::INFINITY; 3], high: [Vec4::NEG_INFINITY; 3] };
+
+    /// Squared distances of a point to the four boxes: zero inside, infinite for an empty box.
+    #[inline]
+    fn squared_distances(&self, point: [Vec4; 3]) -> Vec4 {
+        let gap =
+            |axis: usize| (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]).max(Vec4::ZERO);
+        let (x, y, z) = (gap(0), gap(1), gap(2));
+        x * x + y * y + z * z
+    }
+
+    /// The lanes whose boxes lie within `bound`, nearest first, as squared distance (its bits order like the
+    /// number) above the lane.
+    #[inline]
+    fn sorted_within(&self, point: [Vec4; 3], bound: f32) -> ([u64; WIDTH], usize) {
+        let squared = self.squared_distances(point);
+        let mut within = squared.cmple(Vec4::splat(bound)).bitmask();
+        let squared = squared.to_array();
+        let (mut lanes, mut count) = ([0; WIDTH], 0);
+        while within != 0 {
+            let lane = within.trailing_zeros() as usize & 3;
+            within &= within - 1;
+            let entry = (squared[lane].to_bits() as u64) << 32 | lane as u64;
+            let mut place = count & 3;
+            while place > 0 && lanes[place - 1] > entry {
+                lanes[place] = lanes[place - 1];
+                place -= 1;
+            }
+            lanes[place] = entry;
+            count += 1;
+        }
+        (lanes, count)
+    }
+}
+
+#[cfg(test)]
+mod tests;
