@@ -1,0 +1,59 @@
+//! Fields to sculpt from: round primitives and smooth combinations of them.
+//!
+//! Each takes a point and gives a signed value, negative inside and close to the distance near the surface.
+
+use crate::vector::DVec3;
+
+/// A point, written short because bodies are tables of them.
+pub(in crate::models) const fn at(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+/// `p` with its x made positive: the other side of a symmetric body.
+pub(in crate::models) fn fold(p: DVec3) -> DVec3 {
+    DVec3::new(p.x.abs(), p.y, p.z)
+}
+
+/// A ball.
+pub(in crate::models) fn ball(p: DVec3, centre: DVec3, radius: f64) -> f64 {
+    p.distance(centre) - radius
+}
+
+/// An ellipsoid with the given semi-axes, scaled so that the value is a distance to first order.
+pub(in crate::models) fn ellipsoid(p: DVec3, centre: DVec3, axes: DVec3) -> f64 {
+    let scaled = (p - centre) / axes;
+    let gradient = (scaled / axes).length();
+    let level = scaled.length();
+    if gradient > 0.0 { level * (level - 1.0) / gradient } else { -axes.min_element() }
+}
+
+/// A rod from `a` to `b` whose radius runs linearly from `radius_a` to `radius_b`, with round ends.
+pub(in crate::models) fn rod(p: DVec3, a: DVec3, radius_a: f64, b: DVec3, radius_b: f64) -> f64 {
+    let axis = b - a;
+    let along = ((p - a).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
+    p.distance(a + axis * along) - (radius_a + (radius_b - radius_a) * along)
+}
+
+/// A chain of rods through points with radii, blended at the joints by `blend`.
+pub(in crate::models) fn limb(p: DVec3, joints: &[(DVec3, f64)], blend: f64) -> f64 {
+    joints.windows(2).fold(f64::INFINITY, |value, pair| {
+        union(value, rod(p, pair[0].0, pair[0].1, pair[1].0, pair[1].1), blend)
+    })
+}
+
+/// Smooth union: where the two values differ by less than `blend`, a fillet (quadratic polynomial minimum).
+pub(in crate::models) fn union(a: f64, b: f64, blend: f64) -> f64 {
+    let low = a.min(b);
+    let overlap = blend - (a - b).abs();
+    if overlap > 0.0 { low - overlap * overlap / (4.0 * blend) } else { low }
+}
+
+/// Smooth intersection.
+pub(in crate::models) fn intersection(a: f64, b: f64, blend: f64) -> f64 {
+    -union(-a, -b, blend)
+}
+
+/// What is in `a` and not in `b`, with a rounded edge.
+pub(in crate::models) fn difference(a: f64, b: f64, blend: f64) -> f64 {
+    intersection(a, -b, blend)
+}
