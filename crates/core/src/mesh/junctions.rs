@@ -36,6 +36,11 @@ impl Groups {
         self.starts.push(self.members.len() as u32);
     }
 
+    /// Replaces each member.
+    pub(crate) fn rename(&mut self, name: impl Fn(u32) -> u32) {
+        self.members.iter_mut().for_each(|member| *member = name(*member));
+    }
+
     /// The groups, in the order they were added.
     pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
         self.starts.windows(2).map(|w| &self.members[w[0] as usize..w[1] as usize])

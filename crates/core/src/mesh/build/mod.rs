@@ -1,0 +1,175 @@
+//! From a polygon soup to a manifold, oriented triangle mesh.
+//!
+//! In this order: weld vertices, cut polygons into triangles, drop repeated faces and those of zero area,
+//! connect and orient the faces, cut where more than a manifold meets, carry the tags over. Each step counts
+//! what it found in the [`Diagnosis`]. All of them take time proportional to the input, or n log n.
+
+mod cut;
+mod orient;
+mod repeated;
+mod retag;
+#[cfg(test)]
+mod tests;
+mod triangulate;
+mod weld;
+mod zero_area;
+
+use super::topology::NONE;
+use super::{Diagnosis, Mesh, MeshError, PolygonSoup, check_finite};
+use crate::vector::vector;
+use cut::Sheets;
+use retag::VertexMaps;
+use triangulate::Faces;
+
+/// Which vertices are merged before connecting the faces.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[non_exhaustive]
+pub enum Weld {
+    /// None: the file's indices alone connect faces.
+    Never,
+    /// Those at exactly equal positions.
+    #[default]
+    Exact,
+    /// Those within this distance of each other, in the mesh's units. A chain of vertices, each within the
+    /// distance of the next, becomes one vertex however long the chain; it stands where the first of them in
+    /// the input's order stood.
+    Within(f64),
+}
+
+/// How a mesh is built from a soup.
+#[derive(Clone, Copy, Debug, Default)]
+#[non_exhaustive]
+pub struct BuildOptions {
+    /// Which vertices are merged.
+    pub weld: Weld,
+    /// Refuse instead of repairing.
+    pub strict: bool,
+}
+
+impl BuildOptions {
+    /// Sets [`Self::weld`].
+    pub fn weld(mut self, weld: Weld) -> Self {
+        self.weld = weld;
+        self
+    }
+
+    /// Sets [`Self::strict`].
+    pub fn strict(mut self, strict: bool) -> Self {
+        self.strict = strict;
+        self
+    }
+}
+
+pub(super) fn build(soup: &PolygonSoup, options: &BuildOptions) -> Result<(Mesh, Diagnosis), MeshError> {
+    let mut diagnosis = Diagnosis {
+        input_vertices: soup.positions.len(),
+        input_faces: soup.faces.len(),
+        ..Diagnosis::default()
+    };
+    let used = check(soup)?;
+    let kept = weld(soup, &used, options.weld)?;
+    for v in 0..used.len() {
+        if !used[v] {
+            diagnosis.isolated_vertices.add(v as u32);
+        } else if kept[v] as usize != v {
+            diagnosis.welded_vertices.add(v as u32);
+        }
+    }
+    drop(used);
+    let faces = repair_faces(soup, &kept, &mut diagnosis)?;
+    let mesh = assemble(soup, faces, kept, &mut diagnosis);
+    if options.strict && !diagnosis.is_clean() {
+        return Err(MeshError::NeedsRepair { summary: diagnosis.defects() });
+    }
+    debug_assert_eq!(mesh.validate(), Ok(()));
+    Ok((mesh, diagnosis))
+}
+
+/// Refuses coordinates and indices that mean nothing; tells which vertices have a face.
+fn check(soup: &PolygonSoup) -> Result<Vec<bool>, MeshError> {
+    check_finite(&soup.positions)?;
+    let count = soup.positions.len();
+    if count >= NONE as usize {
+        return Err(MeshError::TooMany { what: "vertices", count, limit: NONE as usize - 1 });
+    }
+    let mut used = vec![false; count];
+    for (face, corners) in soup.faces.iter().enumerate() {
+        for &v in corners {
+            match used.get_mut(v as usize) {
+                Some(used) => *used = true,
+                None => return Err(MeshError::VertexOutOfRange { face, vertex: u64::from(v), count }),
+            }
+        }
+    }
+    Ok(used)
+}
+
+/// For each vertex the one that stands for it: itself or an earlier one. Vertices without faces take no part.
+fn weld(soup: &PolygonSoup, used: &[bool], weld: Weld) -> Result<Vec<u32>, MeshError> {
+    match weld {
+        Weld::Never => Ok((0..soup.positions.len() as u32).collect()),
+        Weld::Exact => Ok(weld::exact(&soup.positions, used)),
+        Weld::Within(distance) => weld::within(&soup.positions, used, distance),
+    }
+}
+
+/// Triangles without repetitions and without faces of zero area.
+fn repair_faces(soup: &PolygonSoup, kept: &[u32], diagnosis: &mut Diagnosis) -> Result<Faces, MeshError> {
+    let mut faces = triangulate::triangulate(soup, kept, diagnosis)?;
+    let vertex_count = kept.len();
+    repeated::drop_repeated(&mut faces, vertex_count, diagnosis);
+    let is_polygon = |input: u32| soup.faces.get(input as usize).len() > 3;
+    zero_area::remove_zero_area(&mut faces, &soup.positions, vertex_count, is_polygon, diagnosis);
+    if !faces.triangles.is_empty() {
+        return Ok(faces);
+    }
+    let reason = if soup.faces.is_empty() {
+        "the input has none".to_owned()
+    } else {
+        format!("of {} in the input none could be used: {}", soup.faces.len(), diagnosis.defects())
+    };
+    Err(MeshError::NoFaces { reason })
+}
+
+/// Connects the faces, turns and cuts them where they need it, and puts the mesh together.
+fn assemble(soup: &PolygonSoup, mut faces: Faces, mut kept: Vec<u32>, diagnosis: &mut Diagnosis) -> Mesh {
+    let names = renumber(&mut faces.triangles, &mut kept);
+    let name = |v: u32| names[v as usize];
+    let vertex_count = names.len();
+    let mut neighbours = orient::connect(&faces.triangles, vertex_count, name, diagnosis);
+    orient::orient(&mut faces, &mut neighbours, diagnosis);
+    let Sheets { topology, copied, middles, junctions, corners } =
+        cut::cut(faces.triangles, neighbours, vertex_count, name, diagnosis);
+    let mut positions = Vec::with_capacity(vertex_count + copied.len());
+    positions.extend(names.iter().map(|&v| soup.positions[v as usize]));
+    let mut middle = middles.iter();
+    for &original in &copied {
+        // Only the first copy of a vertex in the middle of an edge names a position that is not yet there.
+        let position = positions.get(original as usize).copied().or_else(|| {
+            let [a, b] = middle.next()?.ends.map(|v| vector(positions[v as usize]));
+            Some((a * 0.5 + b * 0.5).to_array())
+        });
+        positions.extend(position);
+    }
+    let maps = VertexMaps { from_input: &kept, vertex_count, copied: &copied, middles: &middles };
+    let tags = retag::retag(soup, &topology, &maps, &corners, diagnosis);
+    Mesh::from_parts(topology, positions, tags, junctions)
+}
+
+/// Numbers the vertices that the triangles use from 0, in ascending order; `kept` then leads from the input's
+/// vertices to the new ones, or to [`NONE`]. Gives the input vertex of each new one.
+fn renumber(triangles: &mut [[u32; 3]], kept: &mut [u32]) -> Vec<u32> {
+    let mut numbers = vec![NONE; kept.len()];
+    for &v in triangles.as_flattened() {
+        numbers[v as usize] = 0;
+    }
+    let mut names = Vec::with_capacity(triangles.len() / 2 + 2);
+    for (v, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number == 0) {
+        *number = names.len() as u32;
+        names.push(v as u32);
+    }
+    for v in triangles.as_flattened_mut().iter_mut().chain(kept) {
+        *v = numbers[*v as usize];
+    }
+    names
+}

@@ -1,0 +1,167 @@
+//! Neighbours across edges, and an orientation that all of them agree on.
+//!
+//! Takes triangles in any orientation; gives twins, and the edges along which faces had to be cut apart: those
+//! with more than two faces, and in a one-sided component those where turning back is unavoidable.
+
+use super::triangulate::Faces;
+use crate::index::{FaceId, HalfEdgeId};
+use crate::mesh::topology::NONE;
+use crate::mesh::{Diagnosis, Groups};
+
+/// Who lies across each half-edge, and who was cut apart.
+pub(super) struct Neighbours {
+    /// The half-edge of the one other face at the same edge, or [`NONE`].
+    pub(super) twins: Vec<u32>,
+    /// The half-edges along each cut edge.
+    pub(super) cuts: Groups,
+}
+
+/// Connects faces that alone share an edge; `name` gives a vertex's number in the input.
+pub(super) fn connect(
+    triangles: &[[u32; 3]],
+    vertex_count: usize,
+    name: impl Fn(u32) -> u32,
+    diagnosis: &mut Diagnosis,
+) -> Neighbours {
+    let mut twins = vec![NONE; 3 * triangles.len()];
+    let mut cuts = Groups::default();
+    let mut named = Vec::new();
+    for_each_edge(triangles, vertex_count, |lower, edge| match *edge {
+        [_] => {}
+        [a, b] => {
+            let (a, b) = (a as u32, b as u32);
+            (twins[a as usize], twins[b as usize]) = (b, a);
+        }
+        _ => {
+            cuts.push(edge.iter().map(|&h| h as u32));
+            named.push(name(lower));
+        }
+    });
+    diagnosis.non_manifold_edges.add_all(named);
+    Neighbours { twins, cuts }
+}
+
+/// Calls `visit` with the lower end of each edge and its half-edges, which stand in the low halves of the
+/// numbers given, in ascending order.
+fn for_each_edge(triangles: &[[u32; 3]], vertex_count: usize, mut visit: impl FnMut(u32, &[u64])) {
+    let sides = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
+    let mut starts = vec![0u32; vertex_count + 1];
+    for t in triangles {
+        for [a, b] in sides(t) {
+            starts[a.min(b) as usize + 1] += 1;
+        }
+    }
+    for v in 0..vertex_count {
+        starts[v + 1] += starts[v];
+    }
+    // The higher end above, the half-edge below: sorting the numbers sorts by both.
+    let mut lists = vec![0u64; 3 * triangles.len()];
+    let mut h = 0u64;
+    for t in triangles {
+        for [a, b] in sides(t) {
+            // Filling moves each start up to the next one.
+            let slot = &mut starts[a.min(b) as usize];
+            lists[*slot as usize] = u64::from(a.max(b)) << 32 | h;
+            *slot += 1;
+            h += 1;
+        }
+    }
+    let mut start = 0;
+    for (v, &end) in starts[..vertex_count].iter().enumerate() {
+        let list = &mut lists[start..end as usize];
+        list.sort_unstable();
+        list.chunk_by(|a, b| a >> 32 == b >> 32).for_each(|edge| visit(v as u32, edge));
+        start = end as usize;
+    }
+}
+
+/// Turns faces so that neighbours run opposite ways along their edge. In each component the smaller part is
+/// turned; of two equal ones that without the lowest face.
+pub(super) fn orient(faces: &mut Faces, neighbours: &mut Neighbours, diagnosis: &mut Diagnosis) {
+    let turned = faces_to_turn(&faces.triangles, &neighbours.twins);
+    if turned.contains(&true) {
+        let named = faces.inputs.iter().zip(&turned).filter(|(_, turned)| **turned);
+        let mut named: Vec<u32> = named.map(|(&input, _)| input).collect();
+        named.sort_unstable();
+        named.dedup();
+        diagnosis.flipped_faces.add_all(named);
+        turn(&mut faces.triangles, neighbours, &turned);
+    }
+    cut_one_sided(faces, neighbours, diagnosis);
+}
+
+/// Breadth-first from the lowest face of each component.
+fn faces_to_turn(triangles: &[[u32; 3]], twins: &[u32]) -> Vec<bool> {
+    let origins = triangles.as_flattened();
+    let mut visited = vec![false; triangles.len()];
+    let mut turned = vec![false; triangles.len()];
+    let mut order: Vec<u32> = Vec::with_capacity(triangles.len());
+    for root in 0..triangles.len() {
+        if visited[root] {
+            continue;
+        }
+        visited[root] = true;
+        let start = order.len();
+        let mut next = start;
+        let mut turned_here = 0;
+        order.push(root as u32);
+        while let Some(&face) = order.get(next) {
+            next += 1;
+            for corner in 0..3 {
+                let h = HalfEdgeId::of(FaceId(face), corner).index();
+                let twin = twins[h];
+                if twin == NONE || visited[(twin / 3) as usize] {
+                    continue;
+                }
+                let other = (twin / 3) as usize;
+                let against = origins[h] == origins[twin as usize];
+                visited[other] = true;
+                turned[other] = turned[face as usize] != against;
+                turned_here += usize::from(turned[other]);
+                order.push(other as u32);
+            }
+        }
+        let component = &order[start..];
+        if turned_here > component.len() - turned_here {
+            component.iter().for_each(|&face| turned[face as usize] ^= true);
+        }
+    }
+    turned
+}
+
+/// Swaps the last two corners of the marked faces, and renames their half-edges.
+fn turn(triangles: &mut [[u32; 3]], neighbours: &mut Neighbours, turned: &[bool]) {
+    // Half-edge 0 ran from corner 0 to corner 1, which is now corner 2.
+    let renamed = |h: u32| {
+        if turned[(h / 3) as usize] { h - h % 3 + (2 - h % 3) } else { h }
+    };
+    for (face, triangle) in triangles.iter_mut().enumerate() {
+        if turned[face] {
+            triangle.swap(1, 2);
+            neighbours.twins.swap(3 * face, 3 * face + 2);
+        }
+    }
+    for twin in neighbours.twins.iter_mut().filter(|twin| **twin != NONE) {
+        *twin = renamed(*twin);
+    }
+    neighbours.cuts.rename(renamed);
+}
+
+/// Cuts apart the neighbours that still run the same way along their edge.
+fn cut_one_sided(faces: &Faces, neighbours: &mut Neighbours, diagnosis: &mut Diagnosis) {
+    let origins = faces.triangles.as_flattened();
+    let mut named = Vec::new();
+    for h in 0..origins.len() {
+        let twin = neighbours.twins[h];
+        if twin == NONE || origins[h] != origins[twin as usize] {
+            continue;
+        }
+        neighbours.twins[h] = NONE;
+        neighbours.twins[twin as usize] = NONE;
+        neighbours.cuts.push([h as u32, twin]);
+        named.extend([h as u32, twin].map(|h| faces.inputs[(h / 3) as usize]));
+    }
+    named.sort_unstable();
+    named.dedup();
+    diagnosis.non_orientable_faces.add_all(named);
+}

@@ -1,0 +1,311 @@
+//! Polygons into triangles.
+//!
+//! Takes the soup's polygons over welded vertices; gives triangles and the input face of each. A quad is cut
+//! along a diagonal that lies inside it, the shorter one if both do. More corners are cut by ears in the
+//! polygon's best-fit plane (through Newell's normal), with the diagonals then flipped until they are Delaunay.
+//! Corners in the middle of a straight side are kept, because the neighbouring face may have them too.
+
+use earcut::{Earcut, Refiner};
+
+use super::super::topology::MAX_FACES;
+use super::super::{Diagnosis, MeshError, PolygonSoup};
+use glam::Vec3Swizzles;
+
+use crate::vector::{DVec3, unit_or_zero, vector};
+
+/// Triangles, and which input face each is from.
+#[derive(Default)]
+pub(super) struct Faces {
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) inputs: Vec<u32>,
+}
+
+impl Faces {
+    fn push(&mut self, triangle: [u32; 3], input: u32) {
+        let [a, b, c] = triangle;
+        if a != b && b != c && c != a {
+            self.triangles.push(triangle);
+            self.inputs.push(input);
+        }
+    }
+
+    /// Removes the faces that are marked.
+    pub(super) fn drop_marked(&mut self, marked: &[bool]) {
+        let mut left = marked.iter();
+        self.triangles.retain(|_| left.next() != Some(&true));
+        let mut left = marked.iter();
+        self.inputs.retain(|_| left.next() != Some(&true));
+    }
+}
+
+/// Cuts all polygons into triangles; `kept[v]` stands for vertex `v`.
+///
+/// # Errors
+/// There would be more triangles than can be indexed.
+pub(super) fn triangulate(
+    soup: &PolygonSoup,
+    kept: &[u32],
+    diagnosis: &mut Diagnosis,
+) -> Result<Faces, MeshError> {
+    let count = soup.faces.iter().map(|face| face.len().saturating_sub(2)).sum();
+    if count > MAX_FACES {
+        return Err(MeshError::TooMany { what: "faces", count, limit: MAX_FACES });
+    }
+    let mut faces = Faces { triangles: Vec::with_capacity(count), inputs: Vec::with_capacity(count) };
+    let mut cutter = Cutter::default();
+    let mut polygon = Vec::new();
+    for (input, face) in soup.faces.iter().enumerate() {
+        let input = input as u32;
+        if face.len() > 3 {
+            diagnosis.polygons.add(input);
+        }
+        clean(face.iter().map(|&v| kept[v as usize]), &mut polygon);
+        if polygon.len() < 3 {
+            diagnosis.collapsed_faces.add(input);
+            continue;
+        }
+        if !cutter.cut(&soup.positions, &polygon, |triangle| faces.push(triangle, input)) {
+            diagnosis.crossed_polygons.add(input);
+        }
+    }
+    Ok(faces)
+}
+
+/// The corners without those that repeat the one before, and without spikes (there and straight back).
+fn clean(corners: impl Iterator<Item = u32>, polygon: &mut Vec<u32>) {
+    polygon.clear();
+    for v in corners {
+        let n = polygon.len();
+        if n >= 1 && polygon[n - 1] == v {
+            continue;
+        }
+        if n >= 2 && polygon[n - 2] == v {
+            polygon.pop();
+            continue;
+        }
+        polygon.push(v);
+    }
+    // The same across the seam between the last corner and the first.
+    let mut start = 0;
+    while polygon.len() - start >= 2 {
+        let (first, last) = (polygon[start], polygon[polygon.len() - 1]);
+        if first == last || polygon[polygon.len() - 2] == first {
+            polygon.pop();
+        } else if polygon[start + 1] == last {
+            start += 1;
+        } else {
+            break;
+        }
+    }
+    polygon.drain(..start);
+}
+
+/// Cuts single polygons; keeps its buffers between them.
+#[derive(Default)]
+struct Cutter {
+    earcut: Earcut<f64>,
+    refiner: Refiner,
+    plane: Vec<[f64; 2]>,
+    indices: Vec<u32>,
+    edges: Vec<u64>,
+}
+
+impl Cutter {
+    /// Emits the polygon's triangles; false if it could only be cut into a fan because it crosses itself.
+    fn cut(&mut self, positions: &[[f64; 3]], polygon: &[u32], mut emit: impl FnMut([u32; 3])) -> bool {
+        match *polygon {
+            [a, b, c] => {
+                emit([a, b, c]);
+                true
+            }
+            [a, b, c, d] => {
+                let (triangles, proper) = cut_quad(positions, [a, b, c, d]);
+                triangles.into_iter().for_each(emit);
+                proper
+            }
+            _ => {
+                let proper = self.cut_polygon(positions, polygon);
+                for triangle in self.indices.chunks_exact(3) {
+                    emit([0, 1, 2].map(|i| polygon[triangle[i] as usize]));
+                }
+                proper
+            }
+        }
+    }
+
+    /// Leaves triangles over the polygon's corners in `indices`.
+    fn cut_polygon(&mut self, positions: &[[f64; 3]], polygon: &[u32]) -> bool {
+        let corners = polygon.len() as u32;
+        let Some(normal) = self.flatten(positions, polygon) else {
+            self.cut_fan(corners);
+            return (1..polygon.len() - 1)
+                .all(|i| is_flat(positions, [polygon[0], polygon[i], polygon[i + 1]]));
+        };
+        debug_assert!(normal.is_finite());
+        self.earcut.earcut_slice(&self.plane, &[], &mut self.indices);
+        self.orient();
+        if self.indices.len() / 3 < polygon.len() - 2 {
+            self.restore_straight_corners(corners);
+        }
+        if !self.is_proper(corners) {
+            self.cut_fan(corners);
+            return false;
+        }
+        self.refiner.refine(&mut self.indices, &self.plane);
+        true
+    }
+
+    fn cut_fan(&mut self, corners: u32) {
+        self.indices.clear();
+        self.indices.extend((1..corners - 1).flat_map(|i| [0, i, i + 1]));
+    }
+
+    /// Projects the polygon along its Newell normal, scaled to unit size; `None` where it has no normal.
+    fn flatten(&mut self, positions: &[[f64; 3]], polygon: &[u32]) -> Option<DVec3> {
+        let (origin, scale) = local_frame(positions, polygon);
+        let local = |v: u32| (vector(positions[v as usize]) - origin) * scale;
+        let normal = unit_or_zero(newell(polygon.iter().map(|&v| local(v))));
+        if normal == DVec3::ZERO {
+            return None;
+        }
+        let (u, v) = normal.any_orthonormal_pair();
+        // Counter-clockwise seen from where the normal points.
+        let v = if u.cross(v).dot(normal) < 0.0 { -v } else { v };
+        self.plane.clear();
+        self.plane.extend(polygon.iter().map(|&w| {
+            let p = local(w);
+            [p.dot(u), p.dot(v)]
+        }));
+        Some(normal)
+    }
+
+    /// Turns all triangles counter-clockwise if they are clockwise.
+    fn orient(&mut self) {
+        let area: f64 = self.indices.chunks_exact(3).map(|t| self.area(t)).sum();
+        if area < 0.0 {
+            self.indices.chunks_exact_mut(3).for_each(|t| t.swap(1, 2));
+        }
+    }
+
+    fn area(&self, triangle: &[u32]) -> f64 {
+        let [a, b, c] = [0, 1, 2].map(|i| self.plane[triangle[i] as usize]);
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    }
+
+    /// Cuts triangles with a side along which corners were left out, so that these are used.
+    fn restore_straight_corners(&mut self, corners: u32) {
+        let mut used = vec![false; corners as usize];
+        self.indices.iter().for_each(|&i| used[i as usize] = true);
+        let mut next_used = vec![0; corners as usize];
+        let mut next = used.iter().position(|&is_used| is_used).unwrap_or(0) as u32;
+        for i in (0..corners).rev() {
+            next_used[i as usize] = next;
+            if used[i as usize] {
+                next = i;
+            }
+        }
+        let mut left: Vec<[u32; 3]> = self.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
+        self.indices.clear();
+        while let Some(triangle) = left.pop() {
+            let lacking = (0..3).find_map(|i| {
+                let [a, b, apex] = [triangle[i], triangle[(i + 1) % 3], triangle[(i + 2) % 3]];
+                let skipped = (a + 1) % corners;
+                (skipped != b && next_used[a as usize] == b).then_some([a, skipped, b, apex])
+            });
+            match lacking {
+                Some([a, skipped, b, apex]) => left.extend([[a, skipped, apex], [skipped, b, apex]]),
+                None => self.indices.extend(triangle),
+            }
+        }
+    }
+
+    /// Whether the triangles are a disc bounded by the polygon, none of them turned over.
+    fn is_proper(&mut self, corners: u32) -> bool {
+        if self.indices.len() != 3 * (corners as usize - 2) {
+            return false;
+        }
+        let mut areas = [0.0, 0.0];
+        self.edges.clear();
+        for t in self.indices.chunks_exact(3) {
+            let area = self.area(t);
+            areas[0] += area;
+            areas[1] += area.abs();
+            for [from, to] in [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]] {
+                self.edges.push(u64::from(from) << 32 | u64::from(to));
+            }
+        }
+        self.edges.sort_unstable();
+        let has = |edges: &[u64], from: u32, to: u32| {
+            edges.binary_search(&(u64::from(from) << 32 | u64::from(to))).is_ok()
+        };
+        let unique = self.edges.windows(2).all(|pair| pair[0] != pair[1]);
+        let mut sides = 0;
+        let closed = self.edges.iter().all(|&edge| {
+            let (from, to) = ((edge >> 32) as u32, edge as u32);
+            let is_side = (from + 1) % corners == to;
+            sides += u32::from(is_side);
+            is_side != has(&self.edges, to, from)
+        });
+        // Triangles over straight corners may come out turned over by a rounding error.
+        unique && closed && sides == corners && areas[1] - areas[0] <= 1e-9 * areas[1]
+    }
+}
+
+/// A corner to measure from and a factor that brings the polygon to about unit size.
+fn local_frame(positions: &[[f64; 3]], polygon: &[u32]) -> (DVec3, f64) {
+    let origin = vector(positions[polygon[0] as usize]);
+    let farthest = |far: f64, &v: &u32| far.max((vector(positions[v as usize]) - origin).abs().max_element());
+    let size = polygon.iter().fold(0.0, farthest);
+    (origin, if size > 0.0 && (1.0 / size).is_finite() { 1.0 / size } else { 1.0 })
+}
+
+/// Twice the vector area of a closed polygon: Newell's normal.
+fn newell(mut corners: impl Iterator<Item = DVec3>) -> DVec3 {
+    let Some(first) = corners.next() else { return DVec3::ZERO };
+    let (mut before, mut sum) = (DVec3::ZERO, DVec3::ZERO);
+    for corner in corners {
+        let spoke = corner - first;
+        sum += before.cross(spoke);
+        before = spoke;
+    }
+    sum
+}
+
+/// Two triangles, and whether both face the way the quad does.
+fn cut_quad(positions: &[[f64; 3]], quad: [u32; 4]) -> ([[u32; 3]; 2], bool) {
+    let (origin, scale) = local_frame(positions, &quad);
+    let p = quad.map(|v| (vector(positions[v as usize]) - origin) * scale);
+    let normal = newell(p.into_iter());
+    let upright = |i: usize, j: usize, k: usize| (p[j] - p[i]).cross(p[k] - p[i]).dot(normal) > 0.0;
+    let valid = [upright(0, 1, 2) && upright(0, 2, 3), upright(0, 1, 3) && upright(1, 2, 3)];
+    let [a, b, c, d] = quad;
+    let lengths = [p[0].distance_squared(p[2]), p[1].distance_squared(p[3])];
+    let first = match valid {
+        [true, false] => true,
+        [false, true] => false,
+        _ if lengths[0] == lengths[1] => a.min(c) < b.min(d),
+        _ => lengths[0] < lengths[1],
+    };
+    let triangles = if first { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+    let proper = valid != [false, false] || triangles.iter().all(|&t| is_flat(positions, t));
+    (triangles, proper)
+}
+
+/// Whether three corners lie on one line as far as their numbers tell: the cross product of two sides is no
+/// larger than its rounding error, or smaller than can be represented.
+pub(super) fn is_flat(positions: &[[f64; 3]], triangle: [u32; 3]) -> bool {
+    // Each factor carries half an ulp from its subtraction, the product and the difference half an ulp each:
+    // below 2.5 ulp together, rounded up to 4.
+    const ROUNDING: f64 = 4.0 * f64::EPSILON;
+    let side = |scale: f64| {
+        let [a, b, c] = triangle.map(|v| vector(positions[v as usize]) * scale);
+        (b - a, c - a)
+    };
+    let test = |(u, v): (DVec3, DVec3)| {
+        let (left, right) = (u.yzx() * v.zxy(), u.zxy() * v.yzx());
+        let bound = (left.abs() + right.abs()) * ROUNDING;
+        bound.is_finite().then(|| (left - right).abs().cmple(bound).all())
+    };
+    // Coordinates beyond 1e154 overflow when multiplied; 2⁻⁶⁰⁰ brings the largest to 1e127.
+    test(side(1.0)).or_else(|| test(side(2f64.powi(-600)))).unwrap_or(false)
+}
