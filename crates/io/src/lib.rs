@@ -9,7 +9,7 @@
 //! |---|---|---|
 //! | OBJ | polygons, relative indices, `t crease` and `t corner` tags | `f64` digits, normals, colours, tags |
 //! | PLY | ASCII and binary of both byte orders, triangle strips | `f64`, binary (or ASCII), normals, colours, quality |
-//! | STL | ASCII and binary, several solids; three vertices a facet, not merged | `f32`, binary (or ASCII) |
+//! | STL | ASCII and binary, several solids; three vertices a facet, not merged | `f32` binary (or ASCII with `f64` digits) |
 //! | OFF | polygons; extra columns are skipped | `f64` digits, normals, colours |
 //!
 //! ```

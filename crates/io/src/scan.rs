@@ -71,14 +71,16 @@ impl<'a> Scanner<'a> {
                 self.at += memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
                 return None;
             }
-            self.at += length;
             let word = &rest[..length];
+            self.at += length;
             if self.syntax.continuations && word.ends_with(b"\\") && self.is_at_break() {
-                self.step_over_break();
-                if length == 1 {
-                    continue;
+                if length > 1 {
+                    // The backslash stays for the next call, so that the scanner is in the line of this word.
+                    self.at -= 1;
+                    return Some(&word[..length - 1]);
                 }
-                return Some(&word[..length - 1]);
+                self.step_over_break();
+                continue;
             }
             return Some(word);
         }

@@ -10,9 +10,12 @@ use crate::format::off_prefix;
 use crate::scan::{Scanner, Syntax, integer, quoted};
 use limitmesh::mesh::{PolygonFaces, PolygonSoup};
 
-/// Least bytes of a vertex line (`0 0 0` and a line end) and of a face line (`0` and a line end).
+/// Least bytes of a vertex: `0 0 0` and the end of its line.
 const LEAST_VERTEX: usize = 6;
+/// Least bytes of a face: `0` and the end of its line.
 const LEAST_FACE: usize = 2;
+/// Least bytes of an index: a digit and what separates it from the next.
+const LEAST_INDEX: usize = 2;
 
 pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     let mut scanner = Scanner::new(bytes, Syntax { comments: true, continuations: false });
@@ -42,7 +45,6 @@ fn read_header(scanner: &mut Scanner<'_>) -> Result<(usize, usize), Flaw> {
     let faces = count(scanner, faces, "faces")?;
     // The third count, of edges, is always passed over and sometimes missing.
     scanner.next_line();
-    check_room(scanner, vertices, faces)?;
     Ok((vertices, faces))
 }
 
@@ -53,21 +55,15 @@ fn count(scanner: &Scanner<'_>, word: Option<&[u8]>, what: &str) -> Result<usize
     }
 }
 
-/// Refuses counts that the rest of the file cannot hold, before any room is made for them.
-fn check_room(scanner: &Scanner<'_>, vertices: usize, faces: usize) -> Result<(), Flaw> {
+/// `count`, but no more elements of `least` bytes than the rest of the file can hold: a count at the beginning of
+/// a file may be anything, and the end is met in the element that it cuts.
+fn room(scanner: &Scanner<'_>, count: usize, least: usize) -> usize {
     // The last line may lack its end.
-    let left = scanner.remaining() + 1;
-    let needed = vertices as u128 * LEAST_VERTEX as u128 + faces as u128 * LEAST_FACE as u128;
-    if needed > left as u128 {
-        let met = format!("only {} bytes after the counts", scanner.remaining());
-        let expected = format!("{vertices} vertices and {faces} faces, at least {needed} bytes");
-        return Err(Flaw::new(scanner.place(), met, expected));
-    }
-    Ok(())
+    count.min(scanner.remaining() / least + 1)
 }
 
 fn read_vertices(scanner: &mut Scanner<'_>, count: usize) -> Result<Vec<[f64; 3]>, Flaw> {
-    let mut positions = Vec::with_capacity(count);
+    let mut positions = Vec::with_capacity(room(scanner, count, LEAST_VERTEX));
     for index in 0..count {
         scanner.skip_empty_lines();
         let point = scanner.point().map_err(|flaw| flaw.element("vertex", index))?;
@@ -78,7 +74,9 @@ fn read_vertices(scanner: &mut Scanner<'_>, count: usize) -> Result<Vec<[f64; 3]
 }
 
 fn read_faces(scanner: &mut Scanner<'_>, count: usize, vertices: usize) -> Result<PolygonFaces, Flaw> {
-    let mut faces = PolygonFaces::with_capacity(count, (3 * count).min(scanner.remaining()));
+    let lines = room(scanner, count, LEAST_FACE);
+    // Most faces are triangles.
+    let mut faces = PolygonFaces::with_capacity(lines, room(scanner, 3 * count, LEAST_INDEX));
     let mut polygon = Vec::new();
     for index in 0..count {
         read_face(scanner, vertices, &mut polygon).map_err(|flaw| flaw.element("face", index))?;

@@ -88,13 +88,13 @@ impl WriteOptions {
 /// Writes a mesh file in the format of its extension, whole or not at all (see [`write_whole`]).
 ///
 /// What the format cannot hold is left out: [`Output`] says which holds what. Positions keep every bit in
-/// OBJ, PLY and OFF; STL rounds them to `f32` and repeats them in each facet.
+/// OBJ, PLY, OFF and ASCII STL; binary STL rounds them to `f32`. STL repeats them in each facet.
 ///
 /// # Errors
 /// The extension is unknown, the output does not fit together or into the format, or the system refuses.
 pub fn write(path: &Path, output: &Output<'_>, options: &WriteOptions) -> Result<(), WriteError> {
     let format = Format::from_path(path)?;
-    check(output, format)?;
+    check(output, format, options)?;
     whole::write_whole_with(path, |writer| write_checked(writer, format, output, options))
 }
 
@@ -108,7 +108,7 @@ pub fn write_to(
     output: &Output<'_>,
     options: &WriteOptions,
 ) -> Result<(), WriteError> {
-    check(output, format)?;
+    check(output, format, options)?;
     write_checked(writer, format, output, options)
 }
 
@@ -128,7 +128,7 @@ fn write_checked(
 }
 
 /// Checks that the parts of the output fit together and into the format.
-fn check(output: &Output<'_>, format: Format) -> Result<(), WriteError> {
+fn check(output: &Output<'_>, format: Format, options: &WriteOptions) -> Result<(), WriteError> {
     let Triangles { positions, triangles } = output.surface;
     let vertices = positions.len();
     let counts = [
@@ -159,9 +159,14 @@ fn check(output: &Output<'_>, format: Format) -> Result<(), WriteError> {
             return Err(WriteError::VertexOutOfRange { what, index, vertex, vertices });
         }
     }
-    check_finite("position", positions.as_flattened(), 3, format)?;
-    check_finite("normal", output.normals.unwrap_or_default().as_flattened(), 3, format)?;
-    check_finite("quality", output.quality.unwrap_or_default(), 1, format)
+    check_finite("position", positions.as_flattened(), 3, format, format == Format::Stl && !options.ascii)?;
+    if let Some(normals) = output.normals.filter(|_| format != Format::Stl) {
+        check_finite("normal", normals.as_flattened(), 3, format, format == Format::Ply)?;
+    }
+    if let Some(quality) = output.quality.filter(|_| format == Format::Ply) {
+        check_finite("quality", quality, 1, format, false)?;
+    }
+    Ok(())
 }
 
 /// The first of `groups` that names a vertex that does not exist, and that vertex.
@@ -171,9 +176,14 @@ fn first_beyond<'g>(groups: impl Iterator<Item = &'g [u32]>, vertices: usize) ->
         .find_map(|(index, group)| Some((index, *group.iter().find(|&&v| v as usize >= vertices)?)))
 }
 
-/// Refuses what the readers of files refuse: NaN, infinity and what becomes infinite as `f32`.
-fn check_finite(what: &'static str, values: &[f64], width: usize, format: Format) -> Result<(), WriteError> {
-    let single = format == Format::Stl || what == "normal";
+/// Refuses what the readers of files refuse: NaN and infinity, also where they come of rounding to `f32`.
+fn check_finite(
+    what: &'static str,
+    values: &[f64],
+    width: usize,
+    format: Format,
+    single: bool,
+) -> Result<(), WriteError> {
     let fits = |v: f64| if single { (v as f32).is_finite() } else { v.is_finite() };
     match values.iter().position(|&v| !fits(v)) {
         Some(i) => Err(WriteError::NotFinite { what, vertex: i / width, value: values[i], format }),

@@ -1,4 +1,4 @@
-//! STL, binary or ASCII: `f32` corners of each facet and its normal.
+//! STL, binary (`f32`) or ASCII (all digits): the corners of each facet and its normal.
 
 use super::Output;
 use super::numbers::Pieces;
@@ -47,7 +47,7 @@ fn write_ascii(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
         out.bytes(b"\nouter loop\n");
         for corner in corners {
             out.bytes(b"vertex");
-            corner.iter().for_each(|&x| out.single(x as f32));
+            corner.iter().for_each(|&x| out.number(x));
             out.bytes(b"\n");
         }
         out.bytes(b"endloop\nendfacet");

@@ -50,7 +50,7 @@ impl Scalar {
         }
     }
 
-    fn is_integer(self) -> bool {
+    pub(super) fn is_integer(self) -> bool {
         !matches!(self, Self::F32 | Self::F64)
     }
 }
@@ -240,16 +240,5 @@ impl<'a> Lines<'a> {
 
     fn flaw(&self, met: impl Into<String>, expected: impl Into<String>) -> Flaw {
         Flaw::new(self.place(), met, expected)
-    }
-}
-
-/// Checks that a list holds indices.
-pub(super) fn check_index_list(element: &Element, property: &Property) -> Result<(), Flaw> {
-    match property.kind {
-        Kind::List { item, .. } if item.is_integer() => Ok(()),
-        _ => {
-            let met = format!("property {} of element {}", property.name, element.name);
-            Err(Flaw::new(Place::Line(element.line), met, "a list of integers"))
-        }
     }
 }

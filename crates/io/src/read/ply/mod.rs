@@ -9,7 +9,7 @@ mod source;
 
 use super::{check_count, push_face};
 use crate::error::{Flaw, Place};
-use header::{Element, Encoding, Header, Kind};
+use header::{Element, Encoding, Header, Kind, Scalar};
 use limitmesh::mesh::{PolygonFaces, PolygonSoup};
 use source::{Binary, Source, Text};
 
@@ -33,7 +33,7 @@ fn read_body(header: &Header, mut source: impl Source) -> Result<PolygonSoup, Fl
     for element in &header.elements {
         check_room(header.encoding, element, &source)?;
         match element.name.as_str() {
-            "vertex" => soup.positions = read_vertices(element, &mut source)?,
+            "vertex" => soup.positions = read_vertices(header.encoding, element, &mut source)?,
             "face" => read_polygons(element, &mut source, vertices, &mut soup.faces)?,
             "tristrips" => read_strips(element, &mut source, vertices, &mut soup.faces)?,
             _ => skip_element(element, &mut source)?,
@@ -42,24 +42,28 @@ fn read_body(header: &Header, mut source: impl Source) -> Result<PolygonSoup, Fl
     Ok(soup)
 }
 
-/// Refuses a count that the rest of the file cannot hold, before any room is made for it.
+/// Refuses a count that the rest of a binary file cannot hold. Where elements differ in size, the end of the
+/// file is met on the way, in the element that it cuts.
 fn check_room(encoding: Encoding, element: &Element, source: &impl Source) -> Result<(), Flaw> {
     let size = element.least_size(encoding);
     let left = source.remaining();
-    if element.count as u128 * size as u128 <= left as u128 {
+    if encoding == Encoding::Ascii
+        || !element.has_fixed_size()
+        || left as u128 >= size as u128 * element.count as u128
+    {
         return Ok(());
     }
-    let exact = encoding != Encoding::Ascii && element.has_fixed_size();
-    let at_least = if exact { "" } else { "at least " };
-    let expected = format!(
-        "{} elements {} of {at_least}{size} bytes each, as line {} promises",
-        element.count, element.name, element.line
-    );
-    let flaw = Flaw::new(source.place(), format!("{left} bytes up to the end of the file"), expected);
-    Err(if exact { flaw.element(&element.name, left / size) } else { flaw })
+    let met = format!("{left} bytes up to the end of the file");
+    let Element { name, count, line, .. } = element;
+    let expected = format!("{count} elements {name} of {size} bytes each, as line {line} promises");
+    Err(Flaw::new(source.place(), met, expected).element(name, left / size))
 }
 
-fn read_vertices(element: &Element, source: &mut impl Source) -> Result<Vec<[f64; 3]>, Flaw> {
+fn read_vertices(
+    encoding: Encoding,
+    element: &Element,
+    source: &mut impl Source,
+) -> Result<Vec<[f64; 3]>, Flaw> {
     let mut axes = [0; 3];
     for (axis, name) in axes.iter_mut().zip(["x", "y", "z"]) {
         let found = element.find(&[name]).filter(|&p| matches!(element.properties[p].kind, Kind::Scalar(_)));
@@ -68,7 +72,9 @@ fn read_vertices(element: &Element, source: &mut impl Source) -> Result<Vec<[f64
             Flaw::new(Place::Line(element.line), met, "x, y and z, each one number")
         })?;
     }
-    let mut positions = Vec::with_capacity(element.count);
+    // No more than the rest of the file can hold; the last line of a text may lack its end.
+    let most = source.remaining() / element.least_size(encoding) + 1;
+    let mut positions = Vec::with_capacity(element.count.min(most));
     for index in 0..element.count {
         let point = read_vertex(element, source, axes).map_err(|flaw| flaw.element("vertex", index))?;
         positions.push(point);
@@ -96,30 +102,60 @@ fn read_vertex(element: &Element, source: &mut impl Source, axes: [usize; 3]) ->
     Ok(point)
 }
 
+/// The place of the list of vertex indices among the properties, and its types.
+fn find_index_list(element: &Element) -> Result<(usize, Scalar, Scalar), Flaw> {
+    let Some(list) = element.find(&INDEX_NAMES) else {
+        let met = format!("element {} without a list vertex_indices", element.name);
+        return Err(Flaw::new(Place::Line(element.line), met, "one"));
+    };
+    match element.properties[list].kind {
+        Kind::List { count, item } if item.is_integer() => Ok((list, count, item)),
+        _ => {
+            let met = format!("property {} of element {}", element.properties[list].name, element.name);
+            Err(Flaw::new(Place::Line(element.line), met, "a list of integers"))
+        }
+    }
+}
+
+/// Number of corners of all faces together: what to make room for, and what the file really holds.
+fn count_corners(element: &Element, mut source: impl Source) -> Result<usize, Flaw> {
+    let (list, count_type, item) = find_index_list(element)?;
+    let mut corners = 0u64;
+    for index in 0..element.count {
+        let mut read = || {
+            for (i, property) in element.properties.iter().enumerate() {
+                if i == list {
+                    let count = list_length(source.integer(count_type)?, &source)?;
+                    source.skip(item, count)?;
+                    corners += count as u64;
+                } else {
+                    skip_property(property.kind, &mut source)?;
+                }
+            }
+            source.end_element()
+        };
+        read().map_err(|flaw| flaw.element(&element.name, index))?;
+    }
+    check_count(corners, "face corners", source.place())
+}
+
 /// Hands the indices of each element's list to `take`, with the source to name places by.
 fn read_lists<S: Source>(
     element: &Element,
     source: &mut S,
     mut take: impl FnMut(&[i64], &S) -> Result<(), Flaw>,
 ) -> Result<(), Flaw> {
-    let Some(list) = element.find(&INDEX_NAMES) else {
-        let met = format!("element {} without a list vertex_indices", element.name);
-        return Err(Flaw::new(Place::Line(element.line), met, "one"));
-    };
-    header::check_index_list(element, &element.properties[list])?;
+    let (list, count_type, item) = find_index_list(element)?;
     let mut indices = Vec::new();
     for index in 0..element.count {
         let mut read = || {
             for (i, property) in element.properties.iter().enumerate() {
-                match property.kind {
-                    Kind::List { count, item } if i == list => {
-                        let count = list_length(source.integer(count)?, source)?;
-                        indices.clear();
-                        for _ in 0..count {
-                            indices.push(source.integer(item)?);
-                        }
-                    }
-                    kind => skip_property(kind, source)?,
+                if i == list {
+                    let count = list_length(source.integer(count_type)?, source)?;
+                    indices.clear();
+                    source.integers(item, count, &mut indices)?;
+                } else {
+                    skip_property(property.kind, source)?;
                 }
             }
             take(&indices, source)?;
@@ -136,15 +172,11 @@ fn read_polygons<S: Source>(
     vertices: usize,
     faces: &mut PolygonFaces,
 ) -> Result<(), Flaw> {
-    // Counted first, so that the room made is exact and what the file really holds.
-    let mut corners = 0;
-    read_lists(element, &mut source.fork(), |indices, _| {
-        corners += indices.len();
-        Ok(())
-    })?;
-    check_count(corners as u64, "face corners", source.place())?;
+    let corners = count_corners(element, source.fork())?;
     let strips = std::mem::replace(faces, PolygonFaces::with_capacity(element.count, corners));
-    strips.iter().for_each(|triangle| faces.push(triangle));
+    for triangle in strips.iter() {
+        push_face(faces, triangle, || source.place())?;
+    }
     let mut polygon = Vec::new();
     read_lists(element, source, |indices, source| {
         polygon.clear();

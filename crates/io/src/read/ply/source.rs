@@ -12,6 +12,9 @@ pub(super) trait Source {
     /// The next value, of an integer type.
     fn integer(&mut self, scalar: Scalar) -> Result<i64, Flaw>;
 
+    /// Adds the next `count` values, of an integer type, to `values`.
+    fn integers(&mut self, scalar: Scalar, count: usize, values: &mut Vec<i64>) -> Result<(), Flaw>;
+
     /// Steps over `count` values.
     fn skip(&mut self, scalar: Scalar, count: usize) -> Result<(), Flaw>;
 
@@ -60,6 +63,13 @@ impl Source for Text<'_> {
         word.and_then(integer).ok_or_else(|| self.scanner.unexpected(word, "an integer"))
     }
 
+    fn integers(&mut self, scalar: Scalar, count: usize, values: &mut Vec<i64>) -> Result<(), Flaw> {
+        for _ in 0..count {
+            values.push(self.integer(scalar)?);
+        }
+        Ok(())
+    }
+
     fn skip(&mut self, _: Scalar, count: usize) -> Result<(), Flaw> {
         for _ in 0..count {
             let word = self.word();
@@ -84,8 +94,7 @@ impl Source for Text<'_> {
     }
 
     fn remaining(&self) -> usize {
-        // The last line may lack its end.
-        self.scanner.remaining() + 1
+        self.scanner.remaining()
     }
 
     fn place(&self) -> Place {
@@ -153,6 +162,26 @@ impl<const BIG: bool> Source for Binary<'_, BIG> {
                 return Err(Flaw::new(self.place(), quoted(value.to_string().as_bytes()), "an integer"));
             }
         })
+    }
+
+    #[inline]
+    fn integers(&mut self, scalar: Scalar, count: usize, values: &mut Vec<i64>) -> Result<(), Flaw> {
+        let needed = scalar.size().saturating_mul(count);
+        let Some(bytes) = self.bytes[self.at..].get(..needed) else { return Err(self.too_short(needed)) };
+        // Nearly all files have 32-bit indices: read without asking for the type and the length each time.
+        if matches!(scalar, Scalar::I32 | Scalar::U32) {
+            let signed = scalar == Scalar::I32;
+            values.extend(bytes.as_chunks::<4>().0.iter().map(|&four| {
+                let value = if BIG { u32::from_be_bytes(four) } else { u32::from_le_bytes(four) };
+                if signed { i64::from(value.cast_signed()) } else { i64::from(value) }
+            }));
+            self.at += needed;
+            return Ok(());
+        }
+        for _ in 0..count {
+            values.push(self.integer(scalar)?);
+        }
+        Ok(())
     }
 
     #[inline]

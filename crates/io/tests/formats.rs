@@ -1,0 +1,277 @@
+//! What each reader understands, on small files written out here.
+
+#![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
+
+use limitmesh::mesh::{CornerTag, CreaseTag, PolygonSoup};
+use limitmesh_io::{Format, read_bytes};
+
+fn obj(text: &str) -> PolygonSoup {
+    read_bytes(text.as_bytes(), Format::Obj).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn polygons(soup: &PolygonSoup) -> Vec<&[u32]> {
+    soup.faces.iter().collect()
+}
+
+const SQUARE: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+const OBJ_SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+#[test]
+fn obj_corners_in_every_form() {
+    for face in ["f 1 2 3 4", "f 1/1 2/2 3/3 4/4", "f 1//9 2//9 3//9 4//9", "f 1/1/1 2/2/2 3/3/3 4/4/4"] {
+        let soup = obj(&format!("{OBJ_SQUARE}{face}\n"));
+        assert_eq!(soup.positions, SQUARE, "{face}");
+        assert_eq!(polygons(&soup), [&[0, 1, 2, 3]], "{face}");
+    }
+}
+
+#[test]
+fn obj_relative_indices_count_back_from_their_own_line() {
+    let soup = obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 0 1 0\nf -4/-1 -2 -1//-7\n");
+    assert_eq!(polygons(&soup), [[0, 1, 2], [0, 2, 3]]);
+}
+
+#[test]
+fn obj_faces_may_come_before_their_vertices() {
+    let soup = obj(&format!("f 1 2 3\nf 1 3 4\n{OBJ_SQUARE}"));
+    assert_eq!(soup.positions, SQUARE);
+    assert_eq!(polygons(&soup), [[0, 1, 2], [0, 2, 3]]);
+}
+
+#[test]
+fn obj_lines_comments_and_continuations() {
+    let text = "\u{feff}# comment \\\r\n\r\n  v\t0 0 0 # here \\\r\nv 1 \\\r\n 0 0 0.5\r\n\
+                v 1 1\\\r\n 0 0.1 0.2 0.3\r\nv 0 1 0\r\ng a b\r\ns off\r\nusemtl x#y\r\nf 1 2 \\\r\n3 4#5\\\n";
+    // The last corner is `4#5`: no comment, as no blank stands before it.
+    let error = read_bytes(text.as_bytes(), Format::Obj).unwrap_err().to_string();
+    assert!(error.contains("line 13, face 0: met '4#5'"), "{error}");
+    let soup = obj(&text.replace("4#5\\\n", "4 #5\\\n"));
+    assert_eq!(soup.positions, SQUARE);
+    assert_eq!(polygons(&soup), [&[0, 1, 2, 3]]);
+    // The same with lines that end with CR alone, as on machines of long ago.
+    assert_eq!(obj(&text.replace("4#5\\\n", "4").replace("\r\n", "\r")), soup);
+}
+
+#[test]
+fn obj_names_in_any_encoding() {
+    let mut bytes = b"# caf\xe9 \xff\xfe\no \xe9\n".to_vec();
+    bytes.extend_from_slice(OBJ_SQUARE.as_bytes());
+    bytes.extend_from_slice(b"g \x80\x81\nf 1 2 3\n");
+    assert_eq!(read_bytes(&bytes, Format::Obj).unwrap().faces.len(), 1);
+}
+
+#[test]
+fn obj_tags() {
+    let tags = "t crease 2/1/0 0 1 2.5\nt crease 4/2/0 1 2 2 3 1 10\nt crease 4/1/0 0 2 1 3 inf\n\
+                t corner 1/1/0 3 10\nt corner 2/1/0 0 1 4.5\nt interpolateboundary 1/0/0 2\nt\nt smooth\n";
+    let soup = obj(&format!("{tags}{OBJ_SQUARE}f 1 2 3 4\n"));
+    let crease = |a, b, sharpness| CreaseTag { vertices: [a, b], sharpness };
+    let corner = |vertex, sharpness| CornerTag { vertex, sharpness };
+    assert_eq!(
+        soup.creases,
+        [
+            crease(0, 1, 2.5),
+            crease(1, 2, 1.0),
+            crease(2, 3, 10.0),
+            crease(0, 2, f64::INFINITY),
+            crease(1, 3, f64::INFINITY)
+        ]
+    );
+    assert_eq!(soup.corners, [corner(3, 10.0), corner(0, 4.5), corner(1, 4.5)]);
+}
+
+#[test]
+fn numbers_keep_every_bit() {
+    let soup = obj(
+        "v 0.1 1e-320 -0\nv 1.7976931348623157e308 123456789.123456789 +3.\nv .5 -2E+3 4.9e-324\nf 1 2 3\n",
+    );
+    let expected =
+        [[0.1, 1e-320, -0.0], [f64::MAX, 123_456_789.123_456_79, 3.0], [0.5, -2000.0, f64::from_bits(1)]];
+    for (met, expected) in soup.positions.as_flattened().iter().zip(expected.as_flattened()) {
+        assert_eq!(met.to_bits(), expected.to_bits());
+    }
+}
+
+fn ply(header: &str, body: &[u8]) -> PolygonSoup {
+    let mut bytes = header.as_bytes().to_vec();
+    bytes.extend_from_slice(body);
+    read_bytes(&bytes, Format::Ply).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn ply_text_with_extra_elements_and_properties() {
+    let text = "ply\nformat ascii 1.0\ncomment é\nobj_info x\nelement camera 2\nproperty float f\n\
+                property list uchar short l\nelement vertex 4\nproperty uchar red\nproperty float64 x\n\
+                property list int float uv\nproperty float y\nproperty int8 z\nelement face 2\n\
+                property float32 q\nproperty list uint8 int32 vertex_index\nproperty uchar flag\n\
+                element edge 1\nproperty int a\nend_header\n";
+    let body = "1.5 2 7 8\n2.5 0\n255 0 2 .1 .2 0 0\n\n 0 1 0 0 0\n0 1 1 9 1 0\n7 0 0 1 0\n\
+                0.5 3 0 1 2 1\n0.5 4 0 1 2 3 1\n0\nanything after the last element\n";
+    let soup = ply(text, body.as_bytes());
+    assert_eq!(soup.positions, SQUARE);
+    assert_eq!(polygons(&soup), [&[0, 1, 2][..], &[0, 1, 2, 3]]);
+    // Lines that end with CR LF, or CR alone.
+    for end in ["\r\n", "\r"] {
+        assert_eq!(ply(&text.replace('\n', end), body.replace('\n', end).as_bytes()), soup);
+    }
+}
+
+/// Every type of both byte orders, in all three places: coordinate, list length, index.
+#[test]
+fn ply_binary_with_every_type() {
+    let integers = ["char", "uchar", "short", "ushort", "int", "uint"];
+    let names = [integers.as_slice(), &["int8", "uint8", "int16", "uint16", "int32", "uint32"]].concat();
+    for big in [false, true] {
+        for name in names.iter().chain(&["float", "double", "float32", "float64"]) {
+            let list = if name.contains("float") || *name == "double" { "uchar" } else { name };
+            let header = format!(
+                "ply\nformat binary_{}_endian 1.0\nelement other 2\nproperty list {list} {name} skipped\n\
+                 element face 1\nproperty {name} q\nproperty list {list} {list} vertex_indices\n\
+                 element vertex 4\nproperty double w\nproperty {name} x\nproperty {name} y\nproperty {name} z\n\
+                 end_header\n",
+                if big { "big" } else { "little" }
+            );
+            let mut body = Vec::new();
+            let mut put = |kind: &str, value: i32| {
+                let little = match kind {
+                    "char" | "int8" => (value as i8).to_le_bytes().to_vec(),
+                    "uchar" | "uint8" => (value as u8).to_le_bytes().to_vec(),
+                    "short" | "int16" => (value as i16).to_le_bytes().to_vec(),
+                    "ushort" | "uint16" => (value as u16).to_le_bytes().to_vec(),
+                    "int" | "int32" => value.to_le_bytes().to_vec(),
+                    "uint" | "uint32" => (value as u32).to_le_bytes().to_vec(),
+                    "float" | "float32" => (value as f32).to_le_bytes().to_vec(),
+                    _ => f64::from(value).to_le_bytes().to_vec(),
+                };
+                if big { body.extend(little.iter().rev()) } else { body.extend(little) }
+            };
+            put(list, 2);
+            put(name, 5);
+            put(name, 6);
+            put(list, 0);
+            put(name, 9);
+            put(list, 4);
+            (0..4).for_each(|i| put(list, i));
+            for point in SQUARE {
+                put("double", 77);
+                point.iter().for_each(|&x| put(name, 100 * x as i32 + 3));
+            }
+            let soup = ply(&header, &body);
+            assert_eq!(polygons(&soup), [&[0, 1, 2, 3]], "{header}");
+            let expected = SQUARE.map(|p| p.map(|x| 100.0 * x + 3.0));
+            assert_eq!(soup.positions, expected, "{header}");
+        }
+    }
+}
+
+/// After a header with CR LF the body begins with the next byte, even if that is a line end's.
+#[test]
+fn ply_binary_body_may_begin_with_any_byte() {
+    for end in ["\n", "\r\n", "\r"] {
+        let header = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\n\
+                      property uchar z\nend_header\n";
+        let soup = ply(&header.replace('\n', end), b"\n\r\n");
+        assert_eq!(soup.positions, [[10.0, 13.0, 10.0]]);
+    }
+}
+
+#[test]
+fn ply_strips_turn_every_other_triangle() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                  element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+    let soup = ply(header, b"0 0 0\n1 0 0\n1 1 0\n0 1 0\n9 0 1 2 3 -1 3 2 1 -1\n");
+    assert_eq!(polygons(&soup), [[0, 1, 2], [2, 1, 3], [3, 2, 1]]);
+}
+
+const ASCII_STL: &str = "solid one two
+  FACET normal nan nan nan
+    Outer Loop
+      vertex 0 0 0
+      vertex 1 0 0\tvertex 0 1.5e0 0
+    endloop
+  endfacet
+EndSolid one
+solid
+endsolid
+solid facet
+ facet normal 0 0 1 outer loop vertex 0 0 1
+ vertex 1 0 1
+ vertex 0 1 1 endloop endfacet
+endsolid facet normal";
+
+#[test]
+fn stl_text_with_several_solids() {
+    for text in [ASCII_STL.to_owned(), ASCII_STL.replace('\n', "\r\n"), format!("\n {ASCII_STL}\n\n")] {
+        let soup = read_bytes(text.as_bytes(), Format::Stl).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(polygons(&soup), [[0, 1, 2], [3, 4, 5]]);
+        assert_eq!(soup.positions[2], [0.0, 1.5, 0.0]);
+        assert_eq!(soup.positions[3], [0.0, 0.0, 1.0]);
+    }
+}
+
+/// A binary file of `facets` facets whose first 80 bytes begin with `start`.
+fn binary_stl(start: &[u8], facets: u32) -> Vec<u8> {
+    let mut bytes = start.to_vec();
+    bytes.resize(80, b' ');
+    bytes.extend(facets.to_le_bytes());
+    for facet in 0..facets {
+        let values = [0, 0, 1, 0, 0, facet, 1, 0, facet, 0, 1, facet];
+        values.iter().for_each(|&v| bytes.extend((v as f32).to_le_bytes()));
+        bytes.extend([7, 7]);
+    }
+    bytes
+}
+
+#[test]
+fn stl_binary_that_begins_with_solid() {
+    let starts: [&[u8]; 4] =
+        [b"", b"solid", b"solid x\nfacet normal 0 0 1\nouter loop", b"v 1 2 3\nply\nOFF"];
+    for start in starts {
+        let bytes = binary_stl(start, 3);
+        let soup = read_bytes(&bytes, Format::Stl).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(polygons(&soup), [[0, 1, 2], [3, 4, 5], [6, 7, 8]]);
+        assert_eq!(soup.positions[8], [0.0, 1.0, 2.0]);
+    }
+}
+
+#[test]
+fn stl_binary_with_bytes_after_the_last_facet() {
+    let mut bytes = binary_stl(b"solid by some program", 2);
+    bytes.extend(b"trailer");
+    assert_eq!(read_bytes(&bytes, Format::Stl).unwrap().faces.len(), 2);
+}
+
+#[test]
+fn off_in_many_dresses() {
+    let square = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+    let with = |extra: &str| square.replace("0\n", &format!("0 {extra}\n"));
+    let files = [
+        format!("OFF\n4 2 5\n{square}3 0 1 2\n4 0 1 2 3\n"),
+        format!("OFF 4 2 5\n{square}3 0 1 2\n4 0 1 2 3"),
+        format!("OFF # keyword\n# counts\n\n4 2 # no edges\n\n{square}# faces\n3 0 1 2 # one\n\n4 0 1 2 3\n"),
+        format!("4 2 5\n{square}3 0 1 2\n4 0 1 2 3\n"),
+        format!("COFF\r\n4 2 5\r\n{}3 0 1 2 255 0 0\r\n4 0 1 2 3 0.5 0.5 0.5 1\r\n", with("255 0 0 255")),
+        format!("NOFF\n4 2 5\n{}3 0 1 2 7\n4 0 1 2 3\n", with("0 0 1")),
+        format!("STCNOFF\n4 2 5\n{}3 0 1 2\n4 0 1 2 3\n", with("0 0 1 1 0 0 1 .5 .5")),
+    ];
+    for file in files {
+        let soup = read_bytes(file.as_bytes(), Format::Off).unwrap_or_else(|error| panic!("{error}\n{file}"));
+        assert_eq!(soup.positions, SQUARE, "{file}");
+        assert_eq!(polygons(&soup), [&[0, 1, 2][..], &[0, 1, 2, 3]], "{file}");
+    }
+}
+
+#[test]
+fn extensions_in_capitals_and_small_letters() {
+    for (name, format) in
+        [("a.obj", Format::Obj), ("b.PLY", Format::Ply), ("c.d.Stl", Format::Stl), ("e.oFF", Format::Off)]
+    {
+        assert_eq!(Format::from_path(name.as_ref()).unwrap(), format);
+    }
+    for (name, expected) in
+        [("a.txt", "'txt'"), ("obj", "no extension"), (".obj", "no extension"), ("", "no extension")]
+    {
+        let message = Format::from_path(name.as_ref()).unwrap_err().to_string();
+        assert!(message.contains(expected), "{message}");
+    }
+}

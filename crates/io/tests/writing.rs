@@ -1,0 +1,426 @@
+//! What is written reads back as the same, files are written whole or not at all, and what does not fit
+//! together is refused.
+
+#![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
+
+use limitmesh::mesh::{CornerTag, CreaseTag, PolygonSoup, Triangles};
+use limitmesh_io::{Format, Output, WriteError, WriteOptions, read_bytes, write, write_to, write_whole};
+use proptest::prelude::*;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+fn written(format: Format, output: &Output<'_>, ascii: bool) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_to(&mut bytes, format, output, &WriteOptions::default().ascii(ascii)).unwrap();
+    bytes
+}
+
+fn read_back(format: Format, output: &Output<'_>, ascii: bool) -> PolygonSoup {
+    let bytes = written(format, output, ascii);
+    read_bytes(&bytes, format).unwrap_or_else(|error| panic!("{error}\n{}", String::from_utf8_lossy(&bytes)))
+}
+
+/// Any finite number: all signs, exponents and digits, subnormal ones and negative zero too.
+fn any_finite() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        any::<u64>().prop_map(f64::from_bits).prop_filter("finite", |x| x.is_finite()),
+        -10.0..10.0,
+        (-1000i32..1000).prop_map(f64::from),
+    ]
+}
+
+fn any_f32() -> impl Strategy<Value = f64> {
+    any::<u32>().prop_map(f32::from_bits).prop_filter("finite", |x| x.is_finite()).prop_map(f64::from)
+}
+
+/// Everything that can be known of a surface.
+#[derive(Debug, Clone)]
+struct Surface {
+    positions: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+    normals: Vec<[f64; 3]>,
+    colours: Vec<[u8; 3]>,
+    quality: Vec<f64>,
+    creases: Vec<CreaseTag>,
+    corners: Vec<CornerTag>,
+}
+
+impl Surface {
+    fn plain(&self) -> Output<'_> {
+        Output::new(Triangles { positions: &self.positions, triangles: &self.triangles })
+    }
+
+    /// With the attributes whose bits are set in `which`.
+    fn output(&self, which: u8) -> Output<'_> {
+        let mut output = self.plain().creases(&self.creases).corners(&self.corners);
+        if which & 1 != 0 {
+            output = output.normals(&self.normals);
+        }
+        if which & 2 != 0 {
+            output = output.colours(&self.colours);
+        }
+        if which & 4 != 0 {
+            output = output.quality(&self.quality);
+        }
+        output
+    }
+}
+
+prop_compose! {
+    fn any_surface()(vertices in 1usize..20)(
+        positions in prop::collection::vec(prop::array::uniform3(any_finite()), vertices),
+        triangles in prop::collection::vec(prop::array::uniform3(0..vertices as u32), 0..30),
+        normals in prop::collection::vec(prop::array::uniform3(any_f32()), vertices),
+        colours in prop::collection::vec(any::<[u8; 3]>(), vertices),
+        quality in prop::collection::vec(any_finite(), vertices),
+        creases in prop::collection::vec((prop::array::uniform2(0..vertices as u32), 0.0..11.0), 0..5),
+        corners in prop::collection::vec((0..vertices as u32, 0.0..11.0), 0..5),
+    ) -> Surface {
+        Surface {
+            positions, triangles, normals, colours, quality,
+            creases: creases.into_iter().map(|(vertices, sharpness)| CreaseTag { vertices, sharpness }).collect(),
+            corners: corners.into_iter().map(|(vertex, sharpness)| CornerTag { vertex, sharpness }).collect(),
+        }
+    }
+}
+
+fn bits(points: &[[f64; 3]]) -> Vec<u64> {
+    points.as_flattened().iter().map(|x| x.to_bits()).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Positions to the last bit (the sign of zero too), triangles, and in OBJ the tags.
+    #[test]
+    fn what_is_written_reads_back(surface in any_surface(), which in 0u8..8, ascii: bool) {
+        for format in [Format::Obj, Format::Ply, Format::Off] {
+            let soup = read_back(format, &surface.output(which), ascii);
+            prop_assert_eq!(bits(&soup.positions), bits(&surface.positions), "{}", format);
+            prop_assert!(soup.faces.iter().eq(surface.triangles.iter().map(|t| t.as_slice())), "{}", format);
+            if format == Format::Obj {
+                prop_assert_eq!(&soup.creases, &surface.creases);
+                prop_assert_eq!(&soup.corners, &surface.corners);
+            }
+        }
+    }
+
+    /// STL: the corners of each triangle, in binary rounded to `f32`.
+    #[test]
+    fn stl_reads_back_as_corners(mut surface in any_surface(), ascii: bool) {
+        if !ascii {
+            for x in surface.positions.as_flattened_mut() {
+                *x = f64::from((*x as f32).clamp(f32::MIN, f32::MAX));
+            }
+        }
+        let soup = read_back(Format::Stl, &surface.plain(), ascii);
+        let corners: Vec<_> = surface.triangles.as_flattened().iter().map(|&v| surface.positions[v as usize]).collect();
+        prop_assert_eq!(bits(&soup.positions), bits(&corners));
+        prop_assert_eq!(soup.faces.len(), surface.triangles.len());
+    }
+
+    /// No bytes at all make a reader do anything but read or refuse.
+    #[test]
+    fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..400), which in 0usize..4) {
+        let format = Format::ALL[which];
+        let start: &[u8] = match format {
+            Format::Ply => b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar x\n\
+                property uchar y\nproperty char z\nelement face 9\nproperty list uchar uchar vertex_index\nend_header\n",
+            Format::Stl => b"solid \n facet ",
+            Format::Off => b"OFF ",
+            _ => b"v 0 0 0\n",
+        };
+        let _ = read_bytes(&bytes, format);
+        let _ = read_bytes(&[start, &bytes].concat(), format);
+    }
+
+    /// A file with a piece cut off its end or a byte changed: the indices that are read still exist.
+    #[test]
+    fn damaged_files_are_read_or_refused(
+        surface in any_surface(), which in 0u8..8, ascii: bool,
+        keep in 0.0..1.0, change in 0.0..1.0, value: u8,
+    ) {
+        for format in Format::ALL {
+            let mut surface = surface.clone();
+            surface.positions.as_flattened_mut().iter_mut().for_each(|x| *x = x.clamp(-1e30, 1e30));
+            let whole = written(format, &surface.output(which), ascii);
+            let cut = &whole[..(whole.len() as f64 * keep) as usize];
+            let mut changed = whole.clone();
+            changed[(whole.len() as f64 * change) as usize] = value;
+            for bytes in [cut, &changed] {
+                if let Ok(soup) = read_bytes(bytes, format) {
+                    prop_assert!(soup.faces.iter().flatten().all(|&v| (v as usize) < soup.positions.len()));
+                    prop_assert!(soup.positions.as_flattened().iter().all(|x| x.is_finite()));
+                }
+            }
+        }
+    }
+}
+
+const POSITIONS: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 2.0, 1e-9]];
+const TRIANGLES: [[u32; 3]; 1] = [[0, 1, 2]];
+
+fn triangle() -> Output<'static> {
+    Output::new(Triangles { positions: &POSITIONS, triangles: &TRIANGLES })
+}
+
+const NORMALS: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [0.5, 0.0, 0.5], [0.0, -1.0, 0.0]];
+const COLOURS: [[u8; 3]; 3] = [[255, 0, 128], [1, 2, 3], [0, 0, 0]];
+
+/// The text of each format, which other programs must understand.
+#[test]
+fn text_is_as_the_formats_have_it() {
+    let creases = [CreaseTag { vertices: [0, 2], sharpness: 10.0 }];
+    let corners = [CornerTag { vertex: 1, sharpness: 2.5 }];
+    let output = triangle()
+        .normals(&NORMALS)
+        .colours(&COLOURS)
+        .quality(&[1.0, 0.25, -3.0])
+        .creases(&creases)
+        .corners(&corners);
+    let text = |format| String::from_utf8(written(format, &output, true)).unwrap();
+    assert_eq!(
+        text(Format::Obj),
+        "v 0 0 0 1 0 0.502\nv 0.1 0 0 0.004 0.008 0.012\nv 0 2 1e-9 0 0 0\nvn 0 0 1\nvn 0.5 0 0.5\nvn 0 -1 0\n\
+         f 1//1 2//2 3//3\nt crease 2/1/0 0 2 10\nt corner 1/1/0 1 2.5\n"
+    );
+    assert_eq!(
+        text(Format::Ply),
+        "ply\nformat ascii 1.0\ncomment written by limitmesh\nelement vertex 3\nproperty double x\nproperty double y\n\
+         property double z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty uchar red\n\
+         property uchar green\nproperty uchar blue\nproperty double quality\nelement face 1\n\
+         property list uchar int vertex_indices\nend_header\n0 0 0 0 0 1 255 0 128 1\n\
+         0.1 0 0 0.5 0 0.5 1 2 3 0.25\n0 2 1e-9 0 -1 0 0 0 0 -3\n3 0 1 2\n"
+    );
+    assert_eq!(
+        text(Format::Off),
+        "CNOFF\n3 1 0\n0 0 0 0 0 1 255 0 128 255\n0.1 0 0 0.5 0 0.5 1 2 3 255\n0 2 1e-9 0 -1 0 0 0 0 255\n3 0 1 2\n"
+    );
+    let flat = Output::new(Triangles {
+        positions: &[[0.0; 3], [2.0, 0.0, 0.0], [0.0, 0.3, 0.0]],
+        ..triangle().surface
+    });
+    assert_eq!(
+        String::from_utf8(written(Format::Stl, &flat, true)).unwrap(),
+        "solid limitmesh\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 2 0 0\nvertex 0 0.3 0\nendloop\n\
+         endfacet\nendsolid limitmesh\n"
+    );
+}
+
+#[test]
+fn binary_is_as_the_formats_have_it() {
+    let ply = written(Format::Ply, &triangle().normals(&NORMALS).colours(&COLOURS).quality(&[7.0; 3]), false);
+    let body = ply.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
+    assert_eq!(ply.len() - body, 3 * (24 + 12 + 3 + 8) + 13);
+    assert_eq!(ply[body + 47..][..8], 0.1f64.to_le_bytes());
+    assert_eq!(ply[body + 47 + 24..][..4], 0.5f32.to_le_bytes());
+    assert_eq!(ply[body + 47 + 36..][..3], [1, 2, 3]);
+    assert_eq!(ply[body + 47 + 39..][..8], 7f64.to_le_bytes());
+    assert_eq!(ply[ply.len() - 13..], [3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]);
+    let stl = written(Format::Stl, &triangle(), false);
+    assert_eq!(stl.len(), 84 + 50);
+    assert!(!stl.starts_with(b"solid"));
+    assert_eq!(stl[80..84], 1u32.to_le_bytes());
+    assert_eq!(stl[84 + 24..][..4], 0.1f32.to_le_bytes());
+}
+
+#[test]
+fn what_does_not_fit_together_is_refused() {
+    let message = |format, output: &Output<'_>| {
+        let mut bytes = Vec::new();
+        let error = write_to(&mut bytes, format, output, &WriteOptions::default()).unwrap_err();
+        assert!(bytes.is_empty(), "something was written before the check");
+        error.to_string()
+    };
+    assert_eq!(
+        message(Format::Ply, &triangle().normals(&NORMALS[..2])),
+        "2 normals for 3 vertices, expected one for each"
+    );
+    assert_eq!(
+        message(Format::Stl, &triangle().colours(&[])),
+        "0 colours for 3 vertices, expected one for each"
+    );
+    assert_eq!(
+        message(Format::Obj, &triangle().quality(&[0.0; 4])),
+        "4 quality values for 3 vertices, expected one for each"
+    );
+    let beyond = Output::new(Triangles { positions: &POSITIONS, triangles: &[[0, 1, 2], [2, 1, 3]] });
+    assert_eq!(message(Format::Stl, &beyond), "triangle 1 names vertex 3, but there are 3 vertices");
+    let creases = [CreaseTag { vertices: [1, 9], sharpness: 1.0 }];
+    assert_eq!(
+        message(Format::Obj, &triangle().creases(&creases)),
+        "crease tag 0 names vertex 9, but there are 3 vertices"
+    );
+    let corners = [CornerTag { vertex: 3, sharpness: 1.0 }];
+    assert_eq!(
+        message(Format::Obj, &triangle().corners(&corners)),
+        "corner tag 0 names vertex 3, but there are 3 vertices"
+    );
+    let positions = [POSITIONS[0], [0.0, f64::NAN, 0.0], POSITIONS[2]];
+    let output = Output::new(Triangles { positions: &positions, triangles: &TRIANGLES });
+    for format in Format::ALL {
+        assert_eq!(
+            message(format, &output),
+            format!(
+                "position of vertex 1 is NaN, which {format} files cannot hold, expected a finite number"
+            )
+        );
+    }
+    let positions = [POSITIONS[0], POSITIONS[1], [0.0, 0.0, -1e39]];
+    let output = Output::new(Triangles { positions: &positions, triangles: &TRIANGLES });
+    assert!(message(Format::Stl, &output).starts_with("position of vertex 2 is -1"));
+    written(Format::Obj, &output, false);
+    written(Format::Stl, &output, true);
+    // An attribute that the format leaves out may be anything.
+    let unknown = triangle().quality(&[f64::NAN; 3]);
+    assert_eq!(
+        message(Format::Ply, &unknown),
+        "quality of vertex 0 is NaN, which PLY files cannot hold, expected a finite number"
+    );
+    written(Format::Off, &unknown, false);
+}
+
+/// A writer that takes so many bytes and then fails, as a full disk does.
+struct Full(usize);
+
+impl io::Write for Full {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.0 == 0 {
+            return Err(io::Error::from(io::ErrorKind::StorageFull));
+        }
+        let taken = bytes.len().min(self.0);
+        self.0 -= taken;
+        Ok(taken)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_failing_writer_is_reported_wherever_it_fails() {
+    let triangles = vec![[0, 1, 2]; 3000];
+    let output = Output::new(Triangles { positions: &POSITIONS, triangles: &triangles });
+    for format in Format::ALL {
+        for ascii in [false, true] {
+            let length = written(format, &output, ascii).len();
+            let options = WriteOptions::default().ascii(ascii);
+            for room in [0, 1, length / 2, length - 1] {
+                let error = write_to(&mut Full(room), format, &output, &options).unwrap_err();
+                assert!(matches!(error, WriteError::Writer { .. }), "{format} {error}");
+            }
+            write_to(&mut Full(length), format, &output, &options).unwrap();
+        }
+    }
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn files_are_replaced_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mesh.OBJ");
+    fs::write(&path, "earlier content, longer than what is written after it".repeat(99)).unwrap();
+    write(&path, &triangle(), &WriteOptions::default()).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), written(Format::Obj, &triangle(), false));
+    write_whole(&folder.path().join("report.json"), b"{}").unwrap();
+    assert_eq!(names(folder.path()), ["mesh.OBJ", "report.json"]);
+}
+
+#[test]
+fn a_refused_output_leaves_the_earlier_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mesh.stl");
+    fs::write(&path, "earlier").unwrap();
+    let positions = [[0.0; 3], [1e300; 3], [1.0; 3]];
+    let output = Output::new(Triangles { positions: &positions, triangles: &TRIANGLES });
+    let error = write(&path, &output, &WriteOptions::default()).unwrap_err();
+    assert!(matches!(error, WriteError::NotFinite { vertex: 1, .. }));
+    assert_eq!(fs::read(&path).unwrap(), b"earlier");
+    assert_eq!(names(folder.path()), ["mesh.stl"]);
+}
+
+#[test]
+fn places_that_cannot_be_written_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let missing = folder.path().join("no such folder").join("mesh.ply");
+    let message = write(&missing, &triangle(), &WriteOptions::default()).unwrap_err().to_string();
+    assert!(message.starts_with(&format!("cannot write {}: ", missing.display())), "{message}");
+    let is_folder = folder.path().join("folder.ply");
+    fs::create_dir(&is_folder).unwrap();
+    let message = write_whole(&is_folder, b"").unwrap_err().to_string();
+    assert!(message.contains("directory"), "{message}");
+    let unknown = write(&folder.path().join("mesh.xyz"), &triangle(), &WriteOptions::default()).unwrap_err();
+    assert!(matches!(unknown, WriteError::UnknownFormat(_)));
+    assert_eq!(names(folder.path()), ["folder.ply"]);
+}
+
+#[cfg(unix)]
+mod unix {
+    use super::*;
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
+
+    #[test]
+    fn permissions_are_those_of_any_new_file_or_of_the_earlier_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let mode = |name: &str| fs::metadata(folder.path().join(name)).unwrap().mode() & 0o777;
+        fs::File::create(folder.path().join("plain")).unwrap();
+        write(&folder.path().join("mesh.ply"), &triangle(), &WriteOptions::default()).unwrap();
+        assert_eq!(mode("mesh.ply"), mode("plain"));
+        fs::set_permissions(folder.path().join("plain"), fs::Permissions::from_mode(0o640)).unwrap();
+        write_whole(&folder.path().join("plain"), b"x").unwrap();
+        assert_eq!(mode("plain"), 0o640);
+    }
+
+    #[test]
+    fn links_stay_links() {
+        let folder = tempfile::tempdir().unwrap();
+        let (real, link) = (folder.path().join("real.off"), folder.path().join("link.off"));
+        fs::write(&real, "earlier").unwrap();
+        symlink("real.off", &link).unwrap();
+        write(&link, &triangle(), &WriteOptions::default()).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&real).unwrap(), written(Format::Off, &triangle(), false));
+    }
+
+    #[test]
+    fn devices_are_written_to_directly() {
+        write_whole(Path::new("/dev/null"), b"x").unwrap();
+        assert!(!fs::metadata("/dev/null").unwrap().is_file());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_device_is_an_error() {
+        let message = write_whole(Path::new("/dev/full"), b"x").unwrap_err().to_string();
+        assert!(message.starts_with("cannot write /dev/full: "), "{message}");
+    }
+
+    /// A folder that may not be written to: the earlier file stays as it is. (Nothing is forbidden to root.)
+    #[test]
+    fn a_folder_without_permission_keeps_its_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mesh.obj");
+        fs::write(&path, "earlier").unwrap();
+        fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o555)).unwrap();
+        let all_powerful = fs::write(folder.path().join("probe"), "").is_ok();
+        let result = write(&path, &triangle(), &WriteOptions::default());
+        fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
+        if all_powerful {
+            println!("skipped: this user may write anywhere");
+            return;
+        }
+        assert!(matches!(result, Err(WriteError::File { .. })));
+        assert_eq!(fs::read(&path).unwrap(), b"earlier");
+        assert_eq!(names(folder.path()), ["mesh.obj"]);
+    }
+}
