@@ -1,0 +1,198 @@
+//! Limit stencils of open rings: boundary vertices and corners on a boundary.
+//!
+//! The boundary curve refines by itself (the scheme's contract), so that the difference matrix D is block
+//! triangular: boundary rows have boundary columns only. Its strongly connected components split it further, and
+//! each eigenvalue belongs to one component. A left eigenvector is supported on its component and on those that
+//! this one depends on: with D = [[B, 0], [C, A]] (boundary first), `y·A = λy` and `x·(B − λ) = −y·C`.
+//!
+//! * **Smooth boundary vertex**: the first tangent runs along the boundary and is the dominant left eigenvector
+//!   of B; the second crosses it and is the dominant one of A, continued to the boundary. For Loop's rules with
+//!   θ = π/(k−1) and σ = cot(θ/2) the second has sin(iθ) at the interior neighbours, x = (sin θ − σ)/(1 + 2cos θ)
+//!   at the boundary neighbours and −2x − σ at the vertex. (The masks in common use belong to other boundary
+//!   rules than 3/4, 1/8, 1/8; with these rules they are off by degrees from five edges on, see the tests.)
+//!   With two edges there is no interior neighbour and both tangents come from B.
+//! * **Corner**: the two dominant left eigenvectors of B, that is both boundary edges, where they dominate A.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::LimitError;
+use super::eigen::{block, components, eigenvalues, left_eigenvector, solve_left};
+use super::neighbourhood::Neighbourhood;
+use super::stencil::{LimitStencil, TangentPlane, is_real, same_modulus};
+
+/// Greatest valence whose tangents are computed: a dense eigenproblem of this size takes a second. Beyond it a
+/// boundary vertex has its limit position but no tangent plane, as the surfaces of usual schemes have none there.
+const GREATEST_VALENCE: usize = 512;
+
+/// An eigenvalue of D and the component it belongs to.
+#[derive(Clone, Copy)]
+struct Mode {
+    value: Complex<f64>,
+    component: usize,
+    on_boundary: bool,
+}
+
+/// The limit stencil of an open ring.
+///
+/// # Errors
+/// The masks are not those of a scheme as its contract describes it, or do not converge here.
+pub(super) fn analyse(neighbourhood: &Neighbourhood<'_>) -> Result<LimitStencil, LimitError> {
+    let position = position(neighbourhood)?;
+    let bare = LimitStencil::without_tangents(neighbourhood.shape, neighbourhood.support, position);
+    if neighbourhood.valence() > GREATEST_VALENCE {
+        return Ok(bare);
+    }
+    let differences = difference_matrix(neighbourhood)?;
+    let components = components(&differences);
+    let modes = modes(neighbourhood, &differences, &components)?;
+    let greatest = modes.first().map_or(0.0, |mode| mode.value.norm());
+    if greatest >= 1.0 - 1e-12 {
+        let what = format!(
+            "differences must shrink, but the difference matrix has an eigenvalue of modulus {greatest}"
+        );
+        return Err(neighbourhood.unsuitable(what));
+    }
+    let Some((pair, plane, next)) = choose(neighbourhood, &modes) else { return Ok(bare) };
+    let vector = |mode: Mode| left_vector(&differences, &components, mode);
+    let (Some(along), Some(across)) = (vector(pair[0]), vector(pair[1])) else { return Ok(bare) };
+    let tangents = scaled(neighbourhood, along, across);
+    let eigenvalues = pair.map(|mode| mode.value.norm());
+    Ok(LimitStencil { tangents, plane, eigenvalues, next_eigenvalue: next, ..bare }.oriented())
+}
+
+/// Weights of the limit position: the left eigenvector for 1 of the boundary's part of S.
+fn position(neighbourhood: &Neighbourhood<'_>) -> Result<Vec<f64>, LimitError> {
+    let boundary: Vec<usize> =
+        (0..neighbourhood.len()).filter(|&i| neighbourhood.is_on_boundary(i)).collect();
+    let mut rows = Vec::new();
+    for &point in &boundary {
+        let row = neighbourhood.row(point)?;
+        if (0..row.len()).any(|i| row[i] != 0.0 && !neighbourhood.is_on_boundary(i)) {
+            let what = "the masks of boundary vertices and boundary edges must use boundary vertices only";
+            return Err(neighbourhood.unsuitable(what));
+        }
+        rows.push(row);
+    }
+    let stays = rows[0][0] == 1.0 && rows[0][1..].iter().all(|&weight| weight == 0.0);
+    if neighbourhood.shape.corner && !stays {
+        return Err(neighbourhood.unsuitable("a corner must keep its place"));
+    }
+    let mut weights = vec![0.0; neighbourhood.len()];
+    if stays {
+        weights[0] = 1.0;
+        return Ok(weights);
+    }
+    // As in a closed ring: the first column of x·(S − 1) = 0 is replaced by "the weights sum to 1".
+    let n = boundary.len();
+    let system = DMatrix::from_fn(n, n, |equation, unknown| match equation {
+        0 => 1.0,
+        _ => rows[unknown][boundary[equation]] - f64::from(u8::from(equation == unknown)),
+    });
+    let right = DVector::from_fn(n, |i, _| f64::from(u8::from(i == 0)));
+    match system.lu().solve(&right) {
+        Some(solution) if solution.iter().all(|weight| weight.is_finite()) => {
+            boundary.iter().zip(solution.iter()).for_each(|(&point, &weight)| weights[point] = weight);
+            Ok(weights)
+        }
+        _ => Err(neighbourhood.unsuitable("the eigenvalue 1 of the boundary's ring matrix must be simple")),
+    }
+}
+
+/// D over all points but the vertex.
+fn difference_matrix(neighbourhood: &Neighbourhood<'_>) -> Result<DMatrix<f64>, LimitError> {
+    let n = neighbourhood.len() - 1;
+    let centre = neighbourhood.row(0)?;
+    let mut differences = DMatrix::zeros(n, n);
+    for i in 0..n {
+        let row = neighbourhood.row(i + 1)?;
+        for j in 0..n {
+            differences[(i, j)] = row[j + 1] - centre[j + 1];
+        }
+    }
+    Ok(differences)
+}
+
+/// All eigenvalues of D, by falling modulus.
+fn modes(
+    neighbourhood: &Neighbourhood<'_>,
+    differences: &DMatrix<f64>,
+    components: &[Vec<usize>],
+) -> Result<Vec<Mode>, LimitError> {
+    let mut modes = Vec::with_capacity(differences.nrows());
+    for (component, rows) in components.iter().enumerate() {
+        let on_boundary = rows.iter().all(|&i| neighbourhood.is_on_boundary(i + 1));
+        let Some(values) = eigenvalues(&block(differences, rows, rows)) else {
+            return Err(neighbourhood.unsuitable("the eigenvalues of its ring matrix could not be computed"));
+        };
+        modes.extend(values.into_iter().map(|value| Mode { value, component, on_boundary }));
+    }
+    modes.sort_by(|a, b| b.value.norm().total_cmp(&a.value.norm()));
+    Ok(modes)
+}
+
+/// The modes of both tangents, what they span, and the greatest modulus among the others.
+fn choose(neighbourhood: &Neighbourhood<'_>, modes: &[Mode]) -> Option<([Mode; 2], TangentPlane, f64)> {
+    let place =
+        |from: usize, on_boundary: bool| (from..modes.len()).find(|&i| modes[i].on_boundary == on_boundary);
+    let modulus = |i: Option<usize>| i.map_or(0.0, |i| modes[i].value.norm());
+    let along = place(0, true)?;
+    let second_on_boundary = place(along + 1, true);
+    let from_boundary = neighbourhood.shape.corner || neighbourhood.valence() == 2;
+    let across = if from_boundary { second_on_boundary? } else { place(0, false)? };
+    let other_across = place(across + 1, from_boundary);
+    let others = (0..modes.len()).filter(|i| ![along, across].contains(i));
+    let next = others.map(|i| modes[i].value.norm()).fold(0.0, f64::max);
+    let (slow, fast) = (modulus(Some(along)), modulus(Some(across)));
+    let strict = |a: f64, b: f64| a > b && !same_modulus(a, b);
+    if !is_real(modes[along].value) || !is_real(modes[across].value) || slow == 0.0 || fast == 0.0 {
+        return None;
+    }
+    let pair = [modes[along], modes[across]];
+    if strict(slow.min(fast), next) {
+        return Some((pair, TangentPlane::Surface, next));
+    }
+    // The boundary's own tangent and the pattern across it are still the first of their kinds: the faces along
+    // the boundary approach their plane, whatever others do.
+    let ribbon =
+        !from_boundary && strict(slow, modulus(second_on_boundary)) && strict(fast, modulus(other_across));
+    (ribbon && strict(fast, modulus(second_on_boundary))).then_some((
+        pair,
+        TangentPlane::BoundaryRibbon,
+        next,
+    ))
+}
+
+/// The left eigenvector of D for a mode, continued from its component to all that this one depends on.
+fn left_vector(differences: &DMatrix<f64>, components: &[Vec<usize>], mode: Mode) -> Option<DVector<f64>> {
+    let eigenvalue = mode.value.re;
+    let own = &components[mode.component];
+    let mut vector = DVector::zeros(differences.nrows());
+    let start = left_eigenvector(&block(differences, own, own), eigenvalue)?;
+    own.iter().zip(start.iter()).for_each(|(&row, &weight)| vector[row] = weight);
+    // Components stand after those that they depend on: whatever this one reaches stands before it.
+    for rows in components[..mode.component].iter().rev() {
+        let columns = DMatrix::from_fn(differences.nrows(), rows.len(), |i, j| differences[(i, rows[j])]);
+        let right = -columns.tr_mul(&vector);
+        if right.iter().all(|&entry| entry == 0.0) {
+            continue;
+        }
+        let system = block(differences, rows, rows) - DMatrix::identity(rows.len(), rows.len()) * eigenvalue;
+        let solution = solve_left(&system, &right)?;
+        rows.iter().zip(solution.iter()).for_each(|(&row, &weight)| vector[row] = weight);
+    }
+    Some(vector)
+}
+
+/// Both eigenvectors in the scale that [`LimitStencil::tangent_weights`] promises.
+fn scaled(neighbourhood: &Neighbourhood<'_>, along: DVector<f64>, across: DVector<f64>) -> Vec<[f64; 2]> {
+    let k = neighbourhood.valence();
+    let greatest = |vector: &DVector<f64>| {
+        let ring = vector.rows(0, k).amax();
+        if ring > 0.0 { ring } else { vector.amax() }
+    };
+    let along_scale = if along[0] < 0.0 { -greatest(&along) } else { greatest(&along) };
+    let inner = if k > 2 { across.rows(1, k - 2).norm() } else { 0.0 };
+    let across_scale =
+        if inner > 1e-9 * across.norm() { inner / ((k - 1) as f64 / 2.0).sqrt() } else { greatest(&across) };
+    along.iter().zip(across.iter()).map(|(u, w)| [u / along_scale, w / across_scale]).collect()
+}
