@@ -1,2 +1,67 @@
-//! The `limitmesh` program.
-fn main() {}
+//! The `limitmesh` program: refine a triangle mesh by limit normals, measure it, compare methods, draw it.
+//!
+//! Takes the command line, gives files, text on standard output and an exit code: 0 done, 1 bad input or
+//! output, 2 usage, 3 stopped short of what was asked. Messages go to standard error, so that a report or a
+//! measurement can be piped.
+
+mod arguments;
+mod commands;
+mod comparison;
+mod failure;
+mod input;
+mod interrupt;
+mod output;
+mod progress;
+mod reference;
+mod report;
+mod shape;
+mod words;
+
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser, error::ErrorKind};
+
+use arguments::{Arguments, Command};
+use failure::{Outcome, UsageError, is_broken_pipe};
+use progress::Progress;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let progress = Progress::new(arguments.global.quiet);
+    let result = prepare(&arguments).and_then(|()| run(&arguments.command, &progress));
+    progress.clear();
+    match result {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::StoppedShort(why)) => {
+            eprintln!("stopped short: {why}");
+            ExitCode::from(3)
+        }
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => match error.downcast_ref::<UsageError>() {
+            // Clap words and formats it like the usage errors that it finds itself, and exits with code 2.
+            Some(UsageError(what)) => Arguments::command().error(ErrorKind::ValueValidation, what).exit(),
+            None => {
+                failure::print(&error);
+                ExitCode::from(1)
+            }
+        },
+    }
+}
+
+/// Sets up what holds for the whole process: the thread pool and what Ctrl-C does.
+fn prepare(arguments: &Arguments) -> anyhow::Result<()> {
+    interrupt::install()?;
+    rayon::ThreadPoolBuilder::new().num_threads(arguments.global.threads).build_global()?;
+    Ok(())
+}
+
+fn run(command: &Command, progress: &Progress) -> anyhow::Result<Outcome> {
+    match command {
+        Command::Refine(arguments) => commands::refine::run(arguments, progress),
+        Command::Measure(arguments) => commands::measure::run(arguments, progress),
+        Command::Compare(arguments) => commands::compare::run(arguments, progress),
+        Command::Render(arguments) => commands::render::run(arguments, progress),
+        Command::Info(arguments) => commands::info::run(arguments, progress),
+        Command::Models(arguments) => commands::models::run(arguments),
+    }
+}

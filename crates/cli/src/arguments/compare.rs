@@ -1,0 +1,46 @@
+//! `limitmesh compare`.
+
+use clap::Args;
+
+use super::values;
+use super::{BuildArguments, SchemeName};
+
+const EXAMPLES: &str = "\
+Examples:
+  limitmesh compare builtin:head
+  limitmesh compare control.obj --angle 5 --levels 4 --json";
+
+/// Compare the methods at equal triangle counts
+///
+/// Refines by limit normals with the angle and levels given, finds the angle at which the method of Amresh,
+/// Farin and Razdan gives nearly as many triangles, and the level at which uniform refinement comes nearest,
+/// without and with its vertices moved to the limit surface. Each is measured against the limit surface.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct CompareArguments {
+    /// Control mesh: a file or builtin:NAME
+    pub(crate) input: String,
+
+    /// Angle of the limit-normal method [degrees, above 0 to 180]
+    #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = values::angle, allow_hyphen_values = true)]
+    pub(crate) angle: f64,
+
+    /// Steps of the adaptive methods
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = values::levels)]
+    pub(crate) levels: usize,
+
+    /// Subdivision scheme
+    #[arg(long, value_enum, default_value = "loop")]
+    pub(crate) scheme: SchemeName,
+
+    /// Samples on each surface, besides its vertices, which are always taken
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::positive)]
+    pub(crate) samples: usize,
+
+    #[command(flatten)]
+    pub(crate) build: BuildArguments,
+
+    /// Print JSON instead of a table
+    #[arg(long)]
+    pub(crate) json: bool,
+}

@@ -1,0 +1,28 @@
+//! `limitmesh info`.
+
+use clap::Args;
+
+use super::BuildArguments;
+
+const EXAMPLES: &str = "\
+Examples:
+  limitmesh info scan.stl
+  limitmesh info builtin:cup --json";
+
+/// Say what is in a file and what would be repaired
+///
+/// Lists the findings with the first few faces or vertices, counted from 0 as in the file, then the control
+/// mesh that refinement would start from: topology, valences, extent, triangle quality.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct InfoArguments {
+    /// Mesh file (.obj, .ply, .stl, .off) or builtin:NAME
+    pub(crate) input: String,
+
+    #[command(flatten)]
+    pub(crate) build: BuildArguments,
+
+    /// Print JSON instead of text
+    #[arg(long)]
+    pub(crate) json: bool,
+}

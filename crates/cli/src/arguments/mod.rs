@@ -1,0 +1,71 @@
+//! The command line: one file a command, help texts that say each option's unit, default and effect.
+
+mod compare;
+mod info;
+mod measure;
+mod models;
+mod refine;
+mod render;
+mod shared;
+mod values;
+
+pub(crate) use compare::CompareArguments;
+pub(crate) use info::InfoArguments;
+pub(crate) use measure::MeasureArguments;
+pub(crate) use models::ModelsArguments;
+pub(crate) use refine::{Method, RefineArguments};
+pub(crate) use render::RenderArguments;
+pub(crate) use shared::{BuildArguments, SchemeName, Seam};
+pub(crate) use values::{MAX_LEVELS, Size};
+
+use clap::{Args, Parser, Subcommand};
+
+const EXAMPLES: &str = "\
+Examples:
+  limitmesh refine builtin:head -o head.ply --picture head.png
+        refines a built-in model where 10° are not kept, and draws the result
+  limitmesh info scan.stl
+        says what is in a file and what would be repaired
+  limitmesh measure head.ply --limit-of builtin:head
+        how far the refined mesh is from the limit surface
+  limitmesh compare builtin:head --angle 5
+        the methods side by side at equal triangle counts
+
+Exit codes: 0 done, 1 bad input or output, 2 usage, 3 stopped short of what was asked (a cap).";
+
+/// Smooths triangle meshes by adaptive subdivision, measures them, shows them.
+///
+/// A control mesh is refined only where its faces stand badly for the smooth limit surface: where a face's
+/// normal leaves a cone around the limit normals of its vertices. INPUT is a file (OBJ, PLY, STL, OFF) or
+/// builtin:NAME; `limitmesh models` lists the names.
+#[derive(Parser, Debug)]
+#[command(name = "limitmesh", version, propagate_version = true, after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    pub(crate) global: GlobalArguments,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// Options of every command.
+#[derive(Args, Debug)]
+pub(crate) struct GlobalArguments {
+    /// Print no progress and no notes on standard error; errors still appear
+    #[arg(long, short, global = true)]
+    pub(crate) quiet: bool,
+
+    /// Number of threads; 0 takes all processors. Results are the same bytes for any number
+    #[arg(long, value_name = "N", default_value_t = 0, global = true, value_parser = values::threads)]
+    pub(crate) threads: usize,
+}
+
+/// What to do.
+#[derive(Subcommand, Debug)]
+pub(crate) enum Command {
+    Refine(RefineArguments),
+    Measure(MeasureArguments),
+    Compare(CompareArguments),
+    Render(RenderArguments),
+    Info(InfoArguments),
+    Models(ModelsArguments),
+}

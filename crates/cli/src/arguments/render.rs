@@ -1,0 +1,48 @@
+//! `limitmesh render`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::values;
+use super::{BuildArguments, Size};
+
+const EXAMPLES: &str = "\
+Examples:
+  limitmesh render refined.ply -o refined.png --wireframe
+  limitmesh render builtin:cup -o cup.png --flat --view 1,-2,-1 --size 1600x1200";
+
+/// Draw a mesh as a PNG picture; needs no graphics card
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct RenderArguments {
+    /// Mesh file (.obj, .ply, .stl, .off) or builtin:NAME
+    pub(crate) input: String,
+
+    /// Picture to write (.png)
+    #[arg(short, long, value_name = "OUT.png")]
+    pub(crate) output: PathBuf,
+
+    /// Draw the edges of the triangles over the shaded surface
+    #[arg(long)]
+    pub(crate) wireframe: bool,
+
+    /// Shade each triangle by its own normal, so that facets show
+    #[arg(long, conflicts_with = "smooth")]
+    pub(crate) flat: bool,
+
+    /// Shade smoothly, by normals interpolated between the vertices (default)
+    #[arg(long)]
+    pub(crate) smooth: bool,
+
+    /// Direction of sight, from the viewer into the scene
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    pub(crate) view: Option<[f64; 3]>,
+
+    /// Width and height of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "1200x900")]
+    pub(crate) size: Size,
+
+    #[command(flatten)]
+    pub(crate) build: BuildArguments,
+}

@@ -1,0 +1,145 @@
+//! Values on the command line and their ranges: what is wrong with one is said before any work begins.
+
+use std::str::FromStr;
+
+use limitmesh::mesh::Weld;
+
+/// Levels beyond this would need more than 4^12 (16 million) triangles for a single input triangle.
+pub(crate) const MAX_LEVELS: usize = 12;
+
+/// More threads than any machine we know of has processors.
+const MAX_THREADS: usize = 4096;
+
+/// Pixels on a side; a picture of this size takes about a gigabyte while it is drawn.
+const MAX_SIDE: u32 = 8192;
+
+/// A number that is finite.
+fn finite(text: &str) -> Result<f64, String> {
+    let value = f64::from_str(text.trim()).map_err(|_| format!("'{text}' is not a number"))?;
+    if value.is_finite() { Ok(value) } else { Err(format!("{value} is not a finite number")) }
+}
+
+/// An angle in degrees, above 0 and at most 180.
+pub(super) fn angle(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if value > 0.0 && value <= 180.0 {
+        Ok(value)
+    } else {
+        Err(format!("{value}° is out of range: an angle is above 0 and at most 180 degrees"))
+    }
+}
+
+/// A factor of at least 0.
+pub(super) fn factor(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if value >= 0.0 { Ok(value) } else { Err(format!("{value} is out of range: it is at least 0")) }
+}
+
+/// A welding distance, or `none`.
+pub(super) fn weld(text: &str) -> Result<Weld, String> {
+    if text == "none" {
+        return Ok(Weld::Never);
+    }
+    let distance = finite(text).map_err(|what| format!("{what}; a distance or 'none' is expected"))?;
+    match distance {
+        d if d < 0.0 => Err(format!("{distance} is out of range: a distance is at least 0")),
+        0.0 => Ok(Weld::Exact),
+        _ => Ok(Weld::Within(distance)),
+    }
+}
+
+/// Three numbers with commas between them.
+pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
+    let numbers = text.split(',').map(finite).collect::<Result<Vec<_>, _>>()?;
+    <[f64; 3]>::try_from(numbers)
+        .map_err(|numbers| format!("{} numbers, expected three with commas: X,Y,Z", numbers.len()))
+}
+
+/// A direction: a point that is not the origin.
+pub(super) fn direction(text: &str) -> Result<[f64; 3], String> {
+    let direction = point(text)?;
+    if direction == [0.0; 3] {
+        return Err("0,0,0 is no direction: at least one number must differ from 0".to_owned());
+    }
+    Ok(direction)
+}
+
+/// A count from 0 to [`MAX_LEVELS`].
+pub(super) fn levels(text: &str) -> Result<usize, String> {
+    bounded(text, 0, MAX_LEVELS, "levels")
+}
+
+/// A count of at least 1.
+pub(super) fn positive(text: &str) -> Result<usize, String> {
+    bounded(text, 1, usize::MAX, "a count")
+}
+
+/// A number of threads.
+pub(super) fn threads(text: &str) -> Result<usize, String> {
+    bounded(text, 0, MAX_THREADS, "threads")
+}
+
+fn bounded(text: &str, low: usize, high: usize, what: &str) -> Result<usize, String> {
+    let value =
+        usize::from_str(text).map_err(|_| format!("'{text}' is not a whole number of at least {low}"))?;
+    match value {
+        v if v < low => Err(format!("{v} is too few: {what} must be at least {low}")),
+        v if v > high => Err(format!("{v} is too many: {what} must be at most {high}")),
+        v => Ok(v),
+    }
+}
+
+/// Width and height in pixels, written `WxH`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Size {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || format!("'{text}' is no size; expected WxH in pixels, such as 1600x1200");
+        let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(expected)?;
+        let side = |side: &str| u32::from_str(side.trim()).map_err(|_| expected());
+        let size = Self { width: side(width)?, height: side(height)? };
+        let fits = |side: u32| (1..=MAX_SIDE).contains(&side);
+        if fits(size.width) && fits(size.height) {
+            Ok(size)
+        } else {
+            Err(format!("{text} is out of range: each side has 1 to {MAX_SIDE} pixels"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_hold() {
+        assert_eq!(angle("180"), Ok(180.0));
+        for bad in ["0", "-1", "180.001", "NaN", "inf", "ten"] {
+            assert!(angle(bad).is_err(), "{bad}");
+        }
+        assert_eq!(point("1,-2.5, 3e1"), Ok([1.0, -2.5, 30.0]));
+        for bad in ["1,2", "1,2,3,4", "1,2,x", "", "1,2,inf"] {
+            assert!(point(bad).is_err(), "{bad}");
+        }
+        assert!(direction("0,0,0").is_err());
+        assert!(direction("0,0,-0").is_err());
+        assert_eq!(weld("0"), Ok(Weld::Exact));
+        assert_eq!(weld("0.5"), Ok(Weld::Within(0.5)));
+        assert_eq!(weld("none"), Ok(Weld::Never));
+        assert!(weld("-0.5").is_err());
+    }
+
+    #[test]
+    fn sizes_are_read() {
+        assert_eq!("640x480".parse(), Ok(Size { width: 640, height: 480 }));
+        for bad in ["640", "0x5", "640x", "99999x10", "-1x5"] {
+            assert!(bad.parse::<Size>().is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! `limitmesh compare`: the methods side by side at nearly equal triangle counts.
+
+use std::time::{Duration, Instant};
+
+use limitmesh::criterion::LimitNormal;
+use limitmesh::measure::{SamplingOptions, hausdorff, triangle_quality};
+use limitmesh::refine::{Refinement, StepwiseOptions, Stop, UniformOptions, stepwise, uniform};
+
+use crate::arguments::CompareArguments;
+use crate::comparison::{match_neighbour_angle, nearest_uniform_level};
+use crate::failure::Outcome;
+use crate::input;
+use crate::output;
+use crate::progress::Progress;
+use crate::reference::{self, Reference, USUAL_LEVELS};
+use crate::report::{ComparedMethod, LimitReport};
+use crate::words::{counted, number, seconds, table, thousands};
+
+/// Refines by every method and prints how they compare.
+pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
+    let control = input::load(&arguments.input, &arguments.build.options(), progress)?.mesh;
+    let scheme = arguments.scheme.scheme();
+    // Finer than what is measured against it by two levels, where that can be afforded.
+    let wanted = USUAL_LEVELS.max(arguments.levels + 2);
+    let levels = reference::affordable_levels(control.face_count(), wanted);
+    progress.stage(format!("refining by {levels} levels to stand for the limit surface"));
+    let reference = reference::at_level(&control, scheme, levels)?;
+    let judge = Judge { arguments, reference: &reference };
+
+    let mut methods = Vec::with_capacity(4);
+    progress.stage("limit-normal");
+    let options = StepwiseOptions::default().levels(arguments.levels).max_triangles(Some(MOST_TRIANGLES));
+    let criterion = LimitNormal::new(arguments.angle.to_radians());
+    let start = Instant::now();
+    let proposed = stepwise(&control, scheme, &criterion, &options)?;
+    let took = start.elapsed();
+    let (count, stop) = (proposed.mesh.face_count(), proposed.stop);
+    methods.push(judge.judge("limit-normal", Some(arguments.angle), &proposed, took)?);
+    drop(proposed);
+
+    progress.stage(format!("amresh: finding the angle for {} triangles", thousands(count)));
+    let matched = match_neighbour_angle(&control, scheme, arguments.levels, count, arguments.angle)?;
+    let angle = Some(matched.angle_degrees);
+    methods.push(judge.judge("amresh", angle, &matched.refinement, matched.duration)?);
+    drop(matched);
+
+    let level = nearest_uniform_level(control.face_count(), count);
+    for (name, limit) in [("uniform", false), ("uniform-limit", true)] {
+        progress.stage(name);
+        let options = UniformOptions::default().levels(level).limit(limit);
+        let start = Instant::now();
+        let refinement = uniform(&control, scheme, &options)?;
+        methods.push(judge.judge(name, None, &refinement, start.elapsed())?);
+    }
+    progress.clear();
+    if arguments.json {
+        output::print(&output::json(&methods)?)?;
+    } else {
+        output::print(&in_words(arguments, &judge, &methods))?;
+    }
+    Ok(match stop {
+        Stop::TriangleCap { needed } => Outcome::StoppedShort(format!(
+            "the next step by limit normals would have given {}; the comparison is at {}",
+            counted(needed, "triangle", "triangles"),
+            counted(count, "triangle", "triangles"),
+        )),
+        _ => Outcome::Done,
+    })
+}
+
+/// Triangles that a method may give: more would need more memory than most machines have.
+const MOST_TRIANGLES: usize = 20_000_000;
+
+/// Measures every method against the same limit surface.
+struct Judge<'a> {
+    arguments: &'a CompareArguments,
+    reference: &'a Reference,
+}
+
+impl Judge<'_> {
+    fn limit(&self) -> LimitReport {
+        LimitReport { scheme: self.arguments.scheme, levels: self.reference.levels, chosen: true }
+    }
+
+    fn judge(
+        &self,
+        method: &'static str,
+        angle_degrees: Option<f64>,
+        refinement: &Refinement,
+        took: Duration,
+    ) -> anyhow::Result<ComparedMethod> {
+        let surface = refinement.mesh.as_triangles();
+        let options = SamplingOptions::default().samples(self.arguments.samples);
+        let distance = hausdorff(surface, self.reference.mesh.as_triangles(), &options)?;
+        let quality = triangle_quality(surface);
+        let percent = 100.0 / distance.reference_diagonal.max(f64::MIN_POSITIVE);
+        Ok(ComparedMethod {
+            method,
+            angle_degrees,
+            levels: refinement.steps.len(),
+            triangles: surface.triangles.len(),
+            symmetric: distance.symmetric(),
+            symmetric_percent: distance.symmetric_percent(),
+            mean_percent: percent * distance.forward.mean,
+            rms_percent: percent * distance.forward.rms,
+            samples: distance.forward.samples + distance.backward.samples,
+            min_angle_degrees: quality.min_angle_degrees,
+            mean_min_angle_degrees: quality.mean_min_angle_degrees,
+            seconds: took.as_secs_f64(),
+            reference: self.limit(),
+            reference_triangles: self.reference.mesh.face_count(),
+        })
+    }
+}
+
+fn in_words(arguments: &CompareArguments, judge: &Judge<'_>, methods: &[ComparedMethod]) -> String {
+    let heads = ["method", "angle", "levels", "triangles", "distance %", "mean %", "least angle", "time"];
+    let mut rows = vec![heads.map(str::to_owned).to_vec()];
+    for m in methods {
+        rows.push(vec![
+            m.method.to_owned(),
+            m.angle_degrees.map_or_else(|| "-".to_owned(), |angle| format!("{angle:.3}°")),
+            m.levels.to_string(),
+            thousands(m.triangles),
+            number(m.symmetric_percent),
+            number(m.mean_percent),
+            format!("{:.2}°", m.min_angle_degrees),
+            seconds(m.seconds),
+        ]);
+    }
+    format!(
+        "{}, against its limit surface ({}, {} levels)\n\n{}\n\
+         Distances are symmetric Hausdorff distances in per cent of the limit surface's diagonal, sampled: lower \
+         bounds,\n{} samples a surface besides its vertices.\n",
+        arguments.input,
+        counted(judge.reference.mesh.face_count(), "triangle", "triangles"),
+        judge.reference.levels,
+        table(&rows),
+        thousands(arguments.samples),
+    )
+}

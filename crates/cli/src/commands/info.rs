@@ -1,0 +1,122 @@
+//! `limitmesh info`: what is in a file, what would be repaired, what control mesh comes of it.
+
+use std::collections::BTreeMap;
+
+use limitmesh::Mesh;
+
+use crate::arguments::InfoArguments;
+use crate::failure::Outcome;
+use crate::input;
+use crate::output;
+use crate::progress::Progress;
+use crate::report::diagnosis::{preparations_in_words, repairs_in_words};
+use crate::report::information::{PolygonCount, TagCounts};
+use crate::report::{InformationReport, InputReport, MeshInformation, VERSION};
+use crate::shape;
+use crate::words::{counted, number, point, thousands};
+
+/// Examines a file and prints what it holds.
+pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Result<Outcome> {
+    let input::Soup { name, format, soup, .. } = input::read(&arguments.input, progress)?;
+    let mut corners = BTreeMap::<usize, usize>::new();
+    for face in soup.faces.iter() {
+        *corners.entry(face.len()).or_default() += 1;
+    }
+    let polygons = corners.into_iter().map(|(corners, count)| PolygonCount { corners, count }).collect();
+    let tags = TagCounts { creases: soup.creases.len(), corners: soup.corners.len() };
+    let input =
+        InputReport { path: name.clone(), format, vertices: soup.positions.len(), faces: soup.faces.len() };
+    progress.stage(format!("connecting {}", counted(input.faces, "face", "faces")));
+    let (mesh, diagnosis) =
+        Mesh::from_soup(&soup, &arguments.build.options()).map_err(|error| input::describe(&name, error))?;
+    drop(soup);
+    progress.stage("examining the mesh");
+    let report = InformationReport {
+        version: VERSION,
+        input,
+        polygons,
+        tags,
+        diagnosis: (&diagnosis).into(),
+        mesh: shape::examine(&mesh),
+    };
+    progress.clear();
+    if arguments.json {
+        output::print(&output::json(&report)?)?;
+    } else {
+        let mut text = describe_file(&report);
+        let found = [preparations_in_words(&diagnosis), repairs_in_words(&diagnosis)].concat();
+        text.push_str("\nfound\n");
+        if found.is_empty() {
+            text.push_str("  nothing to prepare or repair\n");
+        }
+        found.iter().for_each(|line| text.push_str(&format!("  {line}\n")));
+        text.push_str("\ncontrol mesh\n");
+        text.push_str(&describe_mesh(&report.mesh));
+        output::print(&text)?;
+    }
+    Ok(Outcome::Done)
+}
+
+fn describe_file(report: &InformationReport) -> String {
+    let InputReport { path, format, vertices, faces } = &report.input;
+    let format = if *format == "builtin" { "built-in model".to_owned() } else { format.to_uppercase() };
+    let mut text = format!(
+        "{path}: {format}, {}, {}",
+        counted(*vertices, "vertex", "vertices"),
+        counted(*faces, "face", "faces")
+    );
+    let sizes: Vec<String> = report
+        .polygons
+        .iter()
+        .map(|p| format!("{} with {} corners", thousands(p.count), p.corners))
+        .collect();
+    if report.polygons.iter().any(|p| p.corners != 3) {
+        text.push_str(&format!(" ({})", sizes.join(", ")));
+    }
+    text.push('\n');
+    let TagCounts { creases, corners } = report.tags;
+    if creases + corners > 0 {
+        let (creases, corners) =
+            (counted(creases, "crease", "creases"), counted(corners, "corner", "corners"));
+        text.push_str(&format!("tagged: {creases}, {corners}\n"));
+    }
+    text
+}
+
+fn describe_mesh(mesh: &MeshInformation) -> String {
+    let closed = if mesh.watertight { "watertight" } else { "open" };
+    let boundary = counted(mesh.boundary_loops, "boundary loop", "boundary loops");
+    let irregular = 100.0 * mesh.irregular_vertices as f64 / mesh.vertices.max(1) as f64;
+    let lines = [
+        format!(
+            "{}, {}, {}",
+            counted(mesh.vertices, "vertex", "vertices"),
+            counted(mesh.edges, "edge", "edges"),
+            counted(mesh.triangles, "triangle", "triangles")
+        ),
+        format!(
+            "{}, {closed}: {boundary} with {}, genus {}, Euler characteristic {}",
+            counted(mesh.components, "component", "components"),
+            counted(mesh.boundary_edges, "edge", "edges"),
+            mesh.genus,
+            mesh.euler_characteristic
+        ),
+        format!(
+            "valence {} to {}; {} irregular ({irregular:.0} %)",
+            mesh.min_valence,
+            mesh.max_valence,
+            counted(mesh.irregular_vertices, "vertex is", "vertices are")
+        ),
+        format!(
+            "from {} to {}, diagonal {}",
+            point(mesh.bounding_box.low),
+            point(mesh.bounding_box.high),
+            number(mesh.bounding_box.diagonal)
+        ),
+        format!(
+            "least angle {:.2}°, mean least angle {:.1}°",
+            mesh.min_angle_degrees, mesh.mean_min_angle_degrees
+        ),
+    ];
+    lines.iter().map(|line| format!("  {line}\n")).collect()
+}

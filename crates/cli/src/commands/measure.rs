@@ -1,0 +1,165 @@
+//! `limitmesh measure`: the distance between two surfaces, or between a mesh and a limit surface.
+
+use std::path::Path;
+use std::time::Instant;
+
+use limitmesh::measure::{Hausdorff, SamplingOptions, distances_to, hausdorff};
+use limitmesh::mesh::BuildOptions;
+use limitmesh::{Mesh, Triangles};
+use limitmesh_io::{Output, WriteOptions};
+
+use crate::arguments::MeasureArguments;
+use crate::failure::{Outcome, usage};
+use crate::input::{self, Input};
+use crate::interrupt;
+use crate::output;
+use crate::progress::Progress;
+use crate::reference::{self, USUAL_LEVELS};
+use crate::report::measurement::MeasureSeconds;
+use crate::report::{LimitReport, MeasureReport, SurfaceReport, VERSION};
+use crate::words::{counted, number, point, table, thousands};
+
+/// Measures one surface against another.
+pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::Result<Outcome> {
+    if let Some(path) = &arguments.heatmap {
+        check_heatmap(path)?;
+    }
+    let start = Instant::now();
+    let surface = input::load(&arguments.surface, &BuildOptions::default(), progress)?;
+    let (reference, reference_report) = load_reference(arguments, progress)?;
+    let prepare = start.elapsed().as_secs_f64();
+
+    let start = Instant::now();
+    let (a, b) = (surface.mesh.as_triangles(), reference.as_triangles());
+    progress.stage(format!(
+        "measuring {} against {}",
+        counted(a.triangles.len(), "triangle", "triangles"),
+        counted(b.triangles.len(), "triangle", "triangles")
+    ));
+    let measured = hausdorff(a, b, &SamplingOptions::default().samples(arguments.samples))?;
+    let report = MeasureReport {
+        version: VERSION,
+        surface: describe(&surface),
+        reference: reference_report,
+        hausdorff: (&measured).into(),
+        seconds: MeasureSeconds { prepare, measure: start.elapsed().as_secs_f64() },
+    };
+    if let Some(path) = &arguments.heatmap {
+        progress.stage(format!("writing {}", path.display()));
+        write_heatmap(path, a, b)?;
+    }
+    progress.clear();
+    if arguments.json {
+        output::print(&output::json(&report)?)?;
+    } else {
+        output::print(&in_words(&report, &measured))?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// The second surface: a mesh as it is, or one that stands for a limit surface.
+fn load_reference(
+    arguments: &MeasureArguments,
+    progress: &Progress,
+) -> anyhow::Result<(Mesh, SurfaceReport)> {
+    let build = BuildOptions::default();
+    let Some(control) = &arguments.limit_of else {
+        let name = arguments.reference.as_deref().unwrap_or_default();
+        let input = input::load(name, &build, progress)?;
+        let report = describe(&input);
+        return Ok((input.mesh, report));
+    };
+    let input = input::load(control, &build, progress)?;
+    let levels = arguments
+        .reference_levels
+        .unwrap_or_else(|| reference::affordable_levels(input.mesh.face_count(), USUAL_LEVELS));
+    progress.stage(format!("refining {control} by {levels} levels to stand for its limit surface"));
+    let scheme = arguments.scheme.unwrap_or_default();
+    let reference = reference::at_level(&input.mesh, scheme.scheme(), levels)?;
+    let limit =
+        LimitReport { scheme, levels: reference.levels, chosen: arguments.reference_levels.is_none() };
+    let report = SurfaceReport {
+        vertices: reference.mesh.vertex_count(),
+        triangles: reference.mesh.face_count(),
+        limit: Some(limit),
+        ..describe(&input)
+    };
+    Ok((reference.mesh, report))
+}
+
+fn describe(input: &Input) -> SurfaceReport {
+    SurfaceReport {
+        path: input.name.clone(),
+        vertices: input.mesh.vertex_count(),
+        triangles: input.mesh.face_count(),
+        diagnosis: (&input.diagnosis).into(),
+        limit: None,
+    }
+}
+
+fn in_words(report: &MeasureReport, measured: &Hausdorff) -> String {
+    let diagonal = measured.reference_diagonal;
+    let percent = |length: f64| {
+        if diagonal > 0.0 { format!("{} %", number(100.0 * length / diagonal)) } else { "-".to_owned() }
+    };
+    let mut text = format!("from  {}\n", surface_in_words(&report.surface));
+    text.push_str(&format!("to    {}\n\n", surface_in_words(&report.reference)));
+    text.push_str(&format!(
+        "symmetric Hausdorff distance  {}  ({} of the reference's diagonal {})\n",
+        number(measured.symmetric()),
+        percent(measured.symmetric()),
+        number(diagonal)
+    ));
+    text.push_str(&format!(
+        "sampled: a lower bound, from {} samples of the first surface and {} of the second\n\n",
+        thousands(measured.forward.samples),
+        thousands(measured.backward.samples)
+    ));
+    text.push_str(&directions(measured, percent));
+    text
+}
+
+/// A table of both directions, and where each maximum lies.
+fn directions(measured: &Hausdorff, percent: impl Fn(f64) -> String) -> String {
+    let cells = |words: [&str; 4]| words.map(str::to_owned).to_vec();
+    let mut rows = vec![cells(["", "max", "mean", "RMS"])];
+    let mut places = String::new();
+    for (name, one) in [("forward", &measured.forward), ("backward", &measured.backward)] {
+        let values = [one.max, one.mean, one.rms];
+        rows.push([vec![name.to_owned()], values.map(number).to_vec()].concat());
+        rows.push([vec![String::new()], values.map(&percent).to_vec()].concat());
+        places.push_str(&format!("{name} maximum at {}, closest point {}\n", point(one.at), point(one.to)));
+    }
+    format!("{}\n{places}", table(&rows))
+}
+
+fn surface_in_words(surface: &SurfaceReport) -> String {
+    let triangles = counted(surface.triangles, "triangle", "triangles");
+    let mut text = match &surface.limit {
+        None => format!("{}: {triangles}", surface.path),
+        Some(limit) => {
+            let chosen = if limit.chosen { ", chosen to suit its size" } else { "" };
+            let levels = counted(limit.levels, "level", "levels");
+            format!("limit surface of {}: {triangles} ({levels}{chosen})", surface.path)
+        }
+    };
+    if !surface.diagnosis.clean {
+        text.push_str("; repaired first");
+    }
+    text
+}
+
+/// Writes the surface with the distance of each vertex to the reference.
+fn write_heatmap(path: &Path, surface: Triangles<'_>, reference: Triangles<'_>) -> anyhow::Result<()> {
+    let distances = distances_to(surface.positions, reference)?;
+    let output = Output::new(surface).quality(&distances);
+    interrupt::uninterrupted(|| limitmesh_io::write(path, &output, &WriteOptions::default()))?;
+    Ok(())
+}
+
+fn check_heatmap(path: &Path) -> anyhow::Result<()> {
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ply")) {
+        return output::check_folder(path);
+    }
+    usage(format!("{}: a heat map is a .ply file", path.display()))
+}

@@ -1,0 +1,9 @@
+//! The commands, one file each: arguments in, files and text out.
+
+pub(crate) mod compare;
+pub(crate) mod info;
+pub(crate) mod measure;
+pub(crate) mod models;
+mod picture;
+pub(crate) mod refine;
+pub(crate) mod render;

@@ -1,0 +1,28 @@
+//! `limitmesh models`: the built-in models and what each is.
+
+use limitmesh::models;
+use serde::Serialize;
+
+use crate::arguments::ModelsArguments;
+use crate::failure::Outcome;
+use crate::output;
+
+#[derive(Serialize)]
+struct ModelEntry {
+    name: &'static str,
+    about: &'static str,
+}
+
+/// Lists the built-in models.
+pub(crate) fn run(arguments: &ModelsArguments) -> anyhow::Result<Outcome> {
+    let entries = models::all().iter().map(|model| ModelEntry { name: model.name, about: model.about });
+    if arguments.json {
+        output::print(&output::json(&entries.collect::<Vec<_>>())?)?;
+    } else {
+        let width = entries.clone().map(|entry| entry.name.len()).max().unwrap_or(0);
+        let lines: String =
+            entries.map(|ModelEntry { name, about }| format!("builtin:{name:<width$}  {about}\n")).collect();
+        output::print(&lines)?;
+    }
+    Ok(Outcome::Done)
+}

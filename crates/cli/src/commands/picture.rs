@@ -1,0 +1,40 @@
+//! Drawing a surface to a PNG file, for every command that does.
+
+use std::path::Path;
+
+use limitmesh::Triangles;
+use limitmesh_render::{Camera, Style, ViewDirection, render};
+
+use crate::arguments::Size;
+use crate::failure::usage;
+use crate::output;
+
+/// Size of pictures that are drawn beside other work.
+pub(super) const SIZE: Size = Size { width: 1200, height: 900 };
+
+/// Refuses a name that is no PNG file's, before any work is done.
+pub(super) fn check_name(path: &Path) -> anyhow::Result<()> {
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        return output::check_folder(path);
+    }
+    usage(format!("{}: pictures are PNG files, expected a name that ends with .png", path.display()))
+}
+
+/// The view of a picture: along a direction of sight, or from the front, a little from the side and above.
+pub(super) fn view_direction(sight: Option<[f64; 3]>) -> ViewDirection {
+    sight.map_or_else(ViewDirection::default, ViewDirection::along)
+}
+
+/// Draws a surface and writes the picture.
+pub(super) fn draw(
+    path: &Path,
+    surface: Triangles<'_>,
+    normals: Option<&[[f64; 3]]>,
+    view: ViewDirection,
+    style: &Style,
+    Size { width, height }: Size,
+) -> anyhow::Result<()> {
+    let camera = Camera::fit_tightly(surface, view, width, height)?;
+    let image = render(surface, normals, None, &camera, style, width, height)?;
+    output::write_file(path, &image.encode_png()?)
+}

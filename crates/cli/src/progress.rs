@@ -1,0 +1,52 @@
+//! What the program says on standard error while it works: a spinner on a terminal, and notes.
+//!
+//! `--quiet` silences both; errors are not printed here.
+
+use std::io::{IsTerminal, Write};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// How often the spinner turns.
+const TICK: Duration = Duration::from_millis(100);
+
+/// The program's voice.
+pub(crate) struct Progress {
+    spinner: ProgressBar,
+    quiet: bool,
+    moving: bool,
+}
+
+impl Progress {
+    /// Silent if `quiet`; without the spinner if standard error is no terminal.
+    pub(crate) fn new(quiet: bool) -> Self {
+        let moving = !quiet && std::io::stderr().is_terminal();
+        let target = if moving { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let spinner = ProgressBar::with_draw_target(None, target);
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
+            spinner.set_style(style);
+        }
+        Self { spinner, quiet, moving }
+    }
+
+    /// Shows what is being done now.
+    pub(crate) fn stage(&self, what: impl Into<String>) {
+        if self.moving {
+            self.spinner.set_message(what.into());
+            self.spinner.enable_steady_tick(TICK);
+        }
+    }
+
+    /// Prints a line that stays, above the spinner.
+    pub(crate) fn note(&self, line: impl AsRef<str>) {
+        if !self.quiet {
+            // Nobody is left to tell if standard error is closed.
+            self.spinner.suspend(|| writeln!(std::io::stderr(), "{}", line.as_ref()).unwrap_or_default());
+        }
+    }
+
+    /// Takes the spinner away.
+    pub(crate) fn clear(&self) {
+        self.spinner.finish_and_clear();
+    }
+}

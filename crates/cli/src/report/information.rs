@@ -1,0 +1,64 @@
+//! The report of `limitmesh info`.
+
+use serde::Serialize;
+
+use super::InputReport;
+use super::diagnosis::DiagnosisReport;
+
+/// All of it.
+#[derive(Debug, Serialize)]
+pub(crate) struct InformationReport {
+    pub(crate) version: &'static str,
+    pub(crate) input: InputReport,
+    /// Polygons in the file by their number of corners, ascending.
+    pub(crate) polygons: Vec<PolygonCount>,
+    pub(crate) tags: TagCounts,
+    pub(crate) diagnosis: DiagnosisReport,
+    pub(crate) mesh: MeshInformation,
+}
+
+/// How many polygons have so many corners.
+#[derive(Debug, Serialize)]
+pub(crate) struct PolygonCount {
+    pub(crate) corners: usize,
+    pub(crate) count: usize,
+}
+
+/// Tags in the file.
+#[derive(Debug, Serialize)]
+pub(crate) struct TagCounts {
+    pub(crate) creases: usize,
+    pub(crate) corners: usize,
+}
+
+/// The control mesh that refinement would start from.
+#[derive(Debug, Serialize)]
+pub(crate) struct MeshInformation {
+    pub(crate) vertices: usize,
+    pub(crate) edges: usize,
+    pub(crate) triangles: usize,
+    pub(crate) components: usize,
+    /// All components' together.
+    pub(crate) genus: i64,
+    pub(crate) euler_characteristic: i64,
+    pub(crate) boundary_loops: usize,
+    pub(crate) boundary_edges: usize,
+    pub(crate) watertight: bool,
+    pub(crate) min_valence: u32,
+    pub(crate) max_valence: u32,
+    /// Vertices with another valence than 6, or 4 on a boundary.
+    pub(crate) irregular_vertices: usize,
+    pub(crate) bounding_box: BoundingBox,
+    pub(crate) min_angle_degrees: f64,
+    pub(crate) mean_min_angle_degrees: f64,
+    /// Triangles with a least angle in [0°, 5°), [5°, 10°) … [55°, 60°].
+    pub(crate) angle_histogram: [usize; 12],
+}
+
+/// Extent along the axes, in the mesh's units.
+#[derive(Debug, Serialize)]
+pub(crate) struct BoundingBox {
+    pub(crate) low: [f64; 3],
+    pub(crate) high: [f64; 3],
+    pub(crate) diagonal: f64,
+}

@@ -1,0 +1,33 @@
+//! The JSON contract: what reports and `--json` output hold. Names of fields stay as they are once released;
+//! all numbers are finite, angles in degrees, times in seconds.
+
+mod comparison;
+pub(crate) mod diagnosis;
+pub(crate) mod information;
+pub(crate) mod measurement;
+pub(crate) mod refinement;
+
+pub(crate) use comparison::ComparedMethod;
+pub(crate) use information::{InformationReport, MeshInformation};
+pub(crate) use measurement::{LimitReport, MeasureReport, SurfaceReport};
+pub(crate) use refinement::{
+    OutputReport, ParametersReport, RefineReport, SecondsReport, StepEntry, ViewReport,
+};
+
+use serde::Serialize;
+
+/// The program's version, in every report.
+pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// What was read.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct InputReport {
+    /// As given on the command line.
+    pub(crate) path: String,
+    /// `obj`, `ply`, `stl`, `off` or `builtin`.
+    pub(crate) format: &'static str,
+    /// Positions in the file.
+    pub(crate) vertices: usize,
+    /// Polygons in the file.
+    pub(crate) faces: usize,
+}

@@ -1,0 +1,105 @@
+//! Numbers and tables in words for people: thousands separated, counts with their noun, columns aligned.
+
+/// `1234567` as `1,234,567`.
+pub(crate) fn thousands(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// `1 face`, `2,000 faces`; the plural is given because `vertices` has no rule.
+pub(crate) fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{} {}", thousands(n), if n == 1 { one } else { many })
+}
+
+/// Six significant digits, without a tail of zeros: enough to compare, short enough to read.
+pub(crate) fn number(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-4..1e9).contains(&x.abs()) {
+        return format!("{x:.5e}");
+    }
+    let decimals = (5 - x.abs().log10().floor() as i64).clamp(0, 9) as usize;
+    let text = format!("{x:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// `(x, y, z)`.
+pub(crate) fn point(p: [f64; 3]) -> String {
+    format!("({}, {}, {})", number(p[0]), number(p[1]), number(p[2]))
+}
+
+/// Seconds with a unit that suits them.
+pub(crate) fn seconds(s: f64) -> String {
+    if s < 0.001 {
+        format!("{:.0} µs", s * 1e6)
+    } else if s < 1.0 {
+        format!("{:.1} ms", s * 1e3)
+    } else {
+        format!("{s:.2} s")
+    }
+}
+
+/// Rows of cells as lines: the first column to the left, the others to the right, two spaces between.
+pub(crate) fn table(rows: &[Vec<String>]) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width =
+        |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|c| c.chars().count()).max();
+    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
+    let mut text = String::new();
+    for row in rows {
+        let mut line = String::new();
+        for (column, (cell, &width)) in row.iter().zip(&widths).enumerate() {
+            if column == 0 {
+                line.push_str(&format!("{cell:<width$}"));
+            } else {
+                line.push_str(&format!("  {cell:>width$}"));
+            }
+        }
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_are_separated() {
+        let pairs = [(0, "0"), (999, "999"), (1000, "1,000"), (1_234_567, "1,234,567"), (100_000, "100,000")];
+        for (n, text) in pairs {
+            assert_eq!(thousands(n), text);
+        }
+    }
+
+    #[test]
+    fn numbers_keep_six_digits_and_lose_zeros() {
+        let pairs = [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-0.5, "-0.5"),
+            (1234.5678, "1234.57"),
+            (0.001_234_567, "0.00123457"),
+            (120.0, "120"),
+            (1e-9, "1.00000e-9"),
+        ];
+        for (x, text) in pairs {
+            assert_eq!(number(x), text);
+        }
+    }
+
+    #[test]
+    fn columns_line_up() {
+        let rows = [vec!["a".to_owned(), "10".to_owned()], vec!["long".to_owned(), "7".to_owned()]];
+        assert_eq!(table(&rows), "a     10\nlong   7\n");
+    }
+}
