@@ -1,6 +1,6 @@
 //! Three stylised animals, closed and of genus 0: a rabbit, a teddy bear, a shark.
 
-use super::sculpt::field::{at, ball, difference, ellipsoid, fold, limb, rod, union};
+use super::sculpt::field::{at, ball, blade, difference, ellipsoid, fold, limb, rod, union};
 use super::sculpt::{Grid, Surface, sculpt};
 use crate::vector::DVec3;
 
@@ -84,7 +84,7 @@ fn teddy_field(p: DVec3) -> f64 {
 
 /// A shark that swims to the front, 700 triangles.
 pub(super) fn shark() -> Surface {
-    let grid = Grid::new([-0.45, -1.15], [0.72, 0.62, 1.05], 0.033);
+    let grid = Grid::new([-0.45, -1.25], [0.8, 0.7, 1.1], 0.03);
     sculpt(&shark_field, &grid, 700)
 }
 
@@ -94,19 +94,19 @@ fn shark_field(p: DVec3) -> f64 {
     let snout = ellipsoid(p, at(0.0, 0.04, 0.75), at(0.13, 0.1, 0.26));
     let stem = rod(p, at(0.0, 0.0, -0.2), 0.16, at(0.0, 0.04, -0.88), 0.05);
     let mouth = ellipsoid(p, at(0.0, -0.17, 0.72), at(0.13, 0.07, 0.1));
-    // Fins are limbs squeezed across their plane.
-    let upright = DVec3::new(p.x * 1.7, p.y, p.z);
-    let dorsal = limb(upright, &[(at(0.0, 0.14, 0.1), 0.2), (at(0.0, 0.5, -0.16), 0.05)], 0.05);
-    let second = limb(upright, &[(at(0.0, 0.08, -0.5), 0.08), (at(0.0, 0.21, -0.6), 0.035)], 0.02);
-    let tail = limb(
-        upright,
-        &[(at(0.0, 0.54, -1.06), 0.05), (at(0.0, 0.06, -0.84), 0.105), (at(0.0, -0.26, -1.0), 0.05)],
-        0.03,
-    );
-    let level = DVec3::new(p.x, (p.y + 0.12 + 0.25 * p.x) * 1.7, p.z);
-    let pectoral = limb(level, &[(at(0.12, 0.0, 0.3), 0.15), (at(0.62, 0.0, 0.0), 0.05)], 0.05);
-    let pelvic = limb(level, &[(at(0.07, 0.0, -0.32), 0.08), (at(0.24, 0.0, -0.46), 0.035)], 0.02);
+    // Fins are flat blades: those in the middle by (z, y), the paired ones by (x, z) on a slope.
+    let upright = [p.z, p.y, p.x];
+    let dorsal = blade(upright, &[[0.32, 0.1], [-0.2, 0.62], [-0.24, 0.56], [-0.12, 0.1]], 0.05, 0.05);
+    let second = blade(upright, &[[-0.4, 0.02], [-0.66, 0.27], [-0.62, 0.02]], 0.04, 0.04);
+    let upper_tail = blade(upright, &[[-0.7, 0.0], [-1.16, 0.66], [-1.2, 0.6], [-0.95, -0.02]], 0.045, 0.05);
+    let lower_tail =
+        blade(upright, &[[-0.76, 0.12], [-0.93, 0.08], [-1.1, -0.34], [-1.06, -0.38]], 0.045, 0.05);
+    let slope = [p.x, p.z, p.y + 0.08 + 0.3 * p.x];
+    let pectoral = blade(slope, &[[0.05, 0.12], [0.72, -0.17], [0.74, -0.1], [0.05, 0.47]], 0.045, 0.05);
+    let pelvic = blade(slope, &[[0.0, -0.45], [0.32, -0.58], [0.0, -0.22]], 0.04, 0.04);
     let mut body = union(union(trunk, snout, 0.15), stem, 0.16);
     body = difference(body, mouth, 0.04);
-    [dorsal, second, tail, pectoral, pelvic].iter().fold(body, |body, &fin| union(body, 0.5 * fin, 0.05))
+    [dorsal, second, union(upper_tail, lower_tail, 0.04), pectoral, pelvic]
+        .iter()
+        .fold(body, |body, &fin| union(body, fin, 0.06))
 }

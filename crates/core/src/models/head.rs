@@ -10,37 +10,37 @@ const POINTS: [(char, [f64; 3]); 46] = [
     // The profile, from the neck's front over face and crown to the neck's back.
     ('A', [0.0, -0.98, 0.06]),
     ('B', [0.0, -0.62, 0.14]),
-    ('C', [0.0, -0.53, 0.47]),
-    ('D', [0.0, -0.31, 0.53]),
-    ('E', [0.0, -0.18, 0.57]),
-    ('F', [0.0, -0.08, 0.56]),
-    ('G', [0.0, 0.0, 0.72]),
-    ('H', [0.0, 0.26, 0.53]),
-    ('I', [0.0, 0.37, 0.57]),
+    ('C', [0.0, -0.52, 0.5]),
+    ('U', [0.0, -0.29, 0.575]),
+    ('D', [0.0, -0.235, 0.545]),
+    ('E', [0.0, -0.185, 0.585]),
+    ('F', [0.0, -0.075, 0.57]),
+    ('G', [0.0, 0.0, 0.69]),
+    ('H', [0.0, 0.26, 0.545]),
+    ('I', [0.0, 0.38, 0.565]),
     ('J', [0.0, 0.65, 0.5]),
-    ('K', [0.0, 0.92, 0.22]),
-    ('L', [0.0, 0.95, -0.22]),
+    ('K', [0.0, 0.935, 0.2]),
+    ('L', [0.0, 0.955, -0.2]),
     ('M', [0.0, 0.66, -0.6]),
     ('N', [0.0, 0.18, -0.68]),
     ('O', [0.0, -0.3, -0.46]),
     ('P', [0.0, -0.98, -0.46]),
     // The rim of the neck.
-    ('Q', [0.22, -0.98, 0.0]),
-    ('R', [0.34, -0.98, -0.18]),
-    ('S', [0.22, -0.98, -0.38]),
+    ('Q', [0.29, -0.98, -0.04]),
+    ('R', [0.34, -0.98, -0.27]),
     // Nose: wing and flank.
-    ('a', [0.12, -0.05, 0.54]),
+    ('a', [0.12, -0.05, 0.545]),
     ('b', [0.08, 0.12, 0.55]),
     // Eye: inner corner, ball, outer corner; brow: middle, end.
-    ('c', [0.1, 0.22, 0.45]),
-    ('d', [0.22, 0.2, 0.44]),
+    ('c', [0.11, 0.22, 0.455]),
+    ('d', [0.23, 0.21, 0.46]),
     ('e', [0.37, 0.21, 0.36]),
-    ('f', [0.2, 0.35, 0.54]),
+    ('f', [0.22, 0.36, 0.525]),
     ('g', [0.41, 0.33, 0.39]),
     // Cheekbone: below the eye, towards the ear; mouth corner, cheek, chin, jaw.
     ('h', [0.25, 0.05, 0.49]),
     ('i', [0.44, 0.06, 0.3]),
-    ('j', [0.15, -0.23, 0.48]),
+    ('j', [0.165, -0.235, 0.465]),
     ('k', [0.34, -0.2, 0.33]),
     ('l', [0.15, -0.5, 0.43]),
     ('m', [0.41, -0.28, 0.03]),
@@ -65,10 +65,10 @@ const POINTS: [(char, [f64; 3]); 46] = [
 
 /// The 71 triangles of the half by the letters of their corners.
 const TRIANGLES: &str = "\
-    FaG Gab bHG cHb hcb hba fIH fHc fcd gfd deg dhe dch ehi eig qgi aFE aEj \
-    ajh ihk khj jED jDl lDC jnk jln BlC nlo olB ikm msi ris qir nmk nom moT \
-    QBA QoB RoQ ToR STR OTS OSP mTs rsu rut rtv tuv svu sTv vTy yTO NyO vyx \
-    vxr qrx wqx IpJ fpI gpf qpg pKJ wKp wpq wLK zLw zML xzw xyz zyM MyN";
+    FaG Gab bHG cHb hcb hba Icf IHc fcd gfd deg dhe dch ehi eig qgi aFE aEj \
+    ajh ihk khj jED nkj jln lCB lon lBo ikm ims isr rqi mkn mno oTm QBA oBQ \
+    oQR oRT smT sur utr tvr uvt svu sTv Tyv TOy yON yxv rvx rxq xwq IpJ fpI \
+    gpf qpg pKJ wKp wpq wLK wzL zML xzw yzx yMz yNM TRO ORP jDU jUl lUC";
 
 /// The head, looking to the front.
 pub(super) fn head() -> Surface {

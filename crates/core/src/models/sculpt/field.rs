@@ -41,6 +41,25 @@ pub(in crate::models) fn limb(p: DVec3, joints: &[(DVec3, f64)], blend: f64) -> 
     })
 }
 
+/// A flat blade: the convex polygon with `corners` (counter-clockwise, in the coordinates `u`, `v`), as thick as
+/// twice `half_thickness` across, its edges rounded by `blend`.
+pub(in crate::models) fn blade(
+    [u, v, across]: [f64; 3],
+    corners: &[[f64; 2]],
+    half_thickness: f64,
+    blend: f64,
+) -> f64 {
+    let mut value = across.abs() - half_thickness;
+    for (i, [u0, v0]) in corners.iter().enumerate() {
+        let [u1, v1] = corners[(i + 1) % corners.len()];
+        let (along_u, along_v) = (u1 - u0, v1 - v0);
+        let length = (along_u * along_u + along_v * along_v).sqrt();
+        let outside = ((u - u0) * along_v - (v - v0) * along_u) / length;
+        value = intersection(value, outside, blend);
+    }
+    value
+}
+
 /// Smooth union: where the two values differ by less than `blend`, a fillet (quadratic polynomial minimum).
 pub(in crate::models) fn union(a: f64, b: f64, blend: f64) -> f64 {
     let low = a.min(b);

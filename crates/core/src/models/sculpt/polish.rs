@@ -3,6 +3,10 @@
 use super::{Field, Surface, collapse::shape};
 use crate::vector::DVec3;
 
+/// Below this least cosine between the body's normal and those of the faces around it, a vertex marks a tip or a
+/// ridge and stays.
+const TIP: f64 = 0.35;
+
 /// Rounds of flipping and sliding; more change nothing visible.
 const ROUNDS: usize = 6;
 
@@ -74,14 +78,25 @@ fn flip_edges(half: &mut Surface) {
 /// Moves each vertex towards the mean of its neighbours within the surface, then back onto the body.
 fn slide(half: &mut Surface, field: Field<'_>) {
     let neighbours = half.neighbours();
+    let faces = half.faces_at_vertices();
     let old = half.positions.clone();
+    let normals: Vec<DVec3> = half
+        .triangles
+        .iter()
+        .map(|t| {
+            let [a, b, c] = t.map(|v| old[v as usize]);
+            (b - a).cross(c - a).normalize_or_zero()
+        })
+        .collect();
     let step = 1e-4 * old.iter().fold(0.0_f64, |most, p| most.max(p.abs().max_element()));
     for (v, (all, boundary)) in neighbours.iter().enumerate() {
         // A vertex in the mirror plane slides along the plane, between its neighbours there.
         let list = if boundary.is_empty() { all } else { boundary };
         let mean = list.iter().map(|&u| old[u as usize]).sum::<DVec3>() / list.len() as f64;
         let normal = gradient(field, old[v], step).normalize_or_zero();
-        let mut pull = (mean - old[v]) * SLIDE;
+        let flatness =
+            faces[v].iter().fold(1.0_f64, |least, &face| least.min(normals[face as usize].dot(normal)));
+        let mut pull = (mean - old[v]) * (SLIDE * ((flatness - TIP) / (1.0 - TIP)).max(0.0));
         pull -= normal * pull.dot(normal);
         let mut p = old[v] + pull;
         if !boundary.is_empty() {
