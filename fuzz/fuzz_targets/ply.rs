@@ -1,0 +1,7 @@
+//! Any bytes as a PLY file.
+
+#![no_main]
+
+use limitmesh_io::Format;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| limitmesh_fuzz::read_and_build(bytes, Format::Ply));
