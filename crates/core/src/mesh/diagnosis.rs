@@ -53,8 +53,9 @@ pub struct Diagnosis {
     pub welded_vertices: Finding,
     /// Faces with fewer than three corners, or whose corners fell together.
     pub collapsed_faces: Finding,
-    /// Polygons that cross themselves, cut into a fan of triangles for want of anything better.
-    pub crossed_polygons: Finding,
+    /// Polygons so far from flat that they cross themselves seen along their normal (no defect): their
+    /// triangles bridge them, but no choice of diagonals is free of folds.
+    pub twisted_polygons: Finding,
     /// Faces with three different corners on one line.
     pub zero_area_faces: Finding,
     /// Faces that repeat an earlier one, whichever way round.
@@ -98,11 +99,11 @@ const WORDINGS: [Wording; 12] = [
     wording("welded_vertices", false, "vertex", "vertices", "welded to an earlier one"),
     wording("collapsed_faces", true, "collapsed face", "collapsed faces", "dropped"),
     wording(
-        "crossed_polygons",
-        true,
-        "polygon that crosses itself",
-        "polygons that cross themselves",
-        "cut into a fan",
+        "twisted_polygons",
+        false,
+        "polygon that crosses itself seen along its normal",
+        "polygons that cross themselves seen along their normals",
+        "triangulated as it may be",
     ),
     wording("zero_area_faces", true, "face of zero area", "faces of zero area", "removed"),
     wording("repeated_faces", true, "repeated face", "repeated faces", "dropped"),
@@ -132,7 +133,7 @@ impl Diagnosis {
             &self.polygons,
             &self.welded_vertices,
             &self.collapsed_faces,
-            &self.crossed_polygons,
+            &self.twisted_polygons,
             &self.zero_area_faces,
             &self.repeated_faces,
             &self.isolated_vertices,
@@ -149,7 +150,8 @@ impl Diagnosis {
         WORDINGS.iter().zip(self.in_order()).map(|(wording, finding)| (wording.name, finding))
     }
 
-    /// Whether the input had no defect: nothing was done but to triangulate polygons and to weld vertices.
+    /// Whether the input had no defect: nothing was done but to triangulate polygons and to weld vertices. This is what
+    /// [`strict`](super::BuildOptions::strict) asks for.
     pub fn is_clean(&self) -> bool {
         WORDINGS.iter().zip(self.in_order()).all(|(wording, finding)| !wording.defect || finding.is_empty())
     }

@@ -154,15 +154,18 @@ impl Topology {
 
     /// A half-edge along the edge between `a` and `b`, whichever way it runs.
     pub fn edge_between(&self, a: VertexId, b: VertexId) -> Option<HalfEdgeId> {
-        self.outgoing_ring(a).find_map(|h| {
-            if self.target(h) == b {
+        let along = |h: HalfEdgeId, to: VertexId| {
+            if self.target(h) == to {
                 Some(h)
-            } else if self.opposite(h) == b {
+            } else if self.opposite(h) == to {
                 Some(h.previous())
             } else {
                 None
             }
-        })
+        };
+        // Round both ends at once, so that the lower valence decides the time.
+        let mut around_both = self.outgoing_ring(a).zip(self.outgoing_ring(b));
+        around_both.find_map(|(from_a, from_b)| along(from_a, b).or_else(|| along(from_b, a)))
     }
 
     /// Vertices − edges + faces.
@@ -210,7 +213,13 @@ impl Topology {
                 return broken(v.to_string(), "its outgoing half-edge leaves it");
             }
         }
-        match_twins(&self.triangles, self.vertex_count())?;
+        let twins = match_twins(&self.triangles, self.vertex_count())?;
+        if let Some(h) = (0..twins.len()).find(|&h| twins[h] != self.twins[h]) {
+            return broken(
+                HalfEdgeId(h as u32).to_string(),
+                "half-edges between the same vertices are twins",
+            );
+        }
         self.check_fans()
     }
 
@@ -236,19 +245,21 @@ impl Topology {
 
     /// Number of separate fans of faces at `vertex`.
     fn count_fans(&self, vertex: VertexId) -> usize {
-        let mut left: Vec<HalfEdgeId> = self.half_edges().filter(|&h| self.origin(h) == vertex).collect();
+        let at_vertex: Vec<HalfEdgeId> = self.half_edges().filter(|&h| self.origin(h) == vertex).collect();
+        let mut met = vec![false; at_vertex.len()];
         let mut fans = 0;
-        while let Some(start) = left.pop() {
-            fans += 1;
-            let mut pending = vec![start];
-            while let Some(h) = pending.pop() {
-                let neighbours = [self.twin(h.previous()), self.twin(h).map(HalfEdgeId::next)];
-                for next in neighbours.into_iter().flatten() {
-                    if let Some(i) = left.iter().position(|&x| x == next) {
-                        left.swap_remove(i);
-                        pending.push(next);
-                    }
+        for i in 0..at_vertex.len() {
+            fans += usize::from(!met[i]);
+            let mut pending = vec![i];
+            while let Some(j) = pending.pop() {
+                if core::mem::replace(&mut met[j], true) {
+                    continue;
                 }
+                let h = at_vertex[j];
+                let neighbours = [self.twin(h.previous()), self.twin(h).map(HalfEdgeId::next)];
+                // The half-edges were collected in ascending order.
+                let places = neighbours.into_iter().flatten().map(|n| at_vertex.binary_search(&n));
+                pending.extend(places.flatten());
             }
         }
         fans
@@ -370,3 +381,6 @@ impl Topology {
         (0..self.triangles.len() as u32).map(FaceId)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -8,6 +8,7 @@ mod cut;
 mod orient;
 mod repeated;
 mod retag;
+mod sweep;
 #[cfg(test)]
 mod tests;
 mod triangulate;

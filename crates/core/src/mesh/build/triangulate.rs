@@ -2,16 +2,27 @@
 //!
 //! Takes the soup's polygons over welded vertices; gives triangles and the input face of each. A quad is cut
 //! along a diagonal that lies inside it, the shorter one if both do. More corners are cut by ears in the
-//! polygon's best-fit plane (through Newell's normal), with the diagonals then flipped until they are Delaunay.
-//! Corners in the middle of a straight side are kept, because the neighbouring face may have them too.
+//! polygon's best-fit plane (through Newell's normal), with the diagonals then flipped until they are Delaunay;
+//! very many corners by a plane sweep. Corners in the middle of a straight side are kept, because the
+//! neighbouring face may have them too. A polygon that crosses itself seen along its normal is twisted in
+//! space, or worse: it gets the triangulation of least area.
 
 use earcut::{Earcut, Refiner};
 
 use super::super::topology::MAX_FACES;
 use super::super::{Diagnosis, MeshError, PolygonSoup};
+use super::sweep;
 use glam::Vec3Swizzles;
 
 use crate::vector::{DVec3, unit_or_zero, vector};
+
+/// Up to this many corners ears are cut, whose time may grow with their square or worse: 7 milliseconds for a
+/// thousand corners that cross each other at random.
+const MOST_EARS: usize = 1000;
+
+/// Up to this many corners a twisted polygon gets its triangulation of least area, in time that grows with the
+/// cube of their number.
+const MOST_LEAST_AREA: usize = 64;
 
 /// Triangles, and which input face each is from.
 #[derive(Default)]
@@ -65,7 +76,7 @@ pub(super) fn triangulate(
             continue;
         }
         if !cutter.cut(&soup.positions, &polygon, |triangle| faces.push(triangle, input)) {
-            diagnosis.crossed_polygons.add(input);
+            diagnosis.twisted_polygons.add(input);
         }
     }
     Ok(faces)
@@ -111,7 +122,7 @@ struct Cutter {
 }
 
 impl Cutter {
-    /// Emits the polygon's triangles; false if it could only be cut into a fan because it crosses itself.
+    /// Emits the polygon's triangles; false if it crosses itself in its best-fit plane.
     fn cut(&mut self, positions: &[[f64; 3]], polygon: &[u32], mut emit: impl FnMut([u32; 3])) -> bool {
         match *polygon {
             [a, b, c] => {
@@ -136,23 +147,68 @@ impl Cutter {
     /// Leaves triangles over the polygon's corners in `indices`.
     fn cut_polygon(&mut self, positions: &[[f64; 3]], polygon: &[u32]) -> bool {
         let corners = polygon.len() as u32;
-        let Some(normal) = self.flatten(positions, polygon) else {
+        if self.flatten(positions, polygon).is_none() {
             self.cut_fan(corners);
             return (1..polygon.len() - 1)
                 .all(|i| is_flat(positions, [polygon[0], polygon[i], polygon[i + 1]]));
-        };
-        debug_assert!(normal.is_finite());
+        }
+        if polygon.len() > MOST_EARS {
+            self.indices.clear();
+            if sweep::triangulate(&self.plane, &mut self.indices).is_some() && self.is_proper(corners) {
+                return true;
+            }
+            self.cut_fan(corners);
+            return false;
+        }
         self.earcut.earcut_slice(&self.plane, &[], &mut self.indices);
         self.orient();
         if self.indices.len() / 3 < polygon.len() - 2 {
             self.restore_straight_corners(corners);
         }
-        if !self.is_proper(corners) {
-            self.cut_fan(corners);
-            return false;
+        if self.is_proper(corners) {
+            self.refiner.refine(&mut self.indices, &self.plane);
+            return true;
         }
-        self.refiner.refine(&mut self.indices, &self.plane);
-        true
+        if polygon.len() <= MOST_LEAST_AREA {
+            self.cut_least_area(positions, polygon);
+        } else {
+            self.cut_fan(corners);
+        }
+        false
+    }
+
+    /// The triangulation of least area, by dynamic programming over the pairs of corners (G. T. Klincsek,
+    /// "Minimal triangulations of polygonal domains", 1980): it bridges a twisted polygon without folds.
+    fn cut_least_area(&mut self, positions: &[[f64; 3]], polygon: &[u32]) {
+        let n = polygon.len();
+        let (origin, scale) = local_frame(positions, polygon);
+        let p: Vec<DVec3> =
+            polygon.iter().map(|&v| (vector(positions[v as usize]) - origin) * scale).collect();
+        // Row i, column k: least area of the corners from i to k, and the apex on the side from i to k.
+        let mut least = vec![(0.0, 0); n * n];
+        for length in 2..n {
+            for i in 0..n - length {
+                let k = i + length;
+                let mut best = (f64::INFINITY, i + 1);
+                for j in i + 1..k {
+                    let own = (p[j] - p[i]).cross(p[k] - p[i]).length();
+                    let area = least[i * n + j].0 + least[j * n + k].0 + own;
+                    if area < best.0 {
+                        best = (area, j);
+                    }
+                }
+                least[i * n + k] = best;
+            }
+        }
+        self.indices.clear();
+        let mut left = vec![(0, n - 1)];
+        while let Some((i, k)) = left.pop() {
+            if k - i >= 2 {
+                let j = least[i * n + k].1;
+                self.indices.extend([i as u32, j as u32, k as u32]);
+                left.extend([(i, j), (j, k)]);
+            }
+        }
     }
 
     fn cut_fan(&mut self, corners: u32) {
@@ -161,7 +217,7 @@ impl Cutter {
     }
 
     /// Projects the polygon along its Newell normal, scaled to unit size; `None` where it has no normal.
-    fn flatten(&mut self, positions: &[[f64; 3]], polygon: &[u32]) -> Option<DVec3> {
+    fn flatten(&mut self, positions: &[[f64; 3]], polygon: &[u32]) -> Option<()> {
         let (origin, scale) = local_frame(positions, polygon);
         let local = |v: u32| (vector(positions[v as usize]) - origin) * scale;
         let normal = unit_or_zero(newell(polygon.iter().map(|&v| local(v))));
@@ -176,7 +232,7 @@ impl Cutter {
             let p = local(w);
             [p.dot(u), p.dot(v)]
         }));
-        Some(normal)
+        Some(())
     }
 
     /// Turns all triangles counter-clockwise if they are clockwise.
@@ -280,9 +336,12 @@ fn cut_quad(positions: &[[f64; 3]], quad: [u32; 4]) -> ([[u32; 3]; 2], bool) {
     let valid = [upright(0, 1, 2) && upright(0, 2, 3), upright(0, 1, 3) && upright(1, 2, 3)];
     let [a, b, c, d] = quad;
     let lengths = [p[0].distance_squared(p[2]), p[1].distance_squared(p[3])];
+    let area = |i: usize, j: usize, k: usize| (p[j] - p[i]).cross(p[k] - p[i]).length();
+    let areas = [area(0, 1, 2) + area(0, 2, 3), area(0, 1, 3) + area(1, 2, 3)];
     let first = match valid {
         [true, false] => true,
         [false, true] => false,
+        [false, false] if areas[0] != areas[1] => areas[0] < areas[1],
         _ if lengths[0] == lengths[1] => a.min(c) < b.min(d),
         _ => lengths[0] < lengths[1],
     };

@@ -1,12 +1,15 @@
 //! What the tests of the building share: small soups, and a count of what a mesh is made of.
 
+mod cuts;
+mod polygons;
 mod random;
+mod repairs;
 
 use std::collections::{HashMap, HashSet};
 
 use super::*;
 use crate::index::{HalfEdgeId, VertexId};
-use crate::mesh::{CornerTag, CreaseTag, PolygonFaces, Topology};
+use crate::mesh::{CornerTag, CreaseTag, Finding, PolygonFaces, Topology};
 
 fn soup(positions: &[[f64; 3]], faces: &[&[u32]]) -> PolygonSoup {
     PolygonSoup {
@@ -14,6 +17,21 @@ fn soup(positions: &[[f64; 3]], faces: &[&[u32]]) -> PolygonSoup {
         faces: faces.iter().copied().collect::<PolygonFaces>(),
         ..PolygonSoup::default()
     }
+}
+
+fn build_soup(soup: &PolygonSoup) -> (Mesh, Diagnosis) {
+    let (mesh, diagnosis) = Mesh::from_soup(soup, &BuildOptions::default()).unwrap();
+    check_mesh(&mesh);
+    (mesh, diagnosis)
+}
+
+fn finding(places: &[u32]) -> Finding {
+    Finding { count: places.len(), first: places.to_vec() }
+}
+
+/// The non-empty findings.
+fn found(diagnosis: &Diagnosis) -> Vec<(&'static str, Finding)> {
+    diagnosis.findings().filter(|(_, f)| !f.is_empty()).map(|(name, f)| (name, f.clone())).collect()
 }
 
 /// Checks all that every built mesh promises.
