@@ -42,7 +42,7 @@ impl std::error::Error for UnknownFormat {}
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 4] = [Self::Obj, Self::Ply, Self::Stl, Self::Off];
+    pub const ALL: &[Self] = &[Self::Obj, Self::Ply, Self::Stl, Self::Off];
 
     /// The usual extension, in small letters and without the point.
     pub fn extension(self) -> &'static str {
@@ -61,7 +61,7 @@ impl Format {
     pub fn from_path(path: &Path) -> Result<Self, UnknownFormat> {
         let extension = path.extension().and_then(|e| e.to_str());
         extension
-            .and_then(|e| Self::ALL.into_iter().find(|f| f.extension().eq_ignore_ascii_case(e)))
+            .and_then(|e| Self::ALL.iter().copied().find(|f| f.extension().eq_ignore_ascii_case(e)))
             .ok_or_else(|| UnknownFormat { path: path.to_owned() })
     }
 
@@ -86,8 +86,11 @@ impl fmt::Display for Format {
     }
 }
 
+/// What some editors put before text in UTF-8.
+pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// Beginnings of files that are often met under a wrong name.
-const SIGNATURES: [(&[u8], &str); 10] = [
+const SIGNATURES: [(&[u8], &str); 11] = [
     (b"glTF", "a binary glTF file"),
     (b"\x1f\x8b", "gzip data"),
     (b"PK\x03\x04", "a ZIP archive"),
@@ -98,6 +101,7 @@ const SIGNATURES: [(&[u8], &str); 10] = [
     (b"\xfe\xff", "UTF-16 text"),
     (b"version https://git-lfs", "a Git LFS pointer, not the file itself"),
     (b"<", "XML or HTML"),
+    (b"{", "JSON, as glTF is"),
 ];
 
 /// What else `bytes` plainly are, in words, if they cannot be of format `named`; `None` if they may be.
@@ -153,7 +157,7 @@ pub(crate) fn off_prefix(word: &[u8]) -> Option<&[u8]> {
 
 /// Whether a text begins as an ASCII STL does: `solid` and, after its line, `facet` or `endsolid`.
 pub(crate) fn is_ascii_stl(bytes: &[u8]) -> bool {
-    let text = bytes.trim_ascii_start();
+    let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes).trim_ascii_start();
     let Some((keyword, rest)) = text.split_at_checked(5) else { return false };
     if !keyword.eq_ignore_ascii_case(b"solid") {
         return false;
@@ -167,8 +171,8 @@ pub(crate) fn is_ascii_stl(bytes: &[u8]) -> bool {
 
 /// The words of the first line that is neither empty nor a comment.
 fn first_statement(bytes: &[u8]) -> Option<impl Iterator<Item = &[u8]>> {
-    bytes
-        .split(|&b| b == b'\n' || b == b'\r')
+    let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
+    text.split(|&b| b == b'\n' || b == b'\r')
         .map(<[u8]>::trim_ascii)
         .find(|line| !line.is_empty() && !line.starts_with(b"#"))
         .map(|line| line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()))

@@ -3,6 +3,7 @@
 //! Works on bytes, so that comments and names may be in any encoding. Lines end with LF, CR LF or CR.
 
 use crate::error::{Flaw, Place};
+use crate::format::BYTE_ORDER_MARK;
 use memchr::memchr2;
 
 /// What a text format has besides words and lines.
@@ -26,7 +27,7 @@ pub(crate) struct Scanner<'a> {
 impl<'a> Scanner<'a> {
     /// At the beginning of `bytes`, after a byte order mark of UTF-8 if there is one.
     pub(crate) fn new(bytes: &'a [u8], syntax: Syntax) -> Self {
-        let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        let at = if bytes.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
         Self { bytes, at, line: 1, syntax }
     }
 

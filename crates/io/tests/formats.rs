@@ -201,7 +201,8 @@ endsolid facet normal";
 
 #[test]
 fn stl_text_with_several_solids() {
-    for text in [ASCII_STL.to_owned(), ASCII_STL.replace('\n', "\r\n"), format!("\n {ASCII_STL}\n\n")] {
+    for text in [ASCII_STL.to_owned(), ASCII_STL.replace('\n', "\r\n"), format!("\u{feff}\n {ASCII_STL}\n\n")]
+    {
         let soup = read_bytes(text.as_bytes(), Format::Stl).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(polygons(&soup), [[0, 1, 2], [3, 4, 5]]);
         assert_eq!(soup.positions[2], [0.0, 1.5, 0.0]);

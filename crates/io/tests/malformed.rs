@@ -382,7 +382,7 @@ fn content_under_another_name() {
         bytes.resize(84, 0);
         bytes
     };
-    let files: [(&[u8], &str, Option<Format>); 12] = [
+    let files: [(&[u8], &str, Option<Format>); 13] = [
         (b"ply\nformat ascii 1.0\n", "a PLY file", Some(Format::Ply)),
         (b"OFF\n0 0 0\n", "an OFF file", Some(Format::Off)),
         (b"# c\n\nv 0 0 0\n", "an OBJ file", Some(Format::Obj)),
@@ -392,12 +392,13 @@ fn content_under_another_name() {
         (b"glTF\x02\0\0\0", "a binary glTF file", None),
         (b"\x1f\x8b\x08", "gzip data", None),
         (b"PK\x03\x04", "a ZIP archive", None),
+        (b"{\"asset\":{}}", "JSON, as glTF is", None),
         (b"<?xml version=\"1.0\"?>", "XML or HTML", None),
         (b"version https://git-lfs.github.com/spec/v1\n", "a Git LFS pointer, not the file itself", None),
         (b"\xff\xfev\0 \x000\0", "UTF-16 text", None),
     ];
     for (bytes, words, format) in files {
-        for named in Format::ALL.into_iter().filter(|&named| Some(named) != format) {
+        for named in Format::ALL.iter().copied().filter(|&named| Some(named) != format) {
             refuses(named, bytes, &format!("named as {named}, but the content looks like {words}"));
         }
     }

@@ -71,7 +71,7 @@ fn room_is_exact() {
         .collect();
     let output =
         limitmesh_io::Output::new(limitmesh::Triangles { positions: &positions, triangles: &triangles });
-    for format in Format::ALL {
+    for &format in Format::ALL {
         for ascii in [false, true] {
             let mut bytes = Vec::new();
             let options = limitmesh_io::WriteOptions::default().ascii(ascii);

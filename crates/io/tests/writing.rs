@@ -141,7 +141,7 @@ proptest! {
         surface in any_surface(), which in 0u8..8, ascii: bool,
         keep in 0.0..1.0, change in 0.0..1.0, value: u8,
     ) {
-        for format in Format::ALL {
+        for &format in Format::ALL {
             let mut surface = surface.clone();
             surface.positions.as_flattened_mut().iter_mut().for_each(|x| *x = x.clamp(-1e30, 1e30));
             let whole = written(format, &surface.output(which), ascii);
@@ -259,7 +259,7 @@ fn what_does_not_fit_together_is_refused() {
     );
     let positions = [POSITIONS[0], [0.0, f64::NAN, 0.0], POSITIONS[2]];
     let output = Output::new(Triangles { positions: &positions, triangles: &TRIANGLES });
-    for format in Format::ALL {
+    for &format in Format::ALL {
         assert_eq!(
             message(format, &output),
             format!(
@@ -303,7 +303,7 @@ impl io::Write for Full {
 fn a_failing_writer_is_reported_wherever_it_fails() {
     let triangles = vec![[0, 1, 2]; 3000];
     let output = Output::new(Triangles { positions: &POSITIONS, triangles: &triangles });
-    for format in Format::ALL {
+    for &format in Format::ALL {
         for ascii in [false, true] {
             let length = written(format, &output, ascii).len();
             let options = WriteOptions::default().ascii(ascii);
@@ -403,6 +403,22 @@ mod unix {
     fn a_full_device_is_an_error() {
         let message = write_whole(Path::new("/dev/full"), b"x").unwrap_err().to_string();
         assert!(message.starts_with("cannot write /dev/full: "), "{message}");
+    }
+
+    /// (Nothing is forbidden to root.)
+    #[test]
+    fn a_file_that_may_not_be_written_to_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mesh.obj");
+        fs::write(&path, "earlier").unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
+        if fs::OpenOptions::new().write(true).open(&path).is_ok() {
+            println!("skipped: this user may write anywhere");
+            return;
+        }
+        let result = write(&path, &triangle(), &WriteOptions::default());
+        assert!(matches!(result, Err(WriteError::File { .. })));
+        assert_eq!(fs::read(&path).unwrap(), b"earlier");
     }
 
     /// A folder that may not be written to: the earlier file stays as it is. (Nothing is forbidden to root.)

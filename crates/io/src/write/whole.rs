@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// directly.
 ///
 /// # Errors
-/// The folder does not exist or may not be written to, or there is no space.
+/// The folder does not exist, it or the earlier file may not be written to, or there is no space.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     write_whole_with(path, |writer| Ok(writer.write_all(bytes)?))
 }
@@ -33,6 +33,10 @@ pub(super) fn write_whole_with(
         }
         let mut device = fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
         return fill(&mut device).map_err(|error| error.in_file(path));
+    }
+    if earlier.is_some() {
+        // A new name over a file asks only the folder for permission: ask the file as well.
+        fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
     }
     let target = if earlier.is_some() { fs::canonicalize(path).map_err(failed)? } else { path.to_owned() };
     let mut file = temporary_beside(&target).map_err(failed)?;
