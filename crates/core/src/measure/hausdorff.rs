@@ -3,13 +3,16 @@
 //! Takes two surfaces; gives, for each direction, the greatest, mean and root-mean-square distance of samples of
 //! one to the other, measured exactly, and where the greatest was found.
 
+use core::ops::Range;
+
 use super::bvh::Bvh;
+use super::climb::climb;
 use super::frame::distance;
 use super::samples::Samples;
 use super::{MeasureError, check_finite};
 use crate::mesh::Triangles;
 use crate::parallel;
-use crate::vector::vector;
+use crate::vector::{DVec3, vector};
 
 /// How densely to sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,15 +42,15 @@ impl SamplingOptions {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct OneSided {
-    /// Greatest distance found.
+    /// Greatest distance found, at the samples and in a search around the farthest of them.
     pub max: f64,
     /// Mean over the surface: that of the samples inside triangles, which each stand for the same area.
     pub mean: f64,
     /// Root mean square of the same samples.
     pub rms: f64,
-    /// Samples taken, vertices included.
+    /// Samples taken, vertices included. Points measured only in the search for the maximum do not count.
     pub samples: usize,
-    /// The sample at which the maximum was found.
+    /// The point at which the maximum was found.
     pub at: [f64; 3],
     /// The other surface's closest point to it.
     pub to: [f64; 3],
@@ -77,8 +80,7 @@ impl Hausdorff {
     }
 }
 
-/// Samples that are measured one after the other, each starting from the triangle found for the one before; also
-/// what is summed together.
+/// Samples that are measured one after the other on one thread, and summed together.
 const RUN: usize = 1024;
 
 /// Samples both surfaces and measures each against the other (equations 14 to 16).
@@ -127,16 +129,8 @@ pub fn hausdorff_between(surface: &Bvh<'_>, reference: &Bvh<'_>, options: &Sampl
 /// Distances from samples of one surface to another.
 fn one_sided(from: &Bvh<'_>, to: &Bvh<'_>, options: &SamplingOptions) -> OneSided {
     let samples = Samples::new(from, options.samples);
-    let mut distances = vec![0.0; samples.len()];
-    parallel::for_each_chunk(&mut distances, RUN, |run, distances| {
-        let mut guess = 0;
-        let mut slots = distances.iter_mut();
-        samples.visit(run * RUN..run * RUN + slots.len(), |point| {
-            if let Some(slot) = slots.next() {
-                (*slot, guess) = to.distance_from(point, guess);
-            }
-        });
-    });
+    let distances =
+        measure_points(to, samples.len(), |range, run| samples.visit(range, |point| run.push(point)));
     let (mut farthest, mut max) = (0, 0.0);
     for (index, &distance) in distances.iter().enumerate() {
         if distance > max {
@@ -146,8 +140,28 @@ fn one_sided(from: &Bvh<'_>, to: &Bvh<'_>, options: &SamplingOptions) -> OneSide
     // A surface without area has no samples inside; its vertices and sides then stand for it.
     let insides = samples.insides();
     let (mean, rms) = means(if insides.is_empty() { &distances } else { &distances[insides] }, max);
-    let at = samples.point(farthest).to_array();
+    let mut at = samples.point(farthest);
+    if let Some((point, distance)) = climb(&samples, &distances, from, to).filter(|found| found.1 > max) {
+        (at, max) = (point, distance);
+    }
+    let at = at.to_array();
     OneSided { max, mean, rms, samples: distances.len(), at, to: to.closest(at).point }
+}
+
+/// The distances of `count` points to a surface; `collect` adds those of a range to a list. Consecutive ones should be
+/// near each other.
+pub(super) fn measure_points(
+    to: &Bvh<'_>,
+    count: usize,
+    collect: impl Fn(Range<usize>, &mut Vec<DVec3>) + Sync + Send,
+) -> Vec<f64> {
+    let mut distances = vec![0.0; count];
+    parallel::for_each_chunk(&mut distances, RUN, |run, distances| {
+        let mut points = Vec::with_capacity(distances.len());
+        collect(run * RUN..run * RUN + distances.len(), &mut points);
+        to.distances(&points, distances);
+    });
+    distances
 }
 
 /// Mean and root mean square of distances none of which exceeds `max`; divided by it first, so that no square
@@ -178,14 +192,9 @@ fn means(distances: &[f64], max: f64) -> (f64, f64) {
 pub fn distances_to(points: &[[f64; 3]], reference: Triangles<'_>) -> Result<Vec<f64>, MeasureError> {
     let reference = Bvh::named(reference, "reference")?;
     check_finite(points, "measured")?;
-    let mut distances = vec![0.0; points.len()];
-    parallel::for_each_chunk(&mut distances, RUN, |run, distances| {
-        let mut guess = 0;
-        for (slot, &point) in distances.iter_mut().zip(&points[run * RUN..]) {
-            (*slot, guess) = reference.distance_from(vector(point), guess);
-        }
-    });
-    Ok(distances)
+    let collect =
+        |range: Range<usize>, run: &mut Vec<DVec3>| run.extend(points[range].iter().copied().map(vector));
+    Ok(measure_points(&reference, points.len(), collect))
 }
 
 #[cfg(test)]

@@ -3,10 +3,10 @@
 //! Takes [`Triangles`], manifold or not; knows nothing of how they came about.
 
 mod bvh;
+mod climb;
 mod frame;
 mod hausdorff;
 mod limit_reference;
-mod pieces;
 mod quality;
 mod samples;
 mod triangle;
@@ -19,6 +19,7 @@ pub use quality::{TriangleQuality, triangle_quality};
 pub use watertight::{Watertightness, watertightness};
 
 use crate::mesh::Triangles;
+use crate::parallel;
 
 /// Why something could not be measured.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -74,23 +75,18 @@ fn check(surface: Triangles<'_>, which: &'static str) -> Result<(), MeasureError
         return Err(MeasureError::TooMany { which, count: surface.triangles.len() });
     }
     let count = surface.positions.len();
-    let out_of_range = |face: &usize| surface.triangles[*face].iter().any(|&v| v as usize >= count);
-    let faults = pieces::map_pieces(surface.triangles.len(), PIECE, |mut faces| faces.find(out_of_range));
-    if let Some(face) = faults.into_iter().flatten().next() {
+    let out_of_range = |face: usize| surface.triangles[face].iter().any(|&v| v as usize >= count);
+    if let Some(face) = parallel::first(surface.triangles.len(), out_of_range) {
         let vertex = surface.triangles[face].into_iter().find(|&v| v as usize >= count).unwrap_or_default();
         return Err(MeasureError::VertexOutOfRange { which, face, vertex, count });
     }
     check_finite(surface.positions, which)
 }
 
-/// Elements checked together.
-const PIECE: usize = 1 << 14;
-
 /// Refuses NaN and infinity, and names the first place.
 fn check_finite(points: &[[f64; 3]], which: &'static str) -> Result<(), MeasureError> {
-    let not_finite = |vertex: &usize| !points[*vertex].iter().all(|x| x.is_finite());
-    let faults = pieces::map_pieces(points.len(), PIECE, |mut vertices| vertices.find(not_finite));
-    if let Some(vertex) = faults.into_iter().flatten().next() {
+    let not_finite = |vertex: usize| !points[vertex].iter().all(|x| x.is_finite());
+    if let Some(vertex) = parallel::first(points.len(), not_finite) {
         let axis = points[vertex].iter().position(|x| !x.is_finite()).unwrap_or_default();
         return Err(MeasureError::NotFinite { which, vertex, axis, value: points[vertex][axis] });
     }

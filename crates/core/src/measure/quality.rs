@@ -3,12 +3,9 @@
 //! Takes a surface; gives the least angle and where it is, the mean and a histogram. A triangle without area, or
 //! whose corners do not exist or are not finite, counts as one of 0°.
 
-use super::pieces::map_pieces;
 use crate::mesh::Triangles;
+use crate::parallel;
 use crate::vector::{DVec3, vector};
-
-/// Triangles whose angles are summed together.
-const PIECE: usize = 4096;
 
 /// Width of a bin of the histogram, in degrees.
 const BIN_DEGREES: f64 = 5.0;
@@ -29,7 +26,7 @@ pub struct TriangleQuality {
 
 /// Measures the triangles of a surface.
 pub fn triangle_quality(surface: Triangles<'_>) -> TriangleQuality {
-    let pieces = map_pieces(surface.triangles.len(), PIECE, |faces| {
+    let pieces = parallel::pieces(surface.triangles.len(), |faces| {
         let mut piece = Tally::EMPTY;
         for face in faces {
             piece.add(least_angle_degrees(corners(surface, face)), face);

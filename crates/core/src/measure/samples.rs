@@ -9,12 +9,12 @@
 use core::ops::Range;
 
 use super::bvh::Bvh;
-use super::pieces::map_pieces;
+use crate::parallel;
 use crate::vector::{DVec3, vector};
 
-/// Triangles whose weights are summed together: few enough to search a piece again for each run of samples, many
-/// enough that the list of sums stays small.
-const PIECE: usize = 256;
+/// Triangles whose weights are summed together: few enough that finding a sample's triangle in its piece costs little,
+/// many enough that the list of sums stays small.
+const PIECE: usize = 16;
 
 /// Share of the samples beside the vertices that goes to the sides: 1 in 5. They matter where the greatest
 /// distance lies on a sharp edge; the mean needs the points inside.
@@ -42,6 +42,18 @@ struct Spread {
     /// Weight before each piece of triangles, and the total at the end.
     before: Vec<f64>,
     weight: fn([DVec3; 3]) -> f64,
+}
+
+/// Where a point of a spread stands.
+struct Spot {
+    /// Its number.
+    number: usize,
+    /// Its triangle, by place in the tree's order.
+    slot: usize,
+    /// The triangle's corners, scaled.
+    scaled: [DVec3; 3],
+    /// How far into the weight of the triangle.
+    into: f64,
 }
 
 /// Length of the three sides.
@@ -84,11 +96,13 @@ impl<'s, 'a> Samples<'s, 'a> {
             f(vector(surface.positions[v as usize]));
         }
         let first_side = self.vertices.len();
-        self.sides.visit(self.surface, part(first_side, self.sides.count), |_, corners, lengths, into| {
-            f(along_sides(corners, lengths, into));
+        self.sides.visit(self.surface, part(first_side, self.sides.count), |side| {
+            f(along_sides(self.surface.corners(side.slot), side.scaled, side.into));
         });
         let first_inside = first_side + self.sides.count;
-        self.insides.visit(self.surface, part(first_inside, self.insides.count), |k, [a, b, c], _, _| {
+        self.insides.visit(self.surface, part(first_inside, self.insides.count), |inside| {
+            let [a, b, c] = self.surface.corners(inside.slot);
+            let k = inside.number;
             let [u, v] = R2.map(|step| (0.5 + step * k as f64).fract());
             // The half of the unit square beyond the diagonal is folded back onto the triangle.
             let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
@@ -101,6 +115,23 @@ impl<'s, 'a> Samples<'s, 'a> {
         let mut point = DVec3::ZERO;
         self.visit(index..index + 1, |p| point = p);
         point
+    }
+
+    /// The samples that are no vertices.
+    pub(super) fn beside_vertices(&self) -> Range<usize> {
+        self.vertices.len()..self.len()
+    }
+
+    /// The triangle, by its place in the tree's order, that a sample beside the vertices was taken from.
+    pub(super) fn triangle(&self, index: usize) -> usize {
+        let mut found = 0;
+        let first_inside = self.vertices.len() + self.sides.count;
+        let (spread, k) = match index.checked_sub(first_inside) {
+            Some(k) => (&self.insides, k),
+            None => (&self.sides, index - self.vertices.len()),
+        };
+        spread.visit(self.surface, k..k + 1, |sample| found = sample.slot);
+        found
     }
 }
 
@@ -118,8 +149,9 @@ fn vertices_in_order(surface: &Bvh<'_>) -> Vec<u32> {
     vertices
 }
 
-/// The point `into` along the sides laid end to end, of a triangle whose sides have these lengths.
-fn along_sides([a, b, c]: [DVec3; 3], [ab, bc, ca]: [f64; 3], into: f64) -> DVec3 {
+/// The point `into` along the sides of a triangle laid end to end, as long as they are when scaled.
+fn along_sides([a, b, c]: [DVec3; 3], scaled: [DVec3; 3], into: f64) -> DVec3 {
+    let [ab, bc, ca] = [(0, 1), (1, 2), (2, 0)].map(|(from, to)| scaled[from].distance(scaled[to]));
     let between = |from: DVec3, to: DVec3, into: f64, length: f64| {
         let t = if length > 0.0 { (into / length).clamp(0.0, 1.0) } else { 0.0 };
         from * (1.0 - t) + to * t
@@ -135,27 +167,25 @@ fn along_sides([a, b, c]: [DVec3; 3], [ab, bc, ca]: [f64; 3], into: f64) -> DVec
 
 impl Spread {
     fn new(surface: &Bvh<'_>, count: usize, weight: fn([DVec3; 3]) -> f64) -> Self {
-        let sums = map_pieces(surface.surface().triangles.len(), PIECE, |slots| {
-            slots.map(|slot| weight(surface.scaled_corners(slot))).sum::<f64>()
+        let faces = surface.surface().triangles.len();
+        let mut before = vec![0.0; faces.div_ceil(PIECE) + 1];
+        parallel::for_each_chunk(&mut before[1..], 256, |run, sums| {
+            for (i, sum) in sums.iter_mut().enumerate() {
+                let first = (run * 256 + i) * PIECE;
+                let slots = first..faces.min(first + PIECE);
+                *sum = slots.map(|slot| weight(surface.scaled_corners(slot))).sum();
+            }
         });
-        let mut before = Vec::with_capacity(sums.len() + 1);
         let mut total = 0.0;
-        before.push(total);
-        for sum in sums {
-            total += sum;
-            before.push(total);
+        for sum in &mut before {
+            total += *sum;
+            *sum = total;
         }
         Self { count: if total > 0.0 { count } else { 0 }, before, weight }
     }
 
-    /// Calls `f` with each point's number, its triangle's corners and side lengths, and how far into the triangle's
-    /// weight the point stands.
-    fn visit(
-        &self,
-        surface: &Bvh<'_>,
-        range: Range<usize>,
-        mut f: impl FnMut(usize, [DVec3; 3], [f64; 3], f64),
-    ) {
+    /// Calls `f` with each point of `range` in turn.
+    fn visit(&self, surface: &Bvh<'_>, range: Range<usize>, mut f: impl FnMut(Spot)) {
         if range.is_empty() {
             return;
         }
@@ -169,20 +199,22 @@ impl Spread {
         let mut weight = (self.weight)(corners);
         for k in range {
             let target = target(k);
-            // The sums of the pieces are kept, so that rounding cannot carry a sample out of its own.
-            while sum + weight <= target && slot + 1 < faces {
-                sum += weight;
-                slot += 1;
-                if slot == (piece + 1) * PIECE {
-                    piece += 1;
-                    sum = self.before[piece];
-                }
+            let last = piece;
+            while piece + 2 < self.before.len() && self.before[piece + 1] <= target {
+                piece += 1;
+            }
+            if piece > last {
+                (slot, sum) = (piece * PIECE, self.before[piece]);
                 corners = surface.scaled_corners(slot);
                 weight = (self.weight)(corners);
             }
-            let [a, b, c] = corners;
-            let lengths = [a.distance(b), b.distance(c), c.distance(a)];
-            f(k, surface.corners(slot), lengths, (target - sum).clamp(0.0, weight));
+            while sum + weight <= target && slot + 1 < faces.min((piece + 1) * PIECE) {
+                sum += weight;
+                slot += 1;
+                corners = surface.scaled_corners(slot);
+                weight = (self.weight)(corners);
+            }
+            f(Spot { number: k, slot, scaled: corners, into: (target - sum).clamp(0.0, weight) });
         }
     }
 }

@@ -4,8 +4,8 @@
 //! that all faces of an edge lie side by side. Positions matter only to T-junctions.
 
 use super::bvh::Bvh;
-use super::pieces::map_pieces;
 use crate::mesh::Triangles;
+use crate::parallel;
 use crate::vector::vector;
 
 /// How near to a boundary edge, as a share of its length, a vertex counts as lying on it, and how far from its ends
@@ -204,7 +204,7 @@ fn t_junctions(positions: &[[f64; 3]], mut vertices: Vec<u32>, boundary: &[[u32;
     vertices.sort_unstable_by_key(|&v| (bits(v), v));
     let places: Vec<&[u32]> = vertices.chunk_by(|&a, &b| bits(a) == bits(b)).collect();
     let tree = Bvh::padded(Triangles { positions, triangles: &edges }, ON_EDGE);
-    let counts = map_pieces(places.len(), 1024, |range| {
+    let counts = parallel::pieces(places.len(), |range| {
         let inside = |vertices: &&&[u32]| {
             let at = vector(positions[vertices[0] as usize]);
             tree.any_around(at, |[a, b, _], p| {

@@ -10,7 +10,6 @@ use glam::{Vec3, Vec4};
 
 use super::{Bvh, Node, Slot, WIDTH};
 use crate::measure::frame::Frame;
-use crate::measure::pieces::map_pieces;
 use crate::mesh::Triangles;
 use crate::parallel;
 use crate::vector::{DVec3, vector};
@@ -47,7 +46,7 @@ pub(super) fn build(surface: Triangles<'_>, padding: f64) -> Bvh<'_> {
 fn bounds(surface: Triangles<'_>) -> [DVec3; 2] {
     let join = |a: [DVec3; 2], b: [DVec3; 2]| [a[0].min(b[0]), a[1].max(b[1])];
     let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let boxes = map_pieces(surface.triangles.len(), 1 << 14, |faces| {
+    let boxes = parallel::pieces(surface.triangles.len(), |faces| {
         surface.triangles[faces].as_flattened().iter().fold(nothing, |bounds, &v| {
             let p = vector(surface.positions[v as usize]);
             join(bounds, [p, p])

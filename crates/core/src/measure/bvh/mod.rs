@@ -9,6 +9,7 @@
 //! ones form a node, so that no child pointers are stored.
 
 mod build;
+mod group;
 
 use glam::Vec4;
 
@@ -195,18 +196,6 @@ impl<'a> Bvh<'a> {
         ClosestPoint { point: on_surface.to_array(), distance, face: nearest.face }
     }
 
-    /// The distance of a finite point and the triangle nearest to it, starting from a guess.
-    #[inline]
-    pub(super) fn distance_from(&self, point: DVec3, guess: u32) -> (f64, u32) {
-        let at = self.frame.locate(point);
-        if at.pulled_in {
-            let closest = self.closest_from(point.to_array(), guess);
-            return (closest.distance, closest.face);
-        }
-        let nearest = self.search(&at, Some(guess));
-        (self.frame.length(nearest.squared.sqrt()), nearest.face)
-    }
-
     /// Vertices of the triangle at place `slot` of the tree's order, in which neighbours are near in space.
     #[inline]
     pub(super) fn in_order(&self, slot: usize) -> [u32; 3] {
@@ -238,53 +227,131 @@ impl<'a> Bvh<'a> {
         closest_to_origin(a, b, c)
     }
 
-    /// Searches the tree, nearest children first, skipping boxes that are farther than the best so far.
+    /// Number of levels of nodes; the triangles are one below.
+    #[inline]
+    fn levels(&self) -> u32 {
+        self.starts.len() as u32 - 1
+    }
+
+    #[inline]
+    fn node(&self, at: Entry) -> &Node {
+        &self.nodes[self.starts[at.level as usize] + at.index as usize]
+    }
+
+    /// The nearest triangle, starting from a guess.
     fn search(&self, at: &Located, guess: Option<u32>) -> Nearest {
         let mut nearest = Nearest::NONE;
         if let Some(face) = guess.filter(|&face| (face as usize) < self.surface.triangles.len()) {
             nearest.offer(self.foot(face, at).squared, face);
         }
         let mut bound = nearest.bound();
-        let point = at.local.to_array().map(|x| Vec4::splat(x as f32));
-        let deepest = self.starts.len() - 2;
-        let mut stack = [0u64; STACK];
-        let mut waiting = 1;
+        let mut stack = [0; STACK];
+        stack[0] = Entry::ROOT.waiting(0.0);
+        self.descend(&mut stack, 1, at, splat(at.local), &mut nearest, &mut bound);
+        nearest
+    }
+
+    /// Works off the stack, nearest children first, skipping boxes that are farther than the best so far.
+    #[inline]
+    fn descend(
+        &self,
+        stack: &mut [u64; STACK],
+        mut waiting: usize,
+        at: &Located,
+        point: [Vec4; 3],
+        nearest: &mut Nearest,
+        bound: &mut f32,
+    ) {
         while waiting > 0 {
             waiting -= 1;
-            let entry = stack[waiting];
-            let key = (entry >> 32) as u32;
-            if f32::from_bits(key & !LEVEL_MASK) > bound {
+            let (entry, squared) = Entry::waited(stack[waiting % STACK]);
+            if squared > *bound {
                 continue;
             }
-            let (level, index) = ((key & LEVEL_MASK) as usize, entry as u32 as usize);
-            let node = &self.nodes[self.starts[level] + index];
-            let (lanes, count) = node.sorted_within(point, bound);
-            if level == deepest {
+            let (lanes, count) = self.node(entry).sorted_within(point, *bound);
+            if entry.level + 1 == self.levels() {
                 for &lane in &lanes[..count] {
-                    if f32::from_bits((lane >> 32) as u32) > bound {
+                    if f32::from_bits((lane >> 32) as u32) > *bound {
                         break;
                     }
-                    let slot = &self.slots[index * WIDTH + (lane & 3) as usize];
-                    if nearest.offer(self.foot_on(slot.corners, at).squared, slot.face) {
-                        bound = nearest.bound();
-                    }
+                    let slot = entry.child(lane as usize & (WIDTH - 1)).index as usize;
+                    self.offer_slot(slot, at, nearest, bound);
                 }
             } else {
                 for &lane in lanes[..count].iter().rev() {
-                    let key = ((lane >> 32) as u32 & !LEVEL_MASK) | (level as u32 + 1);
-                    stack[waiting % STACK] =
-                        (key as u64) << 32 | (index * WIDTH + (lane & 3) as usize) as u64;
+                    let squared = f32::from_bits((lane >> 32) as u32);
+                    stack[waiting % STACK] = entry.child(lane as usize & (WIDTH - 1)).waiting(squared);
                     waiting += 1;
                 }
             }
         }
-        nearest
+    }
+
+    /// Measures the triangle at place `slot` of the tree's order.
+    #[inline]
+    fn offer_slot(&self, slot: usize, at: &Located, nearest: &mut Nearest, bound: &mut f32) {
+        let slot = &self.slots[slot];
+        if slot.face != nearest.face && nearest.offer(self.foot_on(slot.corners, at).squared, slot.face) {
+            *bound = nearest.bound();
+        }
+    }
+}
+
+/// The coordinates of a point of the frame, each in all lanes.
+#[inline]
+fn splat(local: DVec3) -> [Vec4; 3] {
+    local.to_array().map(|x| Vec4::splat(x as f32))
+}
+
+/// A node by level and place in the level, or, one level below the last, a triangle by its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Entry {
+    level: u32,
+    index: u32,
+}
+
+impl Entry {
+    const ROOT: Self = Self { level: 0, index: 0 };
+
+    #[inline]
+    fn child(self, lane: usize) -> Self {
+        Self { level: self.level + 1, index: self.index * WIDTH as u32 + lane as u32 }
+    }
+
+    /// The entry on a stack together with the squared distance of its box, which is rounded down to make room.
+    #[inline]
+    fn waiting(self, squared: f32) -> u64 {
+        let key = (squared.to_bits() & !LEVEL_MASK) | self.level;
+        (key as u64) << 32 | self.index as u64
+    }
+
+    /// The entry and squared distance from the stack.
+    #[inline]
+    fn waited(waiting: u64) -> (Self, f32) {
+        let key = (waiting >> 32) as u32;
+        let entry = Self { level: key & LEVEL_MASK, index: waiting as u32 };
+        (entry, f32::from_bits(key & !LEVEL_MASK))
     }
 }
 
 impl Node {
     /// An empty box in every lane.
     const EMPTY: Self = Self { low: [Vec4::INFINITY; 3], high: [Vec4::NEG_INFINITY; 3] };
+
+    /// Longest side of the box of a lane.
+    #[inline]
+    fn size(&self, lane: usize) -> f32 {
+        (0..3).fold(0.0, |size: f32, axis| size.max(self.high[axis][lane] - self.low[axis][lane]))
+    }
+
+    /// Copies the box of a lane of another node.
+    #[inline]
+    fn copy_lane(&mut self, to: usize, other: &Self, from: usize) {
+        for axis in 0..3 {
+            self.low[axis][to] = other.low[axis][from];
+            self.high[axis][to] = other.high[axis][from];
+        }
+    }
 
     /// Squared distances of a point to the four boxes: zero inside, infinite for an empty box.
     #[inline]

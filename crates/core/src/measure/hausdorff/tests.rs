@@ -43,9 +43,9 @@ fn sphere(levels: u32) -> Shape {
     let mut faces: Vec<[[f64; 3]; 3]> = (0..8)
         .map(|octant| {
             let mut face = corners;
-            for axis in 0..3 {
+            for (axis, corner) in face.iter_mut().enumerate() {
                 if octant >> axis & 1 == 1 {
-                    face[axis][axis] = -1.0;
+                    corner[axis] = -1.0;
                 }
             }
             if [0, 3, 5, 6].contains(&octant) { face } else { [face[1], face[0], face[2]] }
@@ -151,19 +151,28 @@ fn a_spike_is_found_from_its_own_side_only() {
 }
 
 #[test]
-fn the_greatest_distance_on_an_edge_is_found() {
-    // Two triangles form a roof; its ridge has no vertex in the middle where it is farthest from the other ones'
-    // edges: only points along the edge or inside find it.
-    let gap = Shape {
-        positions: vec![[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [5.0, 0.0, 0.001]],
+fn the_greatest_distance_is_found_where_no_sample_falls() {
+    // A needle ten long against its two ends: the point farthest from both is at an irrational place of the long side,
+    // where a handful of samples misses it by about a tenth.
+    let place = 10.0 / 2f64.sqrt();
+    let needle = Shape {
+        positions: vec![[0.0, 0.0, 0.0], [2.0 * place, 0.0, 0.0], [3.0, 1e-6, 0.0]],
         triangles: vec![[0, 1, 2]],
     };
-    let ends = Shape {
-        positions: vec![[0.0, 0.0, 0.0], [0.0, 1e-3, 0.0], [10.0, 0.0, 0.0], [10.0, 1e-3, 0.0]],
-        triangles: vec![[0, 1, 1], [2, 3, 3]],
-    };
-    let distance = measure(&gap, &ends, 10_000);
-    assert!((distance.forward.max - 5.0).abs() < 1e-3, "{distance:?}");
+    let ends =
+        Shape { positions: vec![[0.0; 3], [2.0 * place, 0.0, 0.0]], triangles: vec![[0, 0, 0], [1, 1, 1]] };
+    let distance = measure(&needle, &ends, 20);
+    let bvh = Bvh::new(needle.as_triangles()).unwrap();
+    let samples = Samples::new(&bvh, 20);
+    let mut sampled = 0.0f64;
+    samples.visit(0..samples.len(), |p| sampled = sampled.max(p.x.min(2.0 * place - p.x)));
+    assert!(place - sampled > 0.01, "the samples alone must miss it: {sampled}");
+    assert!(
+        (distance.forward.max - place).abs() < 0.01 && distance.forward.max <= place + 1e-12,
+        "{distance:?}"
+    );
+    let (at, to) = (vector(distance.forward.at), vector(distance.forward.to));
+    assert!((at.distance(to) - distance.forward.max).abs() < 1e-12);
 }
 
 #[test]
