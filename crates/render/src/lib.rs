@@ -1,7 +1,8 @@
 //! Pictures of triangle meshes without a GPU: a camera, a rasteriser with anti-aliasing, smooth and flat
-//! shading, wireframes, and PNG.
+//! shading, wireframes, heat maps, text, PNG; and plots and drawings as SVG.
 //!
-//! Takes [`limitmesh::Triangles`] and gives an [`Image`]. Everything is computed on the CPU in the same order
+//! [`render`] and [`render_scalar`] take [`limitmesh::Triangles`] and give an [`Image`]; [`grid`] and
+//! [`ColourBar`] compose images into figures; [`plot`] and [`svg`] write vector graphics. Everything is computed on the CPU in the same order
 //! whatever the number of threads, so a picture is the same bytes on every run.
 //!
 //! ```
@@ -20,18 +21,29 @@
 
 mod camera;
 mod colour;
+mod colour_map;
+mod compose;
 mod error;
+mod heat_map;
 mod image;
 mod parallel;
 mod picture;
+pub mod plot;
 mod project;
 mod raster;
 mod shade;
 mod style;
+pub mod svg;
+mod text;
+mod ticks;
 mod wire;
 
 pub use camera::{Camera, ViewDirection};
+pub use colour_map::ColourMap;
+pub use compose::{GridStyle, Panel, grid};
 pub use error::RenderError;
+pub use heat_map::{ColourBar, Scale, render_scalar};
 pub use image::Image;
 pub use picture::{MAX_SIDE, render};
 pub use style::{Lighting, Shading, Style};
+pub use text::{Align, TextStyle, text_width};

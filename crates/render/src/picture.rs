@@ -5,6 +5,8 @@ use limitmesh::Triangles;
 
 use crate::camera::Camera;
 use crate::colour::{self, Linear};
+use crate::colour_map::look_up;
+use crate::heat_map::Scale;
 use crate::image::Image;
 use crate::project::{Projected, STEPS, project};
 use crate::raster::{Bins, NOTHING, Rectangle, Tile, sample_places};
@@ -51,6 +53,8 @@ pub(crate) enum Paint<'a> {
     Sides(Linear, Linear),
     /// A colour at each vertex.
     Vertex(&'a [[u8; 3]]),
+    /// A number at each vertex, looked up in a table of the scale's colours.
+    Scalar { values: &'a [f64], scale: &'a Scale, table: Vec<Linear> },
 }
 
 pub(crate) fn check_size(width: u64, height: u64) -> Result<(), RenderError> {
@@ -307,6 +311,11 @@ impl Scene<'_> {
                     }
                 }
                 mixed
+            }
+            Paint::Scalar { values, scale, table } => {
+                let corners = triangle.iter().zip(weights);
+                let value = corners.map(|(&vertex, weight)| values[vertex as usize] * weight).sum();
+                look_up(table, scale.place(value))
             }
         }
     }

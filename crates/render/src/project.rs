@@ -14,8 +14,10 @@ pub(crate) const STEPS: i32 = 256;
 /// How far beyond the picture a corner may lie, in pixels, before its triangle is clipped.
 const BORDER: f64 = 16_384.0;
 
-/// The nearest visible distance of a perspective, as a part of the farthest one.
-const NEAR: f64 = 1e-5;
+/// The nearest visible distance of a perspective, as a part of the farthest one. Depths are proportional to the
+/// inverse distance, whose relative precision does not depend on this; corners in f64 leave 1e-8 of it at the far
+/// end of a triangle that starts at the near one.
+const NEAR: f64 = 1e-8;
 
 /// A corner on the fixed-point grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +25,7 @@ pub(crate) struct Corner {
     pub(crate) x: i32,
     pub(crate) y: i32,
     /// Linear in the picture, 0 (far) to 1 (near).
-    pub(crate) depth: f32,
+    pub(crate) depth: f64,
 }
 
 /// Marks corners of the mesh that lie behind the eye or too far out.
@@ -91,7 +93,7 @@ impl Frustum {
         } else {
             1.0 - (p.distance - self.low) * self.per_distance
         };
-        Corner { x: grid(p.x), y: grid(p.y), depth: depth as f32 }
+        Corner { x: grid(p.x), y: grid(p.y), depth }
     }
 
     /// Corner of a vertex of the mesh, or the mark that it needs clipping.

@@ -254,14 +254,15 @@ impl Setup {
         });
         // With y downwards, the inside is below a top edge (running right) and right of a left edge (running up).
         let bias = directions.map(|[x, y]| if y < 0 || (y == 0 && x > 0) { 0 } else { -1 });
-        let depths = [a, b, c].map(|corner| f64::from(corner.depth));
+        let depths = [a, b, c].map(|corner| corner.depth);
         let (rise_b, rise_c) = (depths[1] - depths[0], depths[2] - depths[0]);
         let ([bx, by], [cx, cy]) = (directions[0], directions[2].map(|d| -d));
         let slope = [
             (rise_b * cy as f64 - rise_c * by as f64) / area,
             (rise_c * bx as f64 - rise_b * cx as f64) / area,
         ];
-        let range = [a.depth.min(b.depth).min(c.depth), a.depth.max(b.depth).max(c.depth)];
+        let range =
+            [depths[0].min(depths[1]).min(depths[2]) as f32, depths[0].max(depths[1]).max(depths[2]) as f32];
         let depth_at_first = depths[0];
         Some(Self { corners, directions, bias, depth_at_first, depth_slope: slope, depth_range: range })
     }
@@ -290,5 +291,109 @@ impl Setup {
     #[inline]
     fn depth_rise(&self, x: i32, y: i32) -> f64 {
         self.depth_slope[0] * f64::from(x) + self.depth_slope[1] * f64::from(y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn corner(x: i32, y: i32) -> Corner {
+        Corner { x, y, depth: 0.5 }
+    }
+
+    /// How often each sample of the tile's pixels is covered when every triangle starts afresh.
+    fn counts(triangles: &[[Corner; 3]]) -> Vec<u32> {
+        let places: [[i32; 2]; 16] = sample_places(4).try_into().unwrap();
+        let area = Rectangle { left: 0, top: 0, right: TILE as i32, bottom: TILE as i32 };
+        let mut counts = vec![0; (TILE * TILE * 16) as usize];
+        for &triangle in triangles {
+            let mut tile = Tile::<16>::new();
+            tile.cover(&places, area, triangle, 7);
+            for (count, face) in counts.iter_mut().zip(tile.face.iter().flatten()) {
+                *count += u32::from(*face != NOTHING);
+            }
+        }
+        counts
+    }
+
+    #[test]
+    fn samples_have_a_row_and_a_column_each() {
+        for side in [1, 2, 4, 8] {
+            let places = sample_places(side);
+            for axis in 0..2 {
+                let mut seen: Vec<i32> = places.iter().map(|p| p[axis]).collect();
+                seen.sort_unstable();
+                let step = STEPS / (side * side) as i32;
+                let expected: Vec<i32> = (0..(side * side) as i32).map(|i| i * step + step / 2).collect();
+                assert_eq!(seen, expected);
+            }
+        }
+    }
+
+    #[test]
+    fn shared_edges_through_samples_are_covered_once() {
+        // Samples lie at odd multiples of 8 steps: this fan's edges pass exactly through many of them.
+        let centre = corner(16 * 256 + 8, 16 * 256 + 8);
+        let rim =
+            [(8, 8), (4104, 8), (8200, 8), (8200, 4104), (8200, 8200), (4104, 8200), (8, 8200), (8, 4104)];
+        let fan: Vec<[Corner; 3]> = (0..8)
+            .map(|i| {
+                let ((ax, ay), (bx, by)) = (rim[i], rim[(i + 1) % 8]);
+                [centre, corner(ax, ay), corner(bx, by)]
+            })
+            .collect();
+        let counts = counts(&fan);
+        assert!(counts.iter().all(|&count| count <= 1));
+        // The square holds its upper and left border but not the lower and right ones: 512 × 512 sample columns
+        // and rows, of which the sheared grid fills one in sixteen.
+        let covered: u32 = counts.iter().sum();
+        let inside = |place: i32, pixel: i32| (8..8200).contains(&(pixel * STEPS + place));
+        let mut expected = 0;
+        for y in 0..TILE as i32 {
+            for x in 0..TILE as i32 {
+                let places = sample_places(4);
+                expected += places.iter().filter(|p| inside(p[0], x) && inside(p[1], y)).count() as u32;
+            }
+        }
+        assert_eq!(covered, expected);
+    }
+
+    proptest! {
+        /// A quadrilateral cut along either diagonal covers the same samples, each once, and a sample is covered
+        /// exactly where it lies inside by the definition of a triangle.
+        #[test]
+        fn triangles_that_share_an_edge_neither_overlap_nor_leave_a_gap(
+            offsets in prop::array::uniform4((0i32..10_000, 0i32..10_000))
+        ) {
+            // One corner in each quadrant around the tile's middle, in the order in which they enclose it.
+            let quadrants = [(-1, -1), (1, -1), (1, 1), (-1, 1)];
+            let place = |i: usize| {
+                corner(4096 + quadrants[i].0 * offsets[i].0, 4096 + quadrants[i].1 * offsets[i].1)
+            };
+            let [a, b, c, d] = [place(0), place(1), place(2), place(3)];
+            let cross = |p: Corner, q: Corner, r: Corner| {
+                i64::from(q.x - p.x) * i64::from(r.y - p.y) - i64::from(q.y - p.y) * i64::from(r.x - p.x)
+            };
+            let turns = [cross(a, b, c), cross(b, c, d), cross(c, d, a), cross(d, a, b)];
+            prop_assume!(turns.iter().all(|&t| t > 0));
+            let first = counts(&[[a, b, c], [a, c, d]]);
+            let second = counts(&[[a, b, d], [d, b, c]]);
+            prop_assert!(first.iter().all(|&count| count <= 1));
+            prop_assert!(first == second);
+            let places = sample_places(4);
+            for pixel in 0..(TILE * TILE) as usize {
+                let (x, y) = ((pixel % TILE as usize) as i32, (pixel / TILE as usize) as i32);
+                for (s, place) in places.iter().enumerate() {
+                    let p = corner(x * STEPS + place[0], y * STEPS + place[1]);
+                    let sides = [cross(a, b, p), cross(b, c, p), cross(c, d, p), cross(d, a, p)];
+                    if sides.iter().all(|&side| side != 0) {
+                        let inside = sides.iter().all(|&side| side > 0);
+                        prop_assert_eq!(first[pixel * 16 + s] == 1, inside);
+                    }
+                }
+            }
+        }
     }
 }

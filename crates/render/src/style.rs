@@ -34,12 +34,12 @@ pub struct Lighting {
 impl Lighting {
     /// The default: reads shape well on a surface of one colour.
     pub fn studio() -> Self {
-        Self { key: 0.86, fill: 0.20, ambient: 0.20, rim: 0.22, gloss: 0.07 }
+        Self { key: 0.95, fill: 0.27, ambient: 0.26, rim: 0.25, gloss: 0.08 }
     }
 
     /// Weak contrast and no highlight, so that colours that carry data stay comparable to their legend.
     pub fn even() -> Self {
-        Self { key: 0.42, fill: 0.12, ambient: 0.56, rim: 0.0, gloss: 0.0 }
+        Self { key: 0.48, fill: 0.16, ambient: 0.64, rim: 0.0, gloss: 0.0 }
     }
 }
 
@@ -81,7 +81,7 @@ impl Default for Style {
             wire_colour: [26, 34, 48],
             wire_width: 0.9,
             background: [255; 4],
-            surface_colour: [188, 203, 220],
+            surface_colour: [182, 203, 228],
             back_colour: [222, 184, 138],
             lighting: Lighting::default(),
             samples: 4,
