@@ -20,6 +20,7 @@ pub(crate) fn map_with<S, T: Send>(
 }
 
 /// Elements a worker takes at once in [`map`]: enough that handing them out costs nothing.
+#[cfg(feature = "parallel")]
 const PIECE: usize = 8192;
 
 /// `[f(0), …, f(n−1)]`.
