@@ -33,7 +33,7 @@ pub(crate) struct CompareArguments {
     #[arg(long, value_enum, default_value = "loop")]
     pub(crate) scheme: SchemeName,
 
-    /// Samples on each surface, besides its vertices, which are always taken
+    /// Samples on each surface; all its vertices are among them, however many they are
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::positive)]
     pub(crate) samples: usize,
 

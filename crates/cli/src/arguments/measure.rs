@@ -40,14 +40,14 @@ pub(crate) struct MeasureArguments {
     /// Levels of uniform refinement that stand for the limit surface
     ///
     /// Default: 5, or fewer where they would give more than 4 million triangles. With --limit-of only.
-    #[arg(long, value_name = "N", value_parser = values::levels, requires = "limit_of")]
+    #[arg(long, value_name = "N", value_parser = values::levels)]
     pub(crate) reference_levels: Option<usize>,
 
     /// Scheme of the limit surface [default: loop]; with --limit-of only
-    #[arg(long, value_enum, requires = "limit_of")]
+    #[arg(long, value_enum)]
     pub(crate) scheme: Option<SchemeName>,
 
-    /// Samples on each surface, besides its vertices, which are always taken
+    /// Samples on each surface; all its vertices are among them, however many they are
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::positive)]
     pub(crate) samples: usize,
 

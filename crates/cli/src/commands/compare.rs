@@ -131,7 +131,7 @@ fn in_words(arguments: &CompareArguments, judge: &Judge<'_>, methods: &[Compared
     format!(
         "{}, against its limit surface ({}, {} levels)\n\n{}\n\
          Distances are symmetric Hausdorff distances in per cent of the limit surface's diagonal, sampled: lower \
-         bounds,\n{} samples a surface besides its vertices.\n",
+         bounds,\n{} samples a surface, or more where it has more vertices.\n",
         arguments.input,
         counted(judge.reference.mesh.face_count(), "triangle", "triangles"),
         judge.reference.levels,

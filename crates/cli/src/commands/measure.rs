@@ -21,9 +21,7 @@ use crate::words::{counted, number, point, table, thousands};
 
 /// Measures one surface against another.
 pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    if let Some(path) = &arguments.heatmap {
-        check_heatmap(path)?;
-    }
+    check(arguments)?;
     let start = Instant::now();
     let surface = input::load(&arguments.surface, &BuildOptions::default(), progress)?;
     let (reference, reference_report) = load_reference(arguments, progress)?;
@@ -155,6 +153,14 @@ fn write_heatmap(path: &Path, surface: Triangles<'_>, reference: Triangles<'_>) 
     let output = Output::new(surface).quality(&distances);
     interrupt::uninterrupted(|| limitmesh_io::write(path, &output, &WriteOptions::default()))?;
     Ok(())
+}
+
+/// Finds what makes no sense before any work is done.
+fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
+    if arguments.limit_of.is_none() && (arguments.reference_levels.is_some() || arguments.scheme.is_some()) {
+        return usage("--reference-levels and --scheme belong to a limit surface; they need --limit-of");
+    }
+    arguments.heatmap.as_deref().map_or(Ok(()), check_heatmap)
 }
 
 fn check_heatmap(path: &Path) -> anyhow::Result<()> {

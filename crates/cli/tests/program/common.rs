@@ -1,0 +1,180 @@
+//! Running the program from tests: a command line in; exit code, output and messages out, within a time limit.
+
+#![allow(dead_code, reason = "each test binary uses its own part")]
+#![allow(clippy::panic, reason = "a test's helpers fail the test")]
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use limitmesh::PolygonSoup;
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Longer than any command takes here, and short enough to notice one that hangs.
+const TIME_LIMIT: Duration = Duration::from_secs(120);
+
+/// What a run of the program gave.
+#[derive(Debug)]
+pub(crate) struct Run {
+    pub(crate) code: Option<i32>,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl Run {
+    /// The same run, if it ended with this code.
+    #[track_caller]
+    pub(crate) fn expect(self, code: i32) -> Self {
+        assert_eq!(self.code, Some(code), "stdout:\n{}\nstderr:\n{}", self.stdout, self.stderr);
+        self
+    }
+
+    /// Standard output as JSON.
+    #[track_caller]
+    pub(crate) fn json(&self) -> Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e} in:\n{}", self.stdout))
+    }
+
+    /// The same run, if its messages contain `words`.
+    #[track_caller]
+    pub(crate) fn saying(self, words: &str) -> Self {
+        assert!(self.stderr.contains(words), "expected '{words}' in:\n{}", self.stderr);
+        self
+    }
+}
+
+/// The program with arguments separated by spaces, and paths put in for `{}` in turn.
+pub(crate) fn command(arguments: &str, paths: &[&Path]) -> Command {
+    let mut paths = paths.iter();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_limitmesh"));
+    for word in arguments.split_whitespace() {
+        match word {
+            "{}" => command.arg(paths.next().expect("a path for each {}")),
+            word => command.arg(word),
+        };
+    }
+    command.stdin(Stdio::null());
+    command
+}
+
+/// Runs the program to its end; one that takes too long is ended and fails the test.
+#[track_caller]
+pub(crate) fn run(arguments: &str, paths: &[&Path]) -> Run {
+    let mut child = command(arguments, paths)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let stdout = read_all(child.stdout.take());
+    let stderr = read_all(child.stderr.take());
+    let code = wait(&mut child, arguments);
+    let text = |reader: thread::JoinHandle<Vec<u8>>| {
+        String::from_utf8(reader.join().expect("read")).expect("output is UTF-8")
+    };
+    Run { code, stdout: text(stdout), stderr: text(stderr) }
+}
+
+fn read_all(stream: Option<impl Read + Send + 'static>) -> thread::JoinHandle<Vec<u8>> {
+    thread::spawn(move || {
+        let mut bytes = Vec::new();
+        stream.expect("piped").read_to_end(&mut bytes).expect("readable");
+        bytes
+    })
+}
+
+fn wait(child: &mut Child, what: &str) -> Option<i32> {
+    let start = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().expect("a child can be waited for") {
+            return status.code();
+        }
+        if start.elapsed() > TIME_LIMIT {
+            child.kill().expect("a child can be ended");
+            panic!("limitmesh {what} took more than {TIME_LIMIT:?}");
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// A folder that goes when the test ends.
+pub(crate) fn folder() -> TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+/// Names of the files in a folder, sorted.
+pub(crate) fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// Writes a file and gives its path.
+pub(crate) fn file(folder: &TempDir, name: &str, content: &str) -> PathBuf {
+    let path = folder.path().join(name);
+    std::fs::write(&path, content).expect("writable");
+    path
+}
+
+/// What a mesh file is by its own indices, counted here from scratch.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Counts {
+    pub(crate) vertices: u64,
+    pub(crate) triangles: u64,
+    pub(crate) boundary_edges: u64,
+    pub(crate) non_manifold_edges: u64,
+    pub(crate) euler_characteristic: i64,
+}
+
+/// Reads a mesh back.
+#[track_caller]
+pub(crate) fn soup(path: &Path) -> PolygonSoup {
+    limitmesh_io::read(path).expect("what was written can be read")
+}
+
+/// Counts the elements of triangles.
+pub(crate) fn counts(soup: &PolygonSoup) -> Counts {
+    let mut edges = std::collections::BTreeMap::<[u32; 2], u64>::new();
+    for face in soup.faces.iter() {
+        assert_eq!(face.len(), 3, "triangles are written");
+        for i in 0..3 {
+            let (a, b) = (face[i], face[(i + 1) % 3]);
+            *edges.entry([a.min(b), a.max(b)]).or_default() += 1;
+        }
+    }
+    let having = |test: fn(u64) -> bool| edges.values().filter(|&&faces| test(faces)).count() as u64;
+    let vertices = soup.positions.len() as u64;
+    let triangles = soup.faces.len() as u64;
+    Counts {
+        vertices,
+        triangles,
+        boundary_edges: having(|faces| faces == 1),
+        non_manifold_edges: having(|faces| faces > 2),
+        euler_characteristic: vertices as i64 - edges.len() as i64 + triangles as i64,
+    }
+}
+
+/// The counts that a report claims of its output.
+pub(crate) fn claimed(output: &Value) -> Counts {
+    let count = |key: &str| output[key].as_u64().unwrap_or_else(|| panic!("{key} in {output}"));
+    Counts {
+        vertices: count("vertices"),
+        triangles: count("triangles"),
+        boundary_edges: count("boundary_edges"),
+        non_manifold_edges: count("non_manifold_edges"),
+        euler_characteristic: output["euler_characteristic"].as_i64().expect("a number"),
+    }
+}
+
+/// Whether all keys of a list, separated by spaces, are there; a point goes into an object.
+#[track_caller]
+pub(crate) fn has_keys(value: &Value, keys: &str) {
+    for key in keys.split_whitespace() {
+        let pointer = format!("/{}", key.replace('.', "/"));
+        assert!(value.pointer(&pointer).is_some(), "no {key} in {value:#}");
+    }
+}

@@ -1,0 +1,71 @@
+//! `info` and `models`: what is in a file, in words and as JSON.
+
+use crate::common::{file, folder, has_keys, run};
+
+#[test]
+fn every_listed_model_can_be_examined() {
+    let list = run("models --json", &[]).expect(0).json();
+    let list = list.as_array().expect("a list");
+    assert!(list.len() >= 8, "{list:?}");
+    let text = run("models", &[]).expect(0).stdout;
+    for model in list {
+        let name = model["name"].as_str().expect("a name");
+        assert!(text.contains(&format!("builtin:{name}")), "{text}");
+        let report = run(&format!("info builtin:{name} --json"), &[]).expect(0).json();
+        has_keys(
+            &report,
+            "version input.path input.format input.vertices input.faces polygons tags.creases
+             diagnosis.clean mesh.vertices mesh.edges mesh.triangles mesh.components mesh.genus
+             mesh.euler_characteristic mesh.boundary_loops mesh.boundary_edges mesh.watertight
+             mesh.min_valence mesh.max_valence mesh.irregular_vertices mesh.bounding_box.low
+             mesh.bounding_box.high mesh.bounding_box.diagonal mesh.min_angle_degrees
+             mesh.mean_min_angle_degrees mesh.angle_histogram",
+        );
+        assert_eq!(report["diagnosis"]["clean"], true, "{name}");
+        assert_eq!(report["input"]["format"], "builtin");
+    }
+}
+
+#[test]
+fn known_shapes_have_their_topology() {
+    // Components, genus, Euler characteristic, boundary loops.
+    for (name, expected) in
+        [("torus", [1, 1, 0, 0]), ("cup", [1, 1, 0, 0]), ("sphere", [1, 0, 2, 0]), ("sheet", [1, 0, 1, 1])]
+    {
+        let mesh = run(&format!("info builtin:{name} --json"), &[]).expect(0).json()["mesh"].clone();
+        let found = ["components", "genus", "euler_characteristic", "boundary_loops"]
+            .map(|key| mesh[key].as_i64().expect("a number"));
+        assert_eq!(found, expected, "{name}");
+    }
+    let text = run("info builtin:cube", &[]).expect(0).stdout;
+    for words in
+        ["6 with 4 corners", "cut into triangles", "8 vertices, 18 edges, 12 triangles", "watertight"]
+    {
+        assert!(text.contains(words), "{words} in:\n{text}");
+    }
+}
+
+#[test]
+fn findings_are_named_in_words() {
+    let folder = folder();
+    let bad = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 5 5 5\nf 1 2 3\nf 2 3 4\nf 1 1 2\nf 3 1 2\n";
+    let input = file(&folder, "bad.obj", bad);
+    let text = run("info {}", &[&input]).expect(0).stdout;
+    for words in [
+        "1 face with fewer than three different corners: left out (face 2)",
+        "1 face that repeats another: left out (face 3)",
+        "1 vertex in no face: left out (vertex 4)",
+        "turned round",
+    ] {
+        assert!(text.contains(words), "{words} in:\n{text}");
+    }
+}
+
+#[test]
+fn a_file_without_faces_is_an_error() {
+    let folder = folder();
+    let input = file(&folder, "points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    for command in ["info {}", "measure {} builtin:cube", "compare {}"] {
+        run(command, &[&input]).expect(1).saying("points.obj");
+    }
+}

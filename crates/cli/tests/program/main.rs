@@ -1,0 +1,10 @@
+//! The program as its users meet it: commands, files, exit codes, the JSON contract.
+
+mod common;
+mod compare;
+mod examine;
+mod measure;
+mod refine;
+mod render;
+mod usage;
+mod writing;

@@ -1,0 +1,102 @@
+//! `measure`: distances with known answers, limit surfaces, the JSON contract.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::common::{file, folder, has_keys, run};
+
+const CONTRACT: &str = "version surface.path surface.triangles reference.path reference.triangles
+    reference.limit hausdorff.kind hausdorff.symmetric hausdorff.symmetric_percent hausdorff.forward
+    hausdorff.backward hausdorff.samples hausdorff.reference_diagonal
+    hausdorff.forward_detail.max hausdorff.forward_detail.mean hausdorff.forward_detail.rms
+    hausdorff.forward_detail.samples hausdorff.forward_detail.at hausdorff.forward_detail.to
+    hausdorff.backward_detail.max hausdorff.backward_detail.mean hausdorff.backward_detail.rms
+    seconds.prepare seconds.measure";
+
+fn measure(arguments: &str, paths: &[&Path]) -> Value {
+    let report = run(&format!("measure {arguments} --json"), paths).expect(0).json();
+    has_keys(&report, CONTRACT);
+    report
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+fn near(value: &Value, expected: f64) {
+    assert!((number(value) - expected).abs() <= 1e-12, "{value} {expected}");
+}
+
+#[test]
+fn parallel_squares_are_as_far_apart_as_they_stand() {
+    let folder = folder();
+    let low = file(&folder, "low.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    let high = file(&folder, "high.obj", "v 0 0 .25\nv 2 0 .25\nv 2 1 .25\nv 0 1 .25\nf 1 2 3 4\n");
+    let report = measure("{} {} --samples 5000", &[&low, &high]);
+    let h = &report["hausdorff"];
+    near(&h["forward"], 0.25);
+    near(&h["forward_detail"]["mean"], 0.25);
+    near(&h["forward_detail"]["rms"], 0.25);
+    // From the far end of the longer square, which is sampled because it is a vertex.
+    let far = (1.0f64 + 0.0625).sqrt();
+    near(&h["backward"], far);
+    near(&h["symmetric"], far);
+    near(&h["symmetric_percent"], 100.0 * far / 5f64.sqrt());
+    near(&h["reference_diagonal"], 5f64.sqrt());
+    near(&h["backward_detail"]["at"][0], 2.0);
+    near(&h["backward_detail"]["to"][0], 1.0);
+    assert_eq!(h["kind"], "sampled lower bound");
+    let samples = number(&h["forward_detail"]["samples"]) + number(&h["backward_detail"]["samples"]);
+    assert_eq!(number(&h["samples"]), samples);
+    assert!(samples >= 8000.0, "{samples}");
+}
+
+#[test]
+fn a_surface_has_no_distance_to_itself() {
+    let report = measure("builtin:cup builtin:cup", &[]);
+    assert!(number(&report["hausdorff"]["symmetric_percent"]) < 1e-10, "{report}");
+}
+
+#[test]
+fn refinement_with_limit_vertices_approaches_the_limit_surface() {
+    let folder = folder();
+    let refined = folder.path().join("refined.ply");
+    let mut last = f64::INFINITY;
+    for levels in 0..4 {
+        let options = format!("--method uniform --limit --levels {levels}");
+        run(&format!("refine builtin:torus -o {{}} {options}"), &[&refined]).expect(0);
+        let report = measure("{} --limit-of builtin:torus", &[&refined]);
+        let percent = number(&report["hausdorff"]["symmetric_percent"]);
+        // The error of a regular mesh falls to a quarter with each level; the reference is finite itself.
+        assert!(percent < 0.3 * last, "level {levels}: {percent} after {last}");
+        assert_eq!(report["reference"]["limit"]["levels"], 5);
+        assert_eq!(report["reference"]["limit"]["chosen"], true);
+        assert_eq!(report["reference"]["triangles"], 256 * 1024);
+        last = percent;
+    }
+    let same = measure("{} --limit-of builtin:torus --reference-levels 3", &[&refined]);
+    assert!(number(&same["hausdorff"]["symmetric_percent"]) < 1e-10);
+    assert_eq!(same["reference"]["limit"]["chosen"], false);
+}
+
+#[test]
+fn the_text_says_that_samples_give_a_lower_bound() {
+    let text = run("measure builtin:icosphere --limit-of builtin:icosphere", &[]).expect(0).stdout;
+    for words in
+        ["lower bound", "samples", "% of the reference's diagonal", "RMS", "closest point", "5 levels"]
+    {
+        assert!(text.contains(words), "{words} in:\n{text}");
+    }
+}
+
+#[test]
+fn non_manifold_surfaces_can_be_measured() {
+    let folder = folder();
+    let fan = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
+    let input = file(&folder, "fan.obj", fan);
+    let report = measure("{} {}", &[&input, &input]);
+    assert!(number(&report["hausdorff"]["symmetric"]) < 1e-12);
+    assert_eq!(report["surface"]["diagnosis"]["clean"], false);
+    assert!(run("measure {} {}", &[&input, &input]).expect(0).stdout.contains("repaired first"));
+}

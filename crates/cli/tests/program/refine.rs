@@ -1,0 +1,277 @@
+//! `refine`: the mesh written, the report about it, the caps, the options' effects.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::common::{Counts, claimed, counts, file, folder, has_keys, run, soup};
+
+/// The keys that users of the report may rely on.
+const CONTRACT: &str = "version input.path input.format input.vertices input.faces diagnosis.clean
+    diagnosis.polygons.count diagnosis.polygons.first diagnosis.welded_vertices.count
+    diagnosis.collapsed_faces.count diagnosis.zero_area_faces.count diagnosis.repeated_faces.count
+    diagnosis.isolated_vertices.count diagnosis.flipped_faces.count diagnosis.non_orientable_faces.count
+    diagnosis.non_manifold_edges.count diagnosis.bow_tie_vertices.count diagnosis.dropped_tags.count
+    parameters.method parameters.angle_degrees parameters.levels parameters.scheme parameters.seam
+    parameters.view parameters.limit parameters.max_triangles parameters.weld parameters.strict
+    steps stop output.path output.vertices output.triangles output.boundary_edges
+    output.non_manifold_edges output.watertight output.euler_characteristic output.components
+    output.t_junctions output.min_angle_degrees output.mean_min_angle_degrees output.angle_histogram
+    seconds.read seconds.repair seconds.refine seconds.write seconds.total";
+
+/// Refines and gives the report, after checking that it fits the file.
+fn refine(input: &str, output: &Path, options: &str) -> Value {
+    let run = run(&format!("refine {input} -o {{}} --report - {options}"), &[output]).expect(0);
+    let report = run.json();
+    has_keys(&report, CONTRACT);
+    assert_eq!(claimed(&report["output"]), counts(&soup(output)), "{input} {options}");
+    check_steps(&report);
+    report
+}
+
+/// Each step starts where the one before ended, and its faces add up: divisible ones and those of Figure 5's
+/// case (d) give four, cases (a) to (c) one to three.
+fn check_steps(report: &Value) {
+    let number = |value: &Value| value.as_u64().expect("a count");
+    let steps = report["steps"].as_array().expect("a list");
+    for (i, step) in steps.iter().enumerate() {
+        assert_eq!(number(&step["step"]), i as u64 + 1);
+        let [a, b, c, d] = [0, 1, 2, 3].map(|case| number(&step["closure"][case]));
+        let divisible = number(&step["divisible"]);
+        assert_eq!(number(&step["faces_before"]), divisible + a + b + c + d);
+        assert_eq!(number(&step["faces_after"]), 4 * (divisible + d) + 3 * c + 2 * b + a);
+        if i > 0 {
+            assert_eq!(step["faces_before"], steps[i - 1]["faces_after"]);
+        }
+    }
+    if let Some(last) = steps.last() {
+        assert_eq!(last["faces_after"], report["output"]["triangles"]);
+    }
+}
+
+#[test]
+fn every_built_in_model_is_refined_by_every_method() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    for model in limitmesh::models::all() {
+        let name = format!("builtin:{}", model.name);
+        for options in ["--levels 2", "--method amresh --levels 2", "--method uniform --levels 1"] {
+            let report = refine(&name, &output, options);
+            let info = run(&format!("info {name} --json"), &[]).expect(0).json();
+            assert_eq!(report["output"]["euler_characteristic"], info["mesh"]["euler_characteristic"]);
+            assert_eq!(report["output"]["watertight"], info["mesh"]["watertight"], "{name} {options}");
+            assert_eq!(report["output"]["t_junctions"], 0, "{name} {options}");
+            assert_eq!(report["output"]["non_manifold_edges"], 0, "{name} {options}");
+        }
+    }
+}
+
+#[test]
+fn uniform_refinement_quadruples_the_faces_of_the_head() {
+    let folder = folder();
+    let report = refine("builtin:head", &folder.path().join("out.off"), "--method uniform");
+    assert_eq!(report["output"]["triangles"], 9088);
+    assert_eq!(report["stop"], "levels");
+    assert_eq!(report["parameters"]["angle_degrees"], Value::Null);
+    assert_eq!(report["parameters"]["seam"], Value::Null);
+}
+
+#[test]
+fn defaults_are_limit_normal_ten_degrees_three_levels_loop_all() {
+    let folder = folder();
+    let parameters = refine("builtin:shoe", &folder.path().join("out.ply"), "")["parameters"].clone();
+    let expected = serde_json::json!({
+        "method": "limit-normal", "angle_degrees": 10.0, "levels": 3, "scheme": "loop", "seam": "all",
+        "view": null, "limit": false, "max_triangles": 50_000_000, "weld": 0.0, "strict": false
+    });
+    assert_eq!(parameters, expected);
+}
+
+#[test]
+fn a_smaller_angle_gives_more_triangles_and_a_view_fewer() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let triangles = |options: &str| {
+        refine("builtin:icosphere", &output, options)["output"]["triangles"].as_u64().expect("a count")
+    };
+    let (wide, narrow) = (triangles("--angle 10"), triangles("--angle 3"));
+    assert!(wide < narrow, "{wide} {narrow}");
+    // Two levels, so that the outline, which is divided at any angle, cannot outweigh the back.
+    let seen = triangles("--angle 3 --levels 2 --view 0,0,-1");
+    assert!(seen < narrow, "faces that look away stay: {seen} {narrow}");
+    let from_near = triangles("--angle 3 --levels 2 --eye 0,0,3");
+    assert!(from_near < seen, "an eye sees less than half of a sphere: {from_near} {seen}");
+    assert!(triangles("--angle 3 --levels 2 --view 0,0,-1 --dilatation 3") < seen);
+}
+
+#[test]
+fn every_format_holds_the_same_mesh() {
+    let folder = folder();
+    let welded =
+        |path: &Path| limitmesh::Mesh::from_soup(&soup(path), &Default::default()).expect("a mesh").0;
+    let ply = folder.path().join("out.ply");
+    refine("builtin:cup", &ply, "--levels 1");
+    let expected = welded(&ply);
+    for (name, options) in
+        [("out.obj", ""), ("out.off", ""), ("text.ply", "--ascii"), ("out.stl", ""), ("text.stl", "--ascii")]
+    {
+        let path = folder.path().join(name);
+        run(&format!("refine builtin:cup -o {{}} --levels 1 {options}"), &[&path]).expect(0);
+        let mesh = welded(&path);
+        if name.ends_with("stl") {
+            // Single precision, and vertices in the order of the facets.
+            assert_eq!(mesh.face_count(), expected.face_count());
+            assert_eq!(mesh.vertex_count(), expected.vertex_count());
+            assert!((mesh.diagonal() - expected.diagonal()).abs() < 1e-6);
+        } else {
+            assert_eq!(mesh, expected, "{name}");
+        }
+    }
+}
+
+#[test]
+fn limit_positions_of_a_tetrahedron_follow_the_closed_form() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    refine("builtin:tetrahedron", &output, "--method uniform --levels 0 --limit");
+    let control = limitmesh::models::find("tetrahedron").expect("a model").soup();
+    let limit = soup(&output);
+    for (i, p) in limit.positions.iter().enumerate() {
+        for axis in 0..3 {
+            // Loop at valence 3: each neighbour weighs 1/5, the vertex the remaining 2/5.
+            let sum: f64 = control.positions.iter().map(|q| q[axis]).sum();
+            let expected = 0.2 * sum + 0.2 * control.positions[i][axis];
+            assert!((p[axis] - expected).abs() < 1e-14, "vertex {i}: {} {expected}", p[axis]);
+        }
+    }
+}
+
+#[test]
+fn the_cap_stops_before_the_step_that_would_pass_it() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let report_path = folder.path().join("report.json");
+    let run = run(
+        "refine builtin:head -o {} --method uniform --levels 5 --max-triangles 3000 --report {} --quiet",
+        &[&output, &report_path],
+    );
+    let run = run.expect(3).saying("9,088 triangles").saying("--max-triangles 3,000");
+    assert_eq!(run.stdout, "");
+    let report: Value =
+        serde_json::from_slice(&std::fs::read(&report_path).expect("a report")).expect("JSON");
+    assert_eq!(report["stop"], "triangle-cap");
+    assert_eq!(report["needed_triangles"], 9088);
+    assert_eq!(report["steps"].as_array().map(Vec::len), Some(2));
+    let written = counts(&soup(&output));
+    assert_eq!(written, claimed(&report["output"]));
+    assert_eq!(written.triangles, 2272);
+}
+
+#[test]
+fn a_cap_below_the_input_writes_the_input() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    run("refine builtin:head -o {} --max-triangles 10", &[&output]).expect(3).saying("stopped short");
+    assert_eq!(counts(&soup(&output)).triangles, 142);
+}
+
+#[test]
+fn flat_faces_satisfy_the_criterion_at_once() {
+    let folder = folder();
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    let input = file(&folder, "square.obj", square);
+    let output = folder.path().join("out.ply");
+    let run = run("refine {} -o {} --report -", &[&input, &output]).expect(0).saying("no face is divisible");
+    assert_eq!(run.json()["stop"], "satisfied");
+    assert_eq!(run.json()["diagnosis"]["polygons"]["first"], serde_json::json!([0]));
+    assert_eq!(
+        counts(&soup(&output)),
+        Counts {
+            vertices: 4,
+            triangles: 2,
+            boundary_edges: 4,
+            non_manifold_edges: 0,
+            euler_characteristic: 1
+        }
+    );
+}
+
+#[test]
+fn results_are_the_same_bytes_for_any_number_of_threads() {
+    let folder = folder();
+    let bytes = |threads: usize, options: &str| {
+        let output = folder.path().join(format!("out{threads}.ply"));
+        run(&format!("refine builtin:shoe -o {{}} --threads {threads} {options}"), &[&output]).expect(0);
+        std::fs::read(&output).expect("a file")
+    };
+    // Large enough that the loops do run in parallel.
+    for options in ["--angle 3 --levels 4", "--method uniform --levels 3 --limit", "--scheme butterfly"] {
+        let one = bytes(1, options);
+        assert!(one.len() > 100_000, "{options}");
+        assert!(one == bytes(2, options), "{options}");
+        assert!(one == bytes(5, options), "{options}");
+    }
+}
+
+#[test]
+fn repairs_are_told_and_strict_refuses_them() {
+    let folder = folder();
+    // Three triangles on one edge, and a vertex that no face uses.
+    let fan = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nv 9 9 9\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
+    let input = file(&folder, "fan.obj", fan);
+    let output = folder.path().join("out.ply");
+    let report = run("refine {} -o {} --report -", &[&input, &output])
+        .expect(0)
+        .saying("1 edge with more than two faces")
+        .saying("1 vertex in no face: left out (vertex 5)")
+        .json();
+    assert_eq!(report["diagnosis"]["clean"], false);
+    assert_eq!(report["diagnosis"]["non_manifold_edges"]["count"], 1);
+    assert_eq!(claimed(&report["output"]), counts(&soup(&output)));
+    std::fs::remove_file(&output).expect("removable");
+    run("refine {} -o {} --strict", &[&input, &output]).expect(1).saying("strict");
+    assert!(!output.exists());
+}
+
+#[test]
+fn welding_within_a_distance_closes_a_gap() {
+    let folder = folder();
+    let gap = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.001 0 0\nv 0 1.001 0\nv 1 1 0.2\nf 1 2 3\nf 4 6 5\n";
+    let input = file(&folder, "gap.obj", gap);
+    let components = |options: &str| {
+        run(&format!("info {{}} --json {options}"), &[&input]).expect(0).json()["mesh"]["components"].clone()
+    };
+    assert_eq!(components(""), 2);
+    assert_eq!(components("--weld 0.01"), 1);
+}
+
+#[test]
+fn ply_carries_limit_normals() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    run("refine builtin:icosphere -o {} --levels 1 --ascii", &[&output]).expect(0);
+    let text = std::fs::read_to_string(&output).expect("text");
+    let (header, body) = text.split_once("end_header\n").expect("a header");
+    let properties: Vec<&str> =
+        header.lines().filter(|line| line.starts_with("property") && !line.contains("list")).collect();
+    let names: Vec<&str> = properties.iter().filter_map(|line| line.split(' ').next_back()).collect();
+    assert_eq!(names, ["x", "y", "z", "nx", "ny", "nz"]);
+    let numbers: Vec<f64> =
+        body.lines().next().expect("a vertex").split(' ').map(|x| x.parse().expect("a number")).collect();
+    // A sphere's normal at a vertex of the icosahedron's symmetry points where the vertex does.
+    let dot: f64 = (0..3).map(|i| numbers[i] * numbers[i + 3]).sum();
+    let length = numbers[..3].iter().map(|x| x * x).sum::<f64>().sqrt();
+    assert!(dot > 0.999 * length, "{numbers:?}");
+}
+
+#[test]
+fn tags_reach_the_output_where_its_format_has_them() {
+    let folder = folder();
+    let cage = "v 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nt corner 1/1/0 0 10.0\n";
+    let input = file(&folder, "tagged.obj", cage);
+    let output = folder.path().join("out.obj");
+    run("refine {} -o {} --levels 2", &[&input, &output]).expect(0);
+    let soup = soup(&output);
+    assert_eq!(soup.corners.len(), 1);
+    assert_eq!(soup.positions[soup.corners[0].vertex as usize], [0.0, 0.0, 1.0]);
+}

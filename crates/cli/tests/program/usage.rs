@@ -1,0 +1,90 @@
+//! Wrong command lines: exit code 2, a message that says what is wrong, and no file touched.
+
+use crate::common::{folder, names, run};
+
+#[test]
+fn nothing_to_do_is_a_usage_error() {
+    run("", &[]).expect(2).saying("Usage: limitmesh");
+    run("polish x.obj", &[]).expect(2).saying("polish");
+    run("refine builtin:head", &[]).expect(2).saying("--output");
+}
+
+#[test]
+fn help_and_version_are_printed() {
+    let help = run("--help", &[]).expect(0).stdout;
+    for command in ["refine", "measure", "compare", "render", "info", "models", "Exit codes"] {
+        assert!(help.contains(command), "{command} in:\n{help}");
+    }
+    let help = run("refine --help", &[]).expect(0).stdout;
+    for word in ["degrees", "default: 3", "Examples:", "limit-normal", "silhouette"] {
+        assert!(help.contains(word), "{word} in:\n{help}");
+    }
+    let version = run("--version", &[]).expect(0).stdout;
+    assert_eq!(version.trim(), concat!("limitmesh ", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn options_out_of_range_are_refused_before_any_work() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let wrong = [
+        ("--angle 0", "above 0"),
+        ("--angle -5", "above 0"),
+        ("--angle 180.5", "at most 180"),
+        ("--angle NaN", "not a finite number"),
+        ("--angle ten", "not a number"),
+        ("--levels 13", "at most 12"),
+        ("--levels two", "whole number"),
+        ("--view 0,0,0", "no direction"),
+        ("--view 1,2", "three"),
+        ("--view 1,2,inf", "not a finite number"),
+        ("--view 0,0,1 --eye 0,0,1", "cannot be used with"),
+        ("--dilatation 2", "--view or --eye"),
+        ("--view 0,0,1 --dilatation -1", "at least 0"),
+        ("--view 0,0,1 --method amresh", "limit-normal"),
+        ("--eye 0,0,1 --method uniform", "limit-normal"),
+        ("--method uniform --angle 5", "divides every face"),
+        ("--method uniform --seam any", "never meet"),
+        ("--max-triangles 0", "at least 1"),
+        ("--weld -1", "at least 0"),
+        ("--weld near", "'none'"),
+        ("--scheme catmull", "loop-warren"),
+        ("--picture p.jpg", ".png"),
+        ("--threads 100000", "at most"),
+    ];
+    for (options, words) in wrong {
+        run(&format!("refine builtin:head -o {{}} {options}"), &[&output]).expect(2).saying(words);
+    }
+    let other = folder.path().join("out.vtk");
+    run("refine builtin:head -o {}", &[&other]).expect(2).saying("'vtk'").saying(".ply");
+    run("refine builtin:head -o {} --report {}", &[&output, &output]).expect(2).saying("twice");
+    assert_eq!(names(folder.path()), [""; 0]);
+}
+
+#[test]
+fn measuring_needs_exactly_one_reference() {
+    run("measure builtin:head", &[]).expect(2);
+    run("measure builtin:head builtin:cup --limit-of builtin:head", &[])
+        .expect(2)
+        .saying("cannot be used with");
+    run("measure builtin:head builtin:cup --reference-levels 3", &[]).expect(2).saying("--limit-of");
+    run("measure builtin:head builtin:cup --samples 0", &[]).expect(2).saying("at least 1");
+    run("measure builtin:head --limit-of builtin:head --reference-levels 12", &[])
+        .expect(2)
+        .saying("levels are possible");
+}
+
+#[test]
+fn an_unknown_built_in_model_lists_those_there_are() {
+    let run = run("info builtin:dragon", &[]).expect(1).saying("dragon");
+    for model in limitmesh::models::all() {
+        assert!(run.stderr.contains(model.name), "{} in {}", model.name, run.stderr);
+    }
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let run = run("info no-such-file.obj", &[]).expect(1).saying("no-such-file.obj");
+    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+    assert_eq!(run.stdout, "");
+}
