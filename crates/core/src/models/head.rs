@@ -16,8 +16,8 @@ const POINTS: [(char, [f64; 3]); 46] = [
     ('E', [0.0, -0.185, 0.585]),
     ('F', [0.0, -0.075, 0.57]),
     ('G', [0.0, 0.0, 0.69]),
-    ('H', [0.0, 0.26, 0.545]),
-    ('I', [0.0, 0.38, 0.565]),
+    ('H', [0.0, 0.285, 0.54]),
+    ('I', [0.0, 0.4, 0.55]),
     ('J', [0.0, 0.65, 0.5]),
     ('K', [0.0, 0.935, 0.2]),
     ('L', [0.0, 0.955, -0.2]),
@@ -32,10 +32,10 @@ const POINTS: [(char, [f64; 3]); 46] = [
     ('a', [0.12, -0.05, 0.545]),
     ('b', [0.08, 0.12, 0.55]),
     // Eye: inner corner, ball, outer corner; brow: middle, end.
-    ('c', [0.11, 0.22, 0.455]),
-    ('d', [0.23, 0.21, 0.46]),
+    ('c', [0.105, 0.225, 0.45]),
+    ('d', [0.235, 0.215, 0.47]),
     ('e', [0.37, 0.21, 0.36]),
-    ('f', [0.22, 0.36, 0.525]),
+    ('f', [0.22, 0.365, 0.52]),
     ('g', [0.41, 0.33, 0.39]),
     // Cheekbone: below the eye, towards the ear; mouth corner, cheek, chin, jaw.
     ('h', [0.25, 0.05, 0.49]),
@@ -65,7 +65,7 @@ const POINTS: [(char, [f64; 3]); 46] = [
 
 /// The 71 triangles of the half by the letters of their corners.
 const TRIANGLES: &str = "\
-    FaG Gab bHG cHb hcb hba Icf IHc fcd gfd deg dhe dch ehi eig qgi aFE aEj \
+    FaG Gab bHG cHb hcb hba fIH fHc fcd gfd deg dhe dch ehi eig qgi aFE aEj \
     ajh ihk khj jED nkj jln lCB lon lBo ikm ims isr rqi mkn mno oTm QBA oBQ \
     oQR oRT smT sur utr tvr uvt svu sTv Tyv TOy yON yxv rvx rxq xwq IpJ fpI \
     gpf qpg pKJ wKp wpq wLK wzL zML xzw yzx yMz yNM TRO ORP jDU jUl lUC";

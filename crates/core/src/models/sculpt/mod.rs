@@ -12,6 +12,8 @@ pub(super) mod field;
 mod fit;
 mod polish;
 mod surface;
+#[cfg(test)]
+mod tests;
 
 pub(super) use contour::Grid;
 pub(super) use fit::mirrored_with_limit_through;

@@ -29,50 +29,53 @@ pub(super) fn polish(half: &mut Surface, field: Field<'_>) {
 /// or turns slivers into better triangles.
 fn flip_edges(half: &mut Surface) {
     let edges = half.directed_edges();
-    let mut valence: Vec<i64> = half.neighbours().iter().map(|(all, _)| all.len() as i64).collect();
-    // An edge that is there already must not be made a second time.
-    let joined = |made: &[(u32, u32)], c: u32, d: u32| {
-        let found = |from, to| {
-            let place = edges.partition_point(|e| (e.0, e.1) < (from, to));
-            edges.get(place).is_some_and(|e| (e.0, e.1) == (from, to))
-        };
-        found(c, d) || found(d, c) || made.contains(&(c, d)) || made.contains(&(d, c))
+    let find = |from: u32, to: u32| {
+        let place = edges.partition_point(|e| (e.0, e.1) < (from, to));
+        edges.get(place).filter(|e| (e.0, e.1) == (from, to))
     };
+    let mut valence: Vec<i64> = half.neighbours().iter().map(|(all, _)| all.len() as i64).collect();
     let mut touched = vec![false; half.triangles.len()];
     let mut made: Vec<(u32, u32)> = Vec::new();
     for &(a, b, c, face) in edges.iter().filter(|e| e.0 < e.1) {
-        let twin = edges.partition_point(|e| (e.0, e.1) < (b, a));
-        let Some(&(_, _, d, other)) = edges.get(twin).filter(|e| (e.0, e.1) == (b, a)) else { continue };
-        if touched[face as usize] || touched[other as usize] || joined(&made, c, d) {
+        let Some(&(_, _, d, other)) = find(b, a) else { continue };
+        // An edge that is there already must not be made a second time.
+        let joined = find(c, d).is_some() || find(d, c).is_some() || made.contains(&(c.min(d), c.max(d)));
+        let [face, other] = [face as usize, other as usize];
+        if touched[face] || touched[other] || joined || !flip_is_better(half, &valence, [a, b, c, d]) {
             continue;
         }
-        let p = |v: u32| half.positions[v as usize];
-        let normal = |[a, b, c]: [u32; 3]| (p(b) - p(a)).cross(p(c) - p(a)).normalize_or_zero();
-        let (old, new) = ([[a, b, c], [b, a, d]], [[a, d, c], [d, b, c]]);
-        let flat = normal(old[0]).dot(normal(old[1])) > FLAT_ENOUGH
-            && normal(new[0]).dot(normal(new[1])) > FLAT_ENOUGH;
-        let in_mirror = new.iter().any(|t| t.iter().all(|&v| p(v).x == 0.0));
-        if !flat || in_mirror {
-            continue;
-        }
-        let worst = |pair: [[u32; 3]; 2]| shape(pair[0].map(p)).min(shape(pair[1].map(p)));
-        let off =
-            |v: u32, change: i64| (valence[v as usize] + change - if p(v).x == 0.0 { 4 } else { 6 }).pow(2);
-        let before = off(a, 0) + off(b, 0) + off(c, 0) + off(d, 0);
-        let after = off(a, -1) + off(b, -1) + off(c, 1) + off(d, 1);
-        let better_valence = after < before && worst(new) > 0.6 * worst(old);
-        let better_shape = after <= before + 2 && worst(new) > 1.5 * worst(old);
-        if (better_valence || better_shape) && valence[a as usize] > 4 && valence[b as usize] > 4 {
-            half.triangles[face as usize] = new[0];
-            half.triangles[other as usize] = new[1];
-            touched[face as usize] = true;
-            touched[other as usize] = true;
-            made.push((c, d));
-            for (v, change) in [(a, -1), (b, -1), (c, 1), (d, 1)] {
-                valence[v as usize] += change;
-            }
+        half.triangles[face] = [a, d, c];
+        half.triangles[other] = [d, b, c];
+        touched[face] = true;
+        touched[other] = true;
+        made.push((c.min(d), c.max(d)));
+        for (v, change) in [(a, -1), (b, -1), (c, 1), (d, 1)] {
+            valence[v as usize] += change;
         }
     }
+}
+
+/// Whether the edge between `a` and `b`, with `c` on its left and `d` on its right, had better join `c` and `d`.
+fn flip_is_better(half: &Surface, valence: &[i64], [a, b, c, d]: [u32; 4]) -> bool {
+    let p = |v: u32| half.positions[v as usize];
+    let normal = |[a, b, c]: [u32; 3]| (p(b) - p(a)).cross(p(c) - p(a)).normalize_or_zero();
+    let (old, new) = ([[a, b, c], [b, a, d]], [[a, d, c], [d, b, c]]);
+    let flat = |pair: [[u32; 3]; 2]| normal(pair[0]).dot(normal(pair[1])) > FLAT_ENOUGH;
+    let in_mirror = new.iter().any(|t| t.iter().all(|&v| p(v).x == 0.0));
+    let loses_too_much = valence[a as usize] <= 4 || valence[b as usize] <= 4;
+    if !flat(old) || !flat(new) || in_mirror || loses_too_much {
+        return false;
+    }
+    let worst = |pair: [[u32; 3]; 2]| shape(pair[0].map(p)).min(shape(pair[1].map(p)));
+    let off = |v: u32, change: i64| {
+        let regular = if p(v).x == 0.0 { 4 } else { 6 };
+        (valence[v as usize] + change - regular).pow(2)
+    };
+    let before = off(a, 0) + off(b, 0) + off(c, 0) + off(d, 0);
+    let after = off(a, -1) + off(b, -1) + off(c, 1) + off(d, 1);
+    let better_valence = after < before && worst(new) > 0.6 * worst(old);
+    let better_shape = after <= before + 2 && worst(new) > 1.5 * worst(old);
+    better_valence || better_shape
 }
 
 /// Moves each vertex towards the mean of its neighbours within the surface, then back onto the body.
