@@ -71,8 +71,9 @@ impl<'s, 'a> Samples<'s, 'a> {
     pub(super) fn new(surface: &'s Bvh<'a>, wanted: usize) -> Self {
         let vertices = vertices_in_order(surface);
         let rest = wanted.saturating_sub(vertices.len()).max(wanted / LEAST_SHARE).max(1);
-        let sides = Spread::new(surface, rest / SIDE_SHARE, perimeter);
-        let insides = Spread::new(surface, rest - rest / SIDE_SHARE, area);
+        let [lengths, areas] = weights_before(surface);
+        let sides = Spread::new(rest / SIDE_SHARE, lengths, perimeter);
+        let insides = Spread::new(rest - rest / SIDE_SHARE, areas, area);
         Self { surface, vertices, sides, insides }
     }
 
@@ -165,22 +166,33 @@ fn along_sides([a, b, c]: [DVec3; 3], scaled: [DVec3; 3], into: f64) -> DVec3 {
     }
 }
 
-impl Spread {
-    fn new(surface: &Bvh<'_>, count: usize, weight: fn([DVec3; 3]) -> f64) -> Self {
-        let faces = surface.surface().triangles.len();
-        let mut before = vec![0.0; faces.div_ceil(PIECE) + 1];
-        parallel::for_each_chunk(&mut before[1..], 256, |run, sums| {
-            for (i, sum) in sums.iter_mut().enumerate() {
-                let first = (run * 256 + i) * PIECE;
-                let slots = first..faces.min(first + PIECE);
-                *sum = slots.map(|slot| weight(surface.scaled_corners(slot))).sum();
+/// Perimeters and areas before each piece of triangles, and their totals at the end.
+fn weights_before(surface: &Bvh<'_>) -> [Vec<f64>; 2] {
+    let faces = surface.surface().triangles.len();
+    let mut sums = vec![[0.0; 2]; faces.div_ceil(PIECE)];
+    parallel::for_each_chunk(&mut sums, 256, |run, sums| {
+        for (i, sum) in sums.iter_mut().enumerate() {
+            let first = (run * 256 + i) * PIECE;
+            for slot in first..faces.min(first + PIECE) {
+                let corners = surface.scaled_corners(slot);
+                sum[0] += perimeter(corners);
+                sum[1] += area(corners);
             }
-        });
-        let mut total = 0.0;
-        for sum in &mut before {
-            total += *sum;
-            *sum = total;
         }
+    });
+    [0, 1].map(|kind| {
+        let mut total = 0.0;
+        let running = sums.iter().map(|sum| {
+            total += sum[kind];
+            total
+        });
+        core::iter::once(0.0).chain(running).collect()
+    })
+}
+
+impl Spread {
+    fn new(count: usize, before: Vec<f64>, weight: fn([DVec3; 3]) -> f64) -> Self {
+        let total = before[before.len() - 1];
         Self { count: if total > 0.0 { count } else { 0 }, before, weight }
     }
 

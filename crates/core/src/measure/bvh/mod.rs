@@ -205,13 +205,20 @@ impl<'a> Bvh<'a> {
     /// Corners of that triangle.
     #[inline]
     pub(super) fn corners(&self, slot: usize) -> [DVec3; 3] {
-        self.slots[slot].corners.map(|v| vector(self.surface.positions[v as usize]))
+        let [a, b, c] = self.slots[slot].corners;
+        [self.position(a), self.position(b), self.position(c)]
+    }
+
+    #[inline]
+    fn position(&self, vertex: u32) -> DVec3 {
+        vector(self.surface.positions[vertex as usize])
     }
 
     /// The same, scaled so that squares and products neither overflow nor vanish.
     #[inline]
     pub(super) fn scaled_corners(&self, slot: usize) -> [DVec3; 3] {
-        self.corners(slot).map(|p| self.frame.scale_point(p))
+        let [a, b, c] = self.corners(slot);
+        [self.frame.scale_point(a), self.frame.scale_point(b), self.frame.scale_point(c)]
     }
 
     /// The point of triangle `face` closest to a point.
@@ -221,10 +228,9 @@ impl<'a> Bvh<'a> {
     }
 
     #[inline]
-    fn foot_on(&self, corners: [u32; 3], at: &Located) -> Foot {
-        let [a, b, c] =
-            corners.map(|v| self.frame.scale_point(vector(self.surface.positions[v as usize])) - at.scaled);
-        closest_to_origin(a, b, c)
+    fn foot_on(&self, [a, b, c]: [u32; 3], at: &Located) -> Foot {
+        let corner = |vertex: u32| self.frame.scale_point(self.position(vertex)) - at.scaled;
+        closest_to_origin(corner(a), corner(b), corner(c))
     }
 
     /// Number of levels of nodes; the triangles are one below.
@@ -278,11 +284,13 @@ impl<'a> Bvh<'a> {
                     self.offer_slot(slot, at, nearest, bound);
                 }
             } else {
-                for &lane in lanes[..count].iter().rev() {
+                // All four are written, the nearest last; those too far end up above the top.
+                for place in 0..WIDTH {
+                    let lane = lanes[(count + WIDTH - 1 - place) % WIDTH];
                     let squared = f32::from_bits((lane >> 32) as u32);
-                    stack[waiting % STACK] = entry.child(lane as usize & (WIDTH - 1)).waiting(squared);
-                    waiting += 1;
+                    stack[(waiting + place) % STACK] = entry.child(lane as usize % WIDTH).waiting(squared);
                 }
+                waiting += count;
             }
         }
     }
@@ -362,27 +370,23 @@ impl Node {
         x * x + y * y + z * z
     }
 
-    /// The lanes whose boxes lie within `bound`, nearest first, as squared distance (its bits order like the
-    /// number) above the lane.
+    /// All lanes, nearest first, as squared distance (its bits order like the number) above the lane, and how
+    /// many of them lie within `bound`.
+    ///
+    /// A sorting network rather than a loop over the lanes within: which they are cannot be predicted.
     #[inline]
     fn sorted_within(&self, point: [Vec4; 3], bound: f32) -> ([u64; WIDTH], usize) {
         let squared = self.squared_distances(point);
-        let mut within = squared.cmple(Vec4::splat(bound)).bitmask();
-        let squared = squared.to_array();
-        let (mut lanes, mut count) = ([0; WIDTH], 0);
-        while within != 0 {
-            let lane = within.trailing_zeros() as usize & 3;
-            within &= within - 1;
-            let entry = (squared[lane].to_bits() as u64) << 32 | lane as u64;
-            let mut place = count & 3;
-            while place > 0 && lanes[place - 1] > entry {
-                lanes[place] = lanes[place - 1];
-                place -= 1;
-            }
-            lanes[place] = entry;
-            count += 1;
-        }
-        (lanes, count)
+        let count = squared.cmple(Vec4::splat(bound)).bitmask().count_ones() as usize;
+        let [a, b, c, d] = squared.to_array();
+        let entry = |squared: f32, lane: u64| (squared.to_bits() as u64) << 32 | lane;
+        let order = |a: u64, b: u64| (a.min(b), a.max(b));
+        let (a, b) = order(entry(a, 0), entry(b, 1));
+        let (c, d) = order(entry(c, 2), entry(d, 3));
+        let (a, c) = order(a, c);
+        let (b, d) = order(b, d);
+        let (b, c) = order(b, c);
+        ([a, b, c, d], count)
     }
 }
 
