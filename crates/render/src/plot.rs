@@ -1,6 +1,21 @@
 //! Plots of series over linear or logarithmic axes, such as error against triangles, written as SVG.
 //!
 //! Takes series of points and names, gives a file with axes at round numbers, a light grid and a legend.
+//!
+//! ```
+//! use limitmesh_render::plot::{Axis, Plot, Series};
+//!
+//! let svg = Plot::new(
+//!     "Error against triangles",
+//!     Axis::new("triangles").logarithmic(),
+//!     Axis::new("Hausdorff distance").unit("% of the diagonal").logarithmic(),
+//! )
+//! .with(Series::new("uniform", vec![[142.0, 2.1], [568.0, 0.55], [2272.0, 0.14]]))
+//! .with(Series::new("adaptive", vec![[142.0, 2.1], [310.0, 0.56], [900.0, 0.15]]))
+//! .to_svg()?;
+//! assert!(svg.starts_with("<svg"));
+//! # Ok::<(), limitmesh_render::RenderError>(())
+//! ```
 
 use crate::RenderError;
 use crate::svg::{Drawing, Label, Pen};

@@ -34,7 +34,7 @@ pub struct Lighting {
 impl Lighting {
     /// The default: reads shape well on a surface of one colour.
     pub fn studio() -> Self {
-        Self { key: 0.95, fill: 0.27, ambient: 0.26, rim: 0.25, gloss: 0.08 }
+        Self { key: 1.0, fill: 0.18, ambient: 0.19, rim: 0.25, gloss: 0.08 }
     }
 
     /// Weak contrast and no highlight, so that colours that carry data stay comparable to their legend.
@@ -81,7 +81,7 @@ impl Default for Style {
             wire_colour: [26, 34, 48],
             wire_width: 0.9,
             background: [255; 4],
-            surface_colour: [182, 203, 228],
+            surface_colour: [188, 205, 226],
             back_colour: [222, 184, 138],
             lighting: Lighting::default(),
             samples: 4,

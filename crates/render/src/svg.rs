@@ -3,6 +3,18 @@
 //! Coordinates are in pixels from the upper left corner, y downwards. Numbers are written with at most three
 //! decimals, so the same drawing is the same bytes everywhere. A number that is not finite is remembered and
 //! reported when the drawing is finished, so that drawing itself needs no error handling.
+//!
+//! ```
+//! use limitmesh_render::Align;
+//! use limitmesh_render::svg::{Drawing, Label, Pen};
+//!
+//! let mut drawing = Drawing::new(200.0, 160.0)?;
+//! drawing.polygon(&[[30.0, 130.0], [170.0, 130.0], [100.0, 60.0]], &Pen::default().fill([225, 233, 244]));
+//! drawing.arrow([100.0, 105.0], [100.0, 20.0], &Pen::line([20, 92, 158], 2.0));
+//! drawing.label([108.0, 34.0], "n", &Label::default().italic(true).align(Align::Left));
+//! let svg: String = drawing.finish()?;
+//! # Ok::<(), limitmesh_render::RenderError>(())
+//! ```
 
 use std::fmt::Write as _;
 
