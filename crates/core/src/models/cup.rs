@@ -33,8 +33,7 @@ const PROFILE: [[f64; 2]; 17] = [
 /// The strips of the outer wall (by their lower ring) where the handle joins.
 const HANDLE_STRIPS: [u32; 2] = [7, 4];
 
-/// Sections of the handle from the upper hole to the lower: centre (x, y), half width, half thickness, and the
-/// direction (x, y) towards its outer side.
+/// Strips of the handle between the upper and the lower hole.
 const SECTIONS: usize = 8;
 
 /// 700 triangles, genus 1, the handle towards +x.
@@ -108,7 +107,7 @@ fn add_handle(cup: &mut Surface) {
 fn handle_section(part: f64) -> [DVec3; 6] {
     let (sin, cos) = (TAU / 2.0 * part).sin_cos();
     let centre = DVec3::new(0.56 + 0.42 * sin, 0.33 * cos, 0.0);
-    let outwards = DVec3::new(0.42 * cos.abs().max(0.05) * 0.0 + sin, 0.9 * cos, 0.0).normalize();
+    let outwards = DVec3::new(sin, 0.9 * cos, 0.0).normalize();
     // Wide where it meets the wall, slender half-way.
     let width = 0.08 + 0.08 * cos * cos;
     let thickness = 0.06;

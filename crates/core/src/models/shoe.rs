@@ -89,11 +89,8 @@ fn dip(station: &Station, part: f64) -> f64 {
 
 /// A point of an outline scaled about the shoe's middle, at height `y`.
 fn scaled([x, z]: [f64; 2], scale: f64, y: f64) -> DVec3 {
-    DVec3::new(x * scale, y, (z - MIDDLE) * scale + MIDDLE)
+    DVec3::new(x * scale, y, z * scale)
 }
-
-/// z of the shoe's middle.
-const MIDDLE: f64 = 0.0;
 
 /// A point of an outline moved inwards by about `by`, towards the middle of the heel.
 fn shrunk([x, z]: [f64; 2], by: f64, y: f64) -> DVec3 {
@@ -132,7 +129,7 @@ fn loft(rings: &[[DVec3; STATIONS]]) -> Surface {
             if outwards { [a, b, pole] } else { [b, a, pole] }
         }));
     }
-    // A left shoe: the front half bends inwards.
+    // A foot is not symmetric: the front half bends to one side.
     for p in &mut shoe.positions {
         let forward = (p.z + 0.2).max(0.0);
         p.x -= 0.08 * forward * forward;

@@ -72,7 +72,7 @@ impl Surface {
         edges
     }
 
-    /// The neighbours of each vertex, ascending, and whether it lies on a boundary.
+    /// The neighbours of each vertex, ascending, and those of them that it reaches along a boundary (two or none).
     pub(super) fn neighbours(&self) -> Vec<(Vec<u32>, Vec<u32>)> {
         let mut lists = vec![(Vec::new(), Vec::new()); self.positions.len()];
         let edges = self.directed_edges();
