@@ -1,6 +1,8 @@
 //! Control meshes of the shared models against the numbers in their `MODELS.md`, which were computed from the
 //! files by other means. The folder is named by `LIMITMESH_MODELS`.
 
+#![allow(clippy::unwrap_used)]
+
 use std::collections::HashSet;
 use std::path::Path;
 

@@ -118,7 +118,7 @@ fn weld(soup: &PolygonSoup, used: &[bool], weld: Weld) -> Result<Vec<u32>, MeshE
 fn repair_faces(soup: &PolygonSoup, kept: &[u32], diagnosis: &mut Diagnosis) -> Result<Faces, MeshError> {
     let mut faces = triangulate::triangulate(soup, kept, diagnosis)?;
     let vertex_count = kept.len();
-    repeated::drop_repeated(&mut faces, vertex_count, diagnosis);
+    repeated::drop_repeated(&mut faces, &soup.positions, diagnosis);
     let is_polygon = |input: u32| soup.faces.get(input as usize).len() > 3;
     zero_area::remove_zero_area(&mut faces, &soup.positions, vertex_count, is_polygon, diagnosis);
     if !faces.triangles.is_empty() {

@@ -1,14 +1,16 @@
-//! Faces on the same three vertices: the first one stays.
+//! Faces on the same three vertices: the first one stays. Of faces without area pairs go altogether: they fill
+//! a slit from both sides, which is then closed.
 
-use super::triangulate::Faces;
+use super::triangulate::{Faces, is_flat};
 use crate::mesh::Diagnosis;
 
 /// Drops faces that repeat an earlier one, whichever corner they start at and whichever way round they are.
-pub(super) fn drop_repeated(faces: &mut Faces, vertex_count: usize, diagnosis: &mut Diagnosis) {
+pub(super) fn drop_repeated(faces: &mut Faces, positions: &[[f64; 3]], diagnosis: &mut Diagnosis) {
     let mut marked = Vec::new();
-    for_each_repetition(&faces.triangles, vertex_count, |group| {
+    for_each_repetition(&faces.triangles, positions.len(), |group| {
         marked.resize(faces.triangles.len(), false);
-        group[1..].iter().for_each(|&face| marked[face as usize] = true);
+        let stay = if is_flat(positions, faces.triangles[group[0] as usize]) { group.len() % 2 } else { 1 };
+        group[stay..].iter().for_each(|&face| marked[face as usize] = true);
     });
     if marked.is_empty() {
         return;

@@ -12,7 +12,7 @@ use crate::mesh::Diagnosis;
 use crate::vector::vector;
 
 /// Splits allowed for each face of zero area. One is enough for a single face, and a row of n along one line
-/// needs about log n each; coincident vertices that were not welded can ask for ever more.
+/// needs few each; coincident vertices that were not welded can ask for ever more.
 const SPLITS_A_FACE: usize = 64;
 
 /// Removes faces of zero area; `polygon_sizes` tells which input faces are polygons, whose own straight

@@ -116,3 +116,57 @@ proptest! {
         prop_assert_eq!(several, groups);
     }
 }
+
+/// A closed surface some of whose edges were split on one side only, the slit filled by a face of zero area.
+fn closed_soups_with_flat_faces() -> impl Strategy<Value = PolygonSoup> {
+    prop::collection::vec((any::<prop::sample::Index>(), 1..4u32, any::<bool>()), 0..40).prop_map(|splits| {
+        let mut positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let mut faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        for (half_edge, quarters, twice) in splits {
+            let h = half_edge.index(3 * faces.len());
+            let (face, corner) = (h / 3, h % 3);
+            let [a, b, c] = [0, 1, 2].map(|i| faces[face][(corner + i) % 3]);
+            let t = f64::from(quarters) / 4.0;
+            let [p, q]: [[f64; 3]; 2] = [a, b].map(|v: u32| positions[v as usize]);
+            // Only exact divisions, so that the faces have no area by any measure.
+            let middle = [0, 1, 2].map(|i| p[i] + t * (q[i] - p[i]));
+            // Welding vertices of different sides would pinch the surface.
+            if positions.contains(&middle) {
+                continue;
+            }
+            let v = positions.len() as u32;
+            positions.push(middle);
+            faces[face] = [a, v, c];
+            faces.push([v, b, c]);
+            if twice {
+                // Both sides of the edge are split: no flat face is needed.
+                if let Some(other) =
+                    faces.iter().position(|f| (0..3).any(|i| f[i] == b && f[(i + 1) % 3] == a))
+                {
+                    let i = (0..3).find(|&i| faces[other][i] == b).unwrap_or(0);
+                    let d = faces[other][(i + 2) % 3];
+                    faces[other] = [b, v, d];
+                    faces.push([v, a, d]);
+                    continue;
+                }
+            }
+            faces.push([a, b, v]);
+        }
+        let faces: Vec<&[u32]> = faces.iter().map(|f| f.as_slice()).collect();
+        soup(&positions, &faces)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn closed_surfaces_stay_closed(soup in closed_soups_with_flat_faces()) {
+        let (mesh, diagnosis) = build_soup(&soup);
+        prop_assert_eq!(mesh.topology().boundary_edge_count(), 0, "{}", diagnosis);
+        prop_assert_eq!(mesh.topology().euler_characteristic(), 2);
+        for (f, t) in mesh.triangles().iter().enumerate() {
+            prop_assert!(!triangulate::is_flat(mesh.positions(), *t), "face {} has no area", f);
+        }
+    }
+}
