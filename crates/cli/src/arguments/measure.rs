@@ -13,7 +13,7 @@ Examples:
         how far one mesh is from another, both ways
   limitmesh measure refined.ply --limit-of control.obj --samples 500000 --json
         how far a refined mesh is from the limit surface of its control mesh
-  limitmesh measure refined.ply --limit-of control.obj --heatmap error.ply";
+  limitmesh measure refined.ply --limit-of control.obj --heatmap error.png";
 
 /// Measure the symmetric Hausdorff distance between two surfaces
 ///
@@ -55,7 +55,10 @@ pub(crate) struct MeasureArguments {
     #[arg(long)]
     pub(crate) json: bool,
 
-    /// Write A with the distance of each vertex to the reference as its quality (.ply)
+    /// Write A coloured by its distance to the reference: a mesh (.ply) or a picture (.png)
+    ///
+    /// The mesh has the distance of each vertex as its quality, in the mesh's unit; the picture shows it in per
+    /// cent of the reference's diagonal.
     #[arg(long, value_name = "FILE")]
     pub(crate) heatmap: Option<PathBuf>,
 }

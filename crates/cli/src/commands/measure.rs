@@ -1,17 +1,15 @@
 //! `limitmesh measure`: the distance between two surfaces, or between a mesh and a limit surface.
 
-use std::path::Path;
 use std::time::Instant;
 
-use limitmesh::measure::{Hausdorff, SamplingOptions, distances_to, hausdorff};
+use limitmesh::Mesh;
+use limitmesh::measure::{Hausdorff, SamplingOptions, hausdorff};
 use limitmesh::mesh::BuildOptions;
-use limitmesh::{Mesh, Triangles};
-use limitmesh_io::{Output, WriteOptions};
 
+use super::heatmap;
 use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
 use crate::input::{self, Input};
-use crate::interrupt;
 use crate::output;
 use crate::progress::Progress;
 use crate::reference::{self, USUAL_LEVELS};
@@ -44,7 +42,7 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
     };
     if let Some(path) = &arguments.heatmap {
         progress.stage(format!("writing {}", path.display()));
-        write_heatmap(path, a, b)?;
+        heatmap::write(path, a, b, measured.reference_diagonal)?;
     }
     progress.clear();
     if arguments.json {
@@ -147,25 +145,10 @@ fn surface_in_words(surface: &SurfaceReport) -> String {
     text
 }
 
-/// Writes the surface with the distance of each vertex to the reference.
-fn write_heatmap(path: &Path, surface: Triangles<'_>, reference: Triangles<'_>) -> anyhow::Result<()> {
-    let distances = distances_to(surface.positions, reference)?;
-    let output = Output::new(surface).quality(&distances);
-    interrupt::uninterrupted(|| limitmesh_io::write(path, &output, &WriteOptions::default()))?;
-    Ok(())
-}
-
 /// Finds what makes no sense before any work is done.
 fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
     if arguments.limit_of.is_none() && (arguments.reference_levels.is_some() || arguments.scheme.is_some()) {
         return usage("--reference-levels and --scheme belong to a limit surface; they need --limit-of");
     }
-    arguments.heatmap.as_deref().map_or(Ok(()), check_heatmap)
-}
-
-fn check_heatmap(path: &Path) -> anyhow::Result<()> {
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ply")) {
-        return output::check_folder(path);
-    }
-    usage(format!("{}: a heat map is a .ply file", path.display()))
+    arguments.heatmap.as_deref().map_or(Ok(()), heatmap::check_name)
 }

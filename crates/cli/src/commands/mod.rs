@@ -1,6 +1,7 @@
 //! The commands, one file each: arguments in, files and text out.
 
 pub(crate) mod compare;
+mod heatmap;
 pub(crate) mod info;
 pub(crate) mod measure;
 pub(crate) mod models;

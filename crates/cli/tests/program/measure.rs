@@ -100,3 +100,20 @@ fn non_manifold_surfaces_can_be_measured() {
     assert_eq!(report["surface"]["diagnosis"]["clean"], false);
     assert!(run("measure {} {}", &[&input, &input]).expect(0).stdout.contains("repaired first"));
 }
+
+#[test]
+fn heat_maps_are_meshes_or_pictures() {
+    let folder = folder();
+    let low = file(&folder, "low.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    let tilted = file(&folder, "tilted.obj", "v 0 0 0\nv 1 0 1\nv 1 1 1\nv 0 1 0\nf 1 2 3 4\n");
+    let (mesh, picture) = (folder.path().join("heat.ply"), folder.path().join("heat.png"));
+    run("measure {} {} --heatmap {}", &[&tilted, &low, &mesh]).expect(0);
+    let written = crate::common::soup(&mesh);
+    assert_eq!(written.positions.len(), 4);
+    let bytes = std::fs::read(&mesh).expect("a file");
+    let header = String::from_utf8_lossy(&bytes[..bytes.len().min(1000)]);
+    assert!(header.contains("quality") && header.contains("uchar red"), "{header}");
+    run("measure {} {} --heatmap {}", &[&tilted, &low, &picture]).expect(0);
+    assert!(std::fs::read(&picture).expect("a file").starts_with(b"\x89PNG"));
+    run("measure {} {} --heatmap {}", &[&tilted, &low, &low]).expect(2).saying(".png");
+}

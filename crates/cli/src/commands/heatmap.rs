@@ -1,0 +1,147 @@
+//! Heat maps of `limitmesh measure`: a surface coloured by its distance to the reference, as a mesh or a picture.
+
+use std::path::Path;
+
+use limitmesh::Triangles;
+use limitmesh::measure::distances_to;
+use limitmesh_io::{Format, Output, WriteOptions};
+use limitmesh_render::{Camera, ColourBar, Lighting, Scale, Shading, Style, ViewDirection, render_scalar};
+
+use super::picture::SIZE;
+use crate::arguments::Size;
+use crate::failure::usage;
+use crate::interrupt;
+use crate::output;
+
+/// A picture is drawn from about so many triangles: enough that one is a few pixels large.
+const PICTURE_TRIANGLES: usize = 300_000;
+
+/// Into at most so many parts is a side cut: beyond, a triangle would fill the picture's pixels many times over.
+const MOST_PARTS: usize = 64;
+
+/// Refuses a name that is neither a PLY nor a PNG file's, before any work is done.
+pub(super) fn check_name(path: &Path) -> anyhow::Result<()> {
+    if is_picture(path) || matches!(Format::from_path(path), Ok(Format::Ply)) {
+        return output::check_folder(path);
+    }
+    usage(format!("{}: a heat map is a .ply or a .png file", path.display()))
+}
+
+fn is_picture(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
+}
+
+/// Writes the surface coloured by its distance to the reference.
+pub(super) fn write(
+    path: &Path,
+    surface: Triangles<'_>,
+    reference: Triangles<'_>,
+    diagonal: f64,
+) -> anyhow::Result<()> {
+    if is_picture(path) {
+        draw(path, surface, reference, diagonal)
+    } else {
+        write_mesh(path, surface, reference)
+    }
+}
+
+/// A mesh with a colour and a distance at each vertex.
+fn write_mesh(path: &Path, surface: Triangles<'_>, reference: Triangles<'_>) -> anyhow::Result<()> {
+    let distances = distances_to(surface.positions, reference)?;
+    let scale = scale(&distances);
+    let share = |distance: f64| if scale.high > 0.0 { distance / scale.high } else { 0.0 };
+    let colours: Vec<[u8; 3]> = distances.iter().map(|&d| scale.map.at(share(d))).collect();
+    let output = Output::new(surface).quality(&distances).colours(&colours);
+    interrupt::uninterrupted(|| limitmesh_io::write(path, &output, &WriteOptions::default()))?;
+    Ok(())
+}
+
+/// A picture with a colour bar. Distances inside of triangles show too: large ones are cut up, flat as they are.
+fn draw(path: &Path, surface: Triangles<'_>, reference: Triangles<'_>, diagonal: f64) -> anyhow::Result<()> {
+    let (positions, triangles) = cut_up(surface, parts(surface.triangles.len()));
+    let cut = Triangles { positions: &positions, triangles: &triangles };
+    let mut distances = distances_to(&positions, reference)?;
+    if diagonal > 0.0 {
+        distances.iter_mut().for_each(|distance| *distance *= 100.0 / diagonal);
+    }
+    let Size { width, height } = SIZE;
+    let style = Style::default().shading(Shading::Flat).lighting(Lighting::even());
+    let scale = scale(&distances);
+    let camera = Camera::fit_tightly(cut, ViewDirection::default(), width, height)?;
+    let image = render_scalar(cut, None, &distances, &scale, &camera, &style, (width, height))?;
+    let bar = ColourBar::new(scale).title("distance").unit(if diagonal > 0.0 { "% of diagonal" } else { "" });
+    output::write_file(path, &bar.beside(&image, style.background)?.encode_png()?)
+}
+
+/// From 0 to the greatest distance.
+fn scale(distances: &[f64]) -> Scale {
+    Scale::new(0.0, distances.iter().copied().fold(0.0, f64::max))
+}
+
+/// Into how many parts each side is cut.
+fn parts(triangles: usize) -> usize {
+    (PICTURE_TRIANGLES / triangles.max(1)).isqrt().clamp(1, MOST_PARTS)
+}
+
+/// Each triangle cut into `parts`² congruent ones, with vertices of its own.
+fn cut_up(surface: Triangles<'_>, parts: usize) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    if parts <= 1 {
+        return (surface.positions.to_vec(), surface.triangles.to_vec());
+    }
+    let corners_each = (parts + 1) * (parts + 2) / 2;
+    let mut positions = Vec::with_capacity(surface.triangles.len() * corners_each);
+    let mut triangles = Vec::with_capacity(surface.triangles.len() * parts * parts);
+    for face in 0..surface.triangles.len() {
+        let [a, b, c] = surface.corners(face);
+        let first = positions.len() as u32;
+        // Rows parallel to the side a b, from it to c; row i has `parts` − i + 1 vertices.
+        let mut row = first;
+        for i in 0..=parts {
+            let length = (parts - i) as u32;
+            for j in 0..=parts - i {
+                let [u, v] = [j, i].map(|n| n as f64 / parts as f64);
+                let at = |axis: usize| a[axis] * (1.0 - u - v) + b[axis] * u + c[axis] * v;
+                positions.push([at(0), at(1), at(2)]);
+            }
+            let above = row + length + 1;
+            for j in 0..length {
+                triangles.push([row + j, row + j + 1, above + j]);
+                if j + 1 < length {
+                    triangles.push([row + j + 1, above + j + 1, above + j]);
+                }
+            }
+            row = above;
+        }
+    }
+    (positions, triangles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_have_the_whole_area_and_its_direction() {
+        let positions = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
+        let surface = Triangles { positions: &positions, triangles: &[[0, 1, 2]] };
+        for parts in 1..6 {
+            let (positions, triangles) = cut_up(surface, parts);
+            assert_eq!(triangles.len(), parts * parts);
+            assert_eq!(positions.len(), (parts + 1) * (parts + 2) / 2);
+            let pieces = Triangles { positions: &positions, triangles: &triangles };
+            for face in 0..triangles.len() {
+                let [a, b, c] = pieces.corners(face);
+                let doubled = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+                assert!((doubled - 6.0 / (parts * parts) as f64).abs() < 1e-12, "{doubled}");
+            }
+        }
+    }
+
+    #[test]
+    fn small_triangles_are_not_cut() {
+        assert_eq!(parts(1_000_000), 1);
+        assert_eq!(parts(300), 31);
+        assert_eq!(parts(1), MOST_PARTS);
+        assert_eq!(parts(0), MOST_PARTS);
+    }
+}
