@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use limitmesh::criterion::LimitNormal;
-use limitmesh::measure::{SamplingOptions, hausdorff, triangle_quality};
+use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between, triangle_quality};
 use limitmesh::refine::{Refinement, StepwiseOptions, Stop, UniformOptions, stepwise, uniform};
 
 use crate::arguments::CompareArguments;
@@ -25,7 +25,8 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     let levels = reference::affordable_levels(control.face_count(), wanted);
     progress.stage(format!("refining by {levels} levels to stand for the limit surface"));
     let reference = reference::at_level(&control, scheme, levels)?;
-    let judge = Judge { arguments, reference: &reference };
+    let tree = Bvh::new(reference.mesh.as_triangles())?;
+    let judge = Judge { arguments, reference: &reference, tree: &tree };
 
     let mut methods = Vec::with_capacity(4);
     progress.stage("limit-normal");
@@ -75,6 +76,8 @@ const MOST_TRIANGLES: usize = 20_000_000;
 struct Judge<'a> {
     arguments: &'a CompareArguments,
     reference: &'a Reference,
+    /// The reference's search tree, built once for all methods.
+    tree: &'a Bvh<'a>,
 }
 
 impl Judge<'_> {
@@ -91,7 +94,7 @@ impl Judge<'_> {
     ) -> anyhow::Result<ComparedMethod> {
         let surface = refinement.mesh.as_triangles();
         let options = SamplingOptions::default().samples(self.arguments.samples);
-        let distance = hausdorff(surface, self.reference.mesh.as_triangles(), &options)?;
+        let distance = hausdorff_between(&Bvh::new(surface)?, self.tree, &options);
         let quality = triangle_quality(surface);
         let percent = 100.0 / distance.reference_diagonal.max(f64::MIN_POSITIVE);
         Ok(ComparedMethod {

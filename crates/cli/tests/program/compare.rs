@@ -35,7 +35,7 @@ fn the_counts_are_those_of_refine() {
     let folder = crate::common::folder();
     let output = folder.path().join("out.ply");
     let report = run("refine builtin:cup -o {} --angle 6 --levels 2 --report -", &[&output]).expect(0).json();
-    let list = run("compare builtin:cup --angle 6 --levels 2 --json", &[]).expect(0).json();
+    let list = run("compare builtin:cup --angle 6 --levels 2 --json --samples 20000", &[]).expect(0).json();
     assert_eq!(list[0]["triangles"], report["output"]["triangles"]);
     let angle = list[1]["angle_degrees"].as_f64().expect("an angle");
     let amresh = format!("refine builtin:cup -o {{}} --method amresh --angle {angle} --levels 2 --report -");
@@ -45,7 +45,7 @@ fn the_counts_are_those_of_refine() {
 
 #[test]
 fn the_table_is_aligned() {
-    let text = run("compare builtin:icosphere --angle 5", &[]).expect(0).stdout;
+    let text = run("compare builtin:torus --samples 20000", &[]).expect(0).stdout;
     let rows: Vec<&str> =
         text.lines().skip_while(|line| !line.starts_with("method")).take_while(|l| !l.is_empty()).collect();
     assert_eq!(rows.len(), 5, "{text}");
