@@ -12,9 +12,12 @@ const STEPS_PER_ROW: usize = 60;
 /// Greatest residual, relative to the matrix, of a left eigenvector that is accepted.
 const RESIDUAL: f64 = 1e-9;
 
-/// Up to this size linear systems are solved by singular values, which find the solution of least length even
-/// where the matrix is singular.
+/// Up to this size linear systems and null vectors are found by singular values, which give the solution of least
+/// length even where the matrix is singular.
 const SINGULAR_VALUES_UP_TO: usize = 24;
+
+/// Where the iteration for singular values stops; at machine precision itself it may go on for ever.
+const SINGULAR_VALUE_ACCURACY: f64 = 5.0 * f64::EPSILON;
 
 /// Eigenvalues of a real square matrix.
 pub(super) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
@@ -32,20 +35,45 @@ pub(super) fn complex_eigenvalues(matrix: &DMatrix<Complex<f64>>) -> Option<Vec<
     Some(triangular.diagonal().iter().copied().collect())
 }
 
-/// The left eigenvector of a simple eigenvalue, of unit length, by inverse iteration.
+/// The one left eigenvector of an eigenvalue, of unit length.
 pub(super) fn left_eigenvector<T>(matrix: &DMatrix<T>, eigenvalue: T) -> Option<DVector<T>>
 where
     T: ComplexField<RealField = f64> + Copy,
 {
     let n = matrix.nrows();
-    if n == 1 {
+    let transposed = matrix.transpose();
+    let vector = if n <= SINGULAR_VALUES_UP_TO {
+        null_vector(&transposed - DMatrix::identity(n, n) * eigenvalue)?
+    } else {
+        inverse_iteration(&transposed, eigenvalue)?
+    };
+    let residual = (&transposed * &vector - &vector * eigenvalue).norm();
+    (residual <= RESIDUAL * matrix.norm()).then_some(vector)
+}
+
+/// The unit vector that a matrix shrinks most: its null vector where its rank is one short, as for the eigenvalue
+/// of a Jordan block, where inverse iteration would lose half the digits.
+fn null_vector<T>(matrix: DMatrix<T>) -> Option<DVector<T>>
+where
+    T: ComplexField<RealField = f64> + Copy,
+{
+    if matrix.nrows() == 1 {
         return Some(DVector::from_element(1, T::one()));
     }
+    let singular = matrix.try_svd(false, true, SINGULAR_VALUE_ACCURACY, 1000)?;
+    Some(singular.v_t?.row(singular.singular_values.imin()).adjoint())
+}
+
+/// The right eigenvector of a simple eigenvalue.
+fn inverse_iteration<T>(matrix: &DMatrix<T>, eigenvalue: T) -> Option<DVector<T>>
+where
+    T: ComplexField<RealField = f64> + Copy,
+{
+    let n = matrix.nrows();
     let size = matrix.norm().max(f64::MIN_POSITIVE);
-    let transposed = matrix.transpose();
     // A shift beside the eigenvalue keeps the system solvable; the error it leaves shrinks by 1e-10 a step.
     let shift = eigenvalue + T::from_real(size * 1e-11);
-    let system = (&transposed - DMatrix::identity(n, n) * shift).lu();
+    let system = (matrix - DMatrix::identity(n, n) * shift).lu();
     // Starting with unequal entries: a vector with the matrix's symmetry could miss the eigenvector.
     let mut vector = DVector::from_fn(n, |i, _| T::from_real(1.0 + 0.37 * ((i * i + i) as f64 * 0.61).sin()));
     for _ in 0..4 {
@@ -56,15 +84,14 @@ where
         }
         vector.unscale_mut(length);
     }
-    let residual = (&transposed * &vector - &vector * eigenvalue).norm();
-    (residual <= RESIDUAL * size).then_some(vector)
+    Some(vector)
 }
 
 /// A solution x of `x·matrix = right`, of least length where there are several.
 pub(super) fn solve_left(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let transposed = matrix.transpose();
     let solution = if matrix.nrows() <= SINGULAR_VALUES_UP_TO {
-        let singular = transposed.clone().try_svd(true, true, f64::EPSILON, 1000)?;
+        let singular = transposed.clone().try_svd(true, true, SINGULAR_VALUE_ACCURACY, 1000)?;
         let cut = 1e-10 * singular.singular_values.max().max(1e-3);
         singular.solve(right, cut).ok()?
     } else {
@@ -72,6 +99,39 @@ pub(super) fn solve_left(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<
     };
     let residual = (&transposed * &solution - right).norm();
     (residual <= RESIDUAL * (right.norm() + matrix.norm())).then_some(solution)
+}
+
+/// Replaces the eigenvalues that belong to one Jordan block by one, and says which those are.
+///
+/// Rounding splits the eigenvalue of a block of size m into m that differ by some ε^{1/m}, while their mean stays
+/// accurate; whether they are one block shows in the rank of the matrix minus that mean. Matrices larger than
+/// [`SINGULAR_VALUES_UP_TO`] are left alone.
+pub(super) fn join_jordan_blocks(
+    matrix: &DMatrix<f64>,
+    mut values: Vec<Complex<f64>>,
+) -> Vec<(Complex<f64>, bool)> {
+    /// Eigenvalues of a block of size two differ by less than this fraction of the matrix.
+    const CLOSE: f64 = 1e-6;
+    let (n, size) = (matrix.nrows(), matrix.norm());
+    let mut joined = Vec::with_capacity(values.len());
+    while let Some(value) = values.pop() {
+        let (near, far): (Vec<_>, Vec<_>) =
+            values.iter().partition(|other| (*other - value).norm() <= CLOSE * size);
+        let mean = (near.iter().sum::<Complex<f64>>() + value) / (near.len() + 1) as f64;
+        let is_real = mean.im.abs() <= 1e-12 * size;
+        let defective = !near.is_empty() && is_real && n <= SINGULAR_VALUES_UP_TO && {
+            let shifted = matrix - DMatrix::identity(n, n) * mean.re;
+            let singular = shifted.try_svd(false, false, SINGULAR_VALUE_ACCURACY, 1000);
+            singular.is_some_and(|s| s.singular_values.iter().filter(|&&s| s <= 1e-9 * size).count() == 1)
+        };
+        if defective {
+            joined.push((Complex::new(mean.re, 0.0), true));
+            values = far;
+        } else {
+            joined.push((value, false));
+        }
+    }
+    joined
 }
 
 /// The strongly connected components of the pattern of a square matrix, where row i depends on the columns that

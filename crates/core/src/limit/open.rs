@@ -16,7 +16,7 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::LimitError;
-use super::eigen::{block, components, eigenvalues, left_eigenvector, solve_left};
+use super::eigen::{block, components, eigenvalues, join_jordan_blocks, left_eigenvector, solve_left};
 use super::neighbourhood::Neighbourhood;
 use super::stencil::{LimitStencil, TangentPlane, is_real, same_modulus};
 
@@ -30,6 +30,9 @@ struct Mode {
     value: Complex<f64>,
     component: usize,
     on_boundary: bool,
+    /// Whether it stands for a Jordan block: its pattern grows by a power of the number of steps over others of
+    /// the same modulus, and its one left eigenvector tells where to.
+    defective: bool,
 }
 
 /// The limit stencil of an open ring.
@@ -121,10 +124,12 @@ fn modes(
     let mut modes = Vec::with_capacity(differences.nrows());
     for (component, rows) in components.iter().enumerate() {
         let on_boundary = rows.iter().all(|&i| neighbourhood.is_on_boundary(i + 1));
-        let Some(values) = eigenvalues(&block(differences, rows, rows)) else {
+        let own = block(differences, rows, rows);
+        let Some(values) = eigenvalues(&own) else {
             return Err(neighbourhood.unsuitable("the eigenvalues of its ring matrix could not be computed"));
         };
-        modes.extend(values.into_iter().map(|value| Mode { value, component, on_boundary }));
+        let values = join_jordan_blocks(&own, values).into_iter();
+        modes.extend(values.map(|(value, defective)| Mode { value, component, on_boundary, defective }));
     }
     modes.sort_by(|a, b| b.value.norm().total_cmp(&a.value.norm()));
     Ok(modes)
@@ -141,14 +146,21 @@ fn choose(neighbourhood: &Neighbourhood<'_>, modes: &[Mode]) -> Option<([Mode; 2
     let across = if from_boundary { second_on_boundary? } else { place(0, false)? };
     let other_across = place(across + 1, from_boundary);
     let others = (0..modes.len()).filter(|i| ![along, across].contains(i));
-    let next = others.map(|i| modes[i].value.norm()).fold(0.0, f64::max);
+    let greatest_other = others.map(|i| modes[i].value.norm()).fold(0.0, f64::max);
     let (slow, fast) = (modulus(Some(along)), modulus(Some(across)));
     let strict = |a: f64, b: f64| a > b && !same_modulus(a, b);
     if !is_real(modes[along].value) || !is_real(modes[across].value) || slow == 0.0 || fast == 0.0 {
         return None;
     }
     let pair = [modes[along], modes[across]];
-    if strict(slow.min(fast), next) {
+    let in_block = pair.iter().filter(|mode| mode.defective).map(|mode| mode.value.norm());
+    let next = in_block.fold(greatest_other, f64::max);
+    // A Jordan block outlasts simple eigenvalues of its own modulus.
+    let outlasts = pair[1].defective
+        && same_modulus(fast, greatest_other)
+        && !(0..modes.len())
+            .any(|i| i != across && modes[i].defective && same_modulus(modes[i].value.norm(), fast));
+    if strict(slow.min(fast), greatest_other) || outlasts {
         return Some((pair, TangentPlane::Surface, next));
     }
     // The boundary's own tangent and the pattern across it are still the first of their kinds: the faces along

@@ -130,6 +130,8 @@ impl Refined for Lazy<'_> {
     }
 
     fn on_edge(&self, edge: HalfEdgeId) -> DVec3 {
+        // From the same side as for the whole mesh, for the same rounding.
+        let edge = self.mesh.topology().twin(edge).map_or(edge, |twin| twin.min(edge));
         self.edge_point(edge, |shape| Cow::Owned(self.scheme.edge_mask(shape)))
     }
 }

@@ -4,17 +4,10 @@
 use core::f64::consts::{PI, TAU};
 use std::time::Instant;
 
-use crate::limit::{LimitStencil, LimitTable, TangentPlane};
+use super::{assert_close, stencil};
+use crate::limit::TangentPlane;
 use crate::ring::RingShape;
 use crate::scheme::{Loop, LoopWarren, Scheme};
-
-fn stencil(scheme: &dyn Scheme, shape: RingShape) -> LimitStencil {
-    LimitTable::new(scheme).stencil(shape).unwrap().as_ref().clone()
-}
-
-fn assert_close(met: f64, expected: f64, tolerance: f64, place: &str) {
-    assert!((met - expected).abs() <= tolerance, "{place}: {met}, expected {expected}");
-}
 
 /// Equation (10) with the left eigenvector: the weight of d_i × d_j is sin(2π(j−i)/k).
 #[test]
