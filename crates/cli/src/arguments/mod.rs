@@ -51,11 +51,12 @@ pub(crate) struct Arguments {
 #[derive(Args, Debug)]
 pub(crate) struct GlobalArguments {
     /// Print no progress and no notes on standard error; errors still appear
-    #[arg(long, short, global = true)]
+    #[arg(long, short, global = true, help_heading = "General options")]
     pub(crate) quiet: bool,
 
     /// Number of threads; 0 takes all processors. Results are the same bytes for any number
-    #[arg(long, value_name = "N", default_value_t = 0, global = true, value_parser = values::threads)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::threads)]
+    #[arg(global = true, help_heading = "General options")]
     pub(crate) threads: usize,
 }
 
