@@ -24,6 +24,9 @@ const LEAST_SINE: f64 = 1e-12;
 /// A tangent shorter than this fraction of the longest difference that entered it is what rounding left of zero.
 const LEAST_LENGTH: f64 = 1e-14;
 
+/// Squared lengths whose product, even times [`LEAST_SINE`] twice, neither vanishes nor overflows.
+const SAFE_SQUARES: core::ops::Range<f64> = 1e-130..1e150;
+
 impl LimitTable<'_> {
     /// Limit position of every vertex of `mesh`.
     ///
@@ -152,6 +155,21 @@ impl Tangents {
     /// The unit normal of the plane they span, if they do span one.
     #[inline]
     fn normal(&self) -> Option<DVec3> {
+        let squares = [self.first.length_squared(), self.second.length_squared()];
+        let least = LEAST_LENGTH * self.greatest;
+        if squares.iter().any(|square| !SAFE_SQUARES.contains(square)) {
+            return self.normal_at_any_size();
+        }
+        let normal = self.first.cross(self.second);
+        let square = normal.length_squared();
+        let spans = squares.iter().all(|&square| square > least * least)
+            && square > LEAST_SINE * LEAST_SINE * squares[0] * squares[1];
+        spans.then(|| normal / square.sqrt())
+    }
+
+    /// As [`Self::normal`], for tangents whose squares would vanish or overflow.
+    #[cold]
+    fn normal_at_any_size(&self) -> Option<DVec3> {
         let long = |tangent: DVec3| tangent.abs().max_element() > LEAST_LENGTH * self.greatest;
         if !long(self.first) || !long(self.second) {
             return None;
