@@ -14,6 +14,7 @@ mod output;
 mod progress;
 mod reference;
 mod report;
+mod reproduce;
 mod shape;
 mod words;
 
@@ -61,6 +62,7 @@ fn run(command: &Command, progress: &Progress) -> anyhow::Result<Outcome> {
         Command::Measure(arguments) => commands::measure::run(arguments, progress),
         Command::Compare(arguments) => commands::compare::run(arguments, progress),
         Command::Render(arguments) => commands::render::run(arguments, progress),
+        Command::Reproduce(arguments) => reproduce::run(arguments, progress),
         Command::Info(arguments) => commands::info::run(arguments, progress),
         Command::Models(arguments) => commands::models::run(arguments),
     }

@@ -6,6 +6,7 @@ mod measure;
 mod models;
 mod refine;
 mod render;
+mod reproduce;
 mod shared;
 mod values;
 
@@ -15,6 +16,7 @@ pub(crate) use measure::MeasureArguments;
 pub(crate) use models::ModelsArguments;
 pub(crate) use refine::{Method, RefineArguments};
 pub(crate) use render::RenderArguments;
+pub(crate) use reproduce::ReproduceArguments;
 pub(crate) use shared::{BuildArguments, SchemeName, Seam};
 pub(crate) use values::{MAX_LEVELS, Size};
 
@@ -67,6 +69,7 @@ pub(crate) enum Command {
     Measure(MeasureArguments),
     Compare(CompareArguments),
     Render(RenderArguments),
+    Reproduce(ReproduceArguments),
     Info(InfoArguments),
     Models(ModelsArguments),
 }

@@ -6,5 +6,6 @@ mod examine;
 mod measure;
 mod refine;
 mod render;
+mod reproduce;
 mod usage;
 mod writing;

@@ -1,0 +1,26 @@
+//! The paper's figures, each from its own file: what is measured for it, and its pictures.
+
+pub(super) mod closure;
+pub(super) mod cone;
+pub(super) mod head;
+pub(super) mod shoe;
+pub(super) mod view;
+
+use serde::Serialize;
+
+/// A picture file of the page.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Picture {
+    /// File name within the folder.
+    pub(super) file: String,
+    /// What it shows, for those who cannot see it.
+    pub(super) alt: String,
+    /// What stands below it.
+    pub(super) caption: String,
+}
+
+impl Picture {
+    pub(super) fn new(file: impl Into<String>, alt: impl Into<String>, caption: impl Into<String>) -> Self {
+        Self { file: file.into(), alt: alt.into(), caption: caption.into() }
+    }
+}
