@@ -6,8 +6,8 @@
 //! result remains a lower bound, only a better one.
 
 use super::bvh::Bvh;
-use super::hausdorff::measure_points;
 use super::samples::Samples;
+use crate::parallel;
 use crate::vector::DVec3;
 
 /// Triangles in which a first lattice is measured, and the best of them that are searched further: as many as make
@@ -53,7 +53,11 @@ pub(super) fn climb(
                 lattice.iter().map(move |[u, v, w]| a * *u + b * *v + c * *w)
             })
             .collect();
-        let distances = measure_points(to, points.len(), |range, run| run.extend_from_slice(&points[range]));
+        // Each triangle is measured by itself: the next one may be far away.
+        let mut distances = vec![0.0; points.len()];
+        parallel::for_each_chunk(&mut distances, lattice.len(), |i, distances| {
+            to.distances(&points[i * lattice.len()..(i + 1) * lattice.len()], distances);
+        });
         for (i, candidate) in candidates.iter_mut().enumerate() {
             let own = i * lattice.len()..(i + 1) * lattice.len();
             for (&point, &distance) in points[own.clone()].iter().zip(&distances[own]) {

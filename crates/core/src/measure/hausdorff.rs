@@ -150,7 +150,7 @@ fn one_sided(from: &Bvh<'_>, to: &Bvh<'_>, options: &SamplingOptions) -> OneSide
 
 /// The distances of `count` points to a surface; `collect` adds those of a range to a list. Consecutive ones should be
 /// near each other.
-pub(super) fn measure_points(
+fn measure_points(
     to: &Bvh<'_>,
     count: usize,
     collect: impl Fn(Range<usize>, &mut Vec<DVec3>) + Sync + Send,

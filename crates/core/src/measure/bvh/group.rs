@@ -102,18 +102,35 @@ impl Bvh<'_> {
         let mut bound = nearest.bound();
         let point = splat(at.local);
         let mut stack = [0; STACK];
-        for (pack, entries) in frontier.packs.iter().zip(frontier.entries[..frontier.count].chunks(WIDTH)) {
-            let squared = pack.squared_distances(point);
+        let mut visit = |place: usize, squared: f32, bound: &mut f32| {
+            let entry = frontier.entries[place % CAPACITY];
+            if entry.level == self.levels() {
+                self.offer_slot(entry.index as usize, at, &mut nearest, bound);
+            } else {
+                stack[0] = entry.waiting(squared);
+                self.descend(&mut stack, 1, at, point, &mut nearest, bound);
+            }
+        };
+        // The nearest box first: a point of a triangle much larger than the surface's has a poor guess, with which
+        // boxes in any order would be searched in vain.
+        let mut squared = [glam::Vec4::INFINITY; CAPACITY / WIDTH];
+        let packs = frontier.count.div_ceil(WIDTH);
+        for (squared, pack) in squared.iter_mut().zip(&frontier.packs[..packs]) {
+            *squared = pack.squared_distances(point);
+        }
+        let boxes = || squared.iter().flat_map(|lanes| lanes.to_array()).take(frontier.count).enumerate();
+        let first = boxes().fold((0, f32::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
+        if first.1 <= bound {
+            visit(first.0, first.1, &mut bound);
+        }
+        for (pack, squared) in squared[..packs].iter().enumerate() {
             let mut within = squared.cmple(glam::Vec4::splat(bound)).bitmask();
             while within != 0 {
                 let lane = within.trailing_zeros() as usize & (WIDTH - 1);
                 within &= within - 1;
-                let entry = entries[lane % entries.len()];
-                if entry.level == self.levels() {
-                    self.offer_slot(entry.index as usize, at, &mut nearest, &mut bound);
-                } else {
-                    stack[0] = entry.waiting(squared[lane]);
-                    self.descend(&mut stack, 1, at, point, &mut nearest, &mut bound);
+                let place = pack * WIDTH + lane;
+                if place != first.0 && squared[lane] <= bound {
+                    visit(place, squared[lane], &mut bound);
                 }
             }
         }
