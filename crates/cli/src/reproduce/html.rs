@@ -1,7 +1,11 @@
 //! The pieces of HTML that the page is made of.
 
 use super::figures::Picture;
-use super::svg::escape;
+
+/// Text as HTML wants it.
+pub(super) fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
 
 /// A paragraph of plain text.
 pub(super) fn paragraph(text: &str) -> String {
@@ -61,10 +65,13 @@ pub(super) fn table(id: &str, caption: &str, header: &str, groups: &[Vec<Vec<Str
     )
 }
 
-/// A header row of plain texts.
-pub(super) fn header(cells: &[&str]) -> String {
-    let cells: String = cells.iter().map(|cell| format!("<th scope=\"col\">{}</th>", escape(cell))).collect();
-    format!("<tr>{cells}</tr>\n")
+/// A header row of plain texts; `words` are the columns that hold text rather than numbers.
+pub(super) fn header(cells: &[&str], words: &[usize]) -> String {
+    let cell = |(column, cell): (usize, &&str)| {
+        let class = if words.contains(&column) { " class=\"words\"" } else { "" };
+        format!("<th scope=\"col\"{class}>{}</th>", escape(cell))
+    };
+    format!("<tr>{}</tr>\n", cells.iter().enumerate().map(cell).collect::<String>())
 }
 
 /// A section with its heading.
@@ -85,4 +92,14 @@ pub(super) fn findings(findings: &Findings) -> String {
     let Findings { agrees, differs, why } = findings;
     let entries = [entry("Agrees", agrees), entry("Differs", differs), entry("Why", why)].concat();
     format!("<dl class=\"findings\">\n{entries}</dl>\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_escaped() {
+        assert_eq!(escape(r#"a < b & "c""#), "a &lt; b &amp; &quot;c&quot;");
+    }
 }

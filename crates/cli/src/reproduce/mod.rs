@@ -7,6 +7,7 @@ mod cast;
 mod figures;
 mod folder;
 mod html;
+mod ink;
 mod methods;
 mod numbers;
 mod page;
@@ -18,7 +19,6 @@ mod space;
 mod statistics;
 mod studio;
 mod study;
-mod svg;
 
 use std::time::Instant;
 
@@ -155,9 +155,9 @@ fn write(results: &Results, portraits: &[Picture], folder: &mut Folder) -> anyho
     folder.write("seams.csv", numbers::seams_csv(&results.table_1).as_bytes())?;
     folder.write("reproduction.json", output::json(results)?.as_bytes())?;
     let rows: Vec<_> = results.rows().cloned().collect();
-    folder.write("table1.svg", plot::table_1(&rows).as_bytes())?;
+    folder.write("table1.svg", plot::table_1(&rows)?.as_bytes())?;
     let drift: Vec<_> = results.table_1.iter().flat_map(|study| study.drift.clone()).collect();
     let angle = results.settings.extra_angle_degrees;
-    folder.write("drift.svg", plot::drift(&drift, angle).as_bytes())?;
+    folder.write("drift.svg", plot::drift(&drift, angle)?.as_bytes())?;
     folder.write("index.html", page::page(results, portraits).as_bytes())
 }

@@ -51,6 +51,11 @@ pub(super) fn significant(x: f64, digits: i32) -> String {
     format!("{x:.decimals$}")
 }
 
+/// A difference with its sign, for reading.
+pub(super) fn signed(x: f64, decimals: usize) -> String {
+    format!("{x:+.decimals$}").replace('-', "−")
+}
+
 /// The header of table1.csv.
 pub(super) const TABLE_1_COLUMNS: [&str; 9] = [
     "model",

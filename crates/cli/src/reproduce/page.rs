@@ -5,11 +5,10 @@ use super::figures::Picture;
 use super::figures::closure::ClosureFigure;
 use super::figures::cone::ConeFigure;
 use super::figures::view::ViewFigure;
-use super::html::{findings, header, list, paragraph, pictures, section, table, wide};
+use super::html::{escape, findings, header, list, paragraph, pictures, section, table, wide};
 use super::numbers::{Results, shd, table_1_cells};
 use super::prose;
 use super::statistics::{Against, against};
-use super::svg::escape;
 use crate::words::thousands;
 
 const STYLE: &str = include_str!("page.css");
@@ -67,8 +66,10 @@ fn words(text: &str) -> String {
 }
 
 fn models(results: &Results, portraits: &[Picture]) -> String {
-    let head =
-        header(&["model", "played by", "what it is", "vertices", "faces", "open edges", "greatest valence"]);
+    let head = header(
+        &["model", "played by", "what it is", "vertices", "faces", "open edges", "greatest valence"],
+        &[1, 2],
+    );
     let row = |study: &super::study::Study| {
         vec![
             study.model.to_owned(),
@@ -82,10 +83,16 @@ fn models(results: &Results, portraits: &[Picture]) -> String {
     };
     let groups: Vec<_> = results.table_1.iter().map(|study| vec![row(study)]).collect();
     let files = results.table_1.iter().filter(|study| study.origin.file).count();
+    let played = match files {
+        0 => "All six are played by built-in shapes of the same names here".to_owned(),
+        6 => "All six are played by files here".to_owned(),
+        _ => format!(
+            "{files} of the six are played by files here, the others by built-in shapes of the same names"
+        ),
+    };
     let intro = format!(
         "The paper names six models and shows small pictures of them (its Figure 6); their meshes are not published. \
-         {files} of the six are read from files here, the others are built-in shapes of the same names. All are \
-         control meshes of Loop's scheme."
+         {played}, as control meshes of Loop's scheme."
     );
     paragraph(&intro)
         + &pictures(portraits, " six")
@@ -95,7 +102,8 @@ fn models(results: &Results, portraits: &[Picture]) -> String {
 fn table_1(results: &Results) -> String {
     let over = "<tr class=\"over\"><th colspan=\"2\"></th><th colspan=\"2\">limit normal (paper)</th>\
                 <th colspan=\"2\">Amresh</th><th></th><th colspan=\"2\">uniform, limit vertices</th></tr>\n";
-    let head = header(&["model", "angle", "faces", "SHD %", "faces", "SHD %", "ratio %", "faces", "SHD %"]);
+    let head =
+        header(&["model", "angle", "faces", "SHD %", "faces", "SHD %", "ratio %", "faces", "SHD %"], &[]);
     let groups: Vec<Vec<Vec<String>>> = results
         .table_1
         .iter()
@@ -152,8 +160,10 @@ fn no_cone() -> String {
 }
 
 fn figure_2(cone: &ConeFigure) -> String {
-    let head =
-        header(&["mesh", "angles of the face normals from the limit normal, counter-clockwise", "greatest"]);
+    let head = header(
+        &["mesh", "angles of the face normals from the limit normal, counter-clockwise", "greatest"],
+        &[1],
+    );
     let rows = cone.stages.iter().map(|stage| {
         let angles: Vec<String> = stage.angles_degrees.iter().map(|a| format!("{a:.1}°")).collect();
         let name = match stage.step {
@@ -170,7 +180,7 @@ fn figure_2(cone: &ConeFigure) -> String {
 
 fn figure_5(closure: &ClosureFigure) -> String {
     let head =
-        header(&["model", "step", "divided", "(a) whole", "(b) in two", "(c) in three", "(d) in four"]);
+        header(&["model", "step", "divided", "(a) whole", "(b) in two", "(c) in three", "(d) in four"], &[]);
     let groups: Vec<Vec<Vec<String>>> = closure
         .counts
         .chunk_by(|a, b| a.model == b.model)
@@ -201,7 +211,7 @@ fn figure_7(results: &Results) -> String {
 
 fn figure_9(view: &ViewFigure) -> String {
     let names: Vec<&str> = view.models.iter().map(|model| model.name).collect();
-    let head = header(&[&["α"], names.as_slice()].concat());
+    let head = header(&[&["α"], names.as_slice()].concat(), &[]);
     let parts = view.models.first().map_or(&[][..], |model| &model.tried);
     let groups: Vec<Vec<Vec<String>>> = parts
         .iter()
@@ -237,7 +247,8 @@ fn drift(results: &Results) -> String {
 fn seams(results: &Results) -> String {
     let over = "<tr class=\"over\"><th></th><th colspan=\"2\">all</th><th colspan=\"2\">any</th>\
                 <th colspan=\"2\">inner</th></tr>\n";
-    let head = over.to_owned() + &header(&["model", "faces", "SHD %", "faces", "SHD %", "faces", "SHD %"]);
+    let head =
+        over.to_owned() + &header(&["model", "faces", "SHD %", "faces", "SHD %", "faces", "SHD %"], &[]);
     let groups: Vec<Vec<Vec<String>>> = results
         .table_1
         .iter()

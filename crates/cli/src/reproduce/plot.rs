@@ -1,8 +1,11 @@
 //! Charts of measured distances: a dot chart for Table 1 and small line charts for the drift, both on
 //! logarithmic scales, since the distances span orders of magnitude.
 
+use limitmesh_render::svg::{Drawing, Pen};
+use limitmesh_render::{Align, RenderError};
+
+use super::ink::{AMRESH, GRID, PALE, PAPER, UNIFORM, dot, plain, small, thin};
 use super::study::{DriftPoint, Row};
-use super::svg::{AMRESH, Anchor, Drawing, GRID, PALE, PAPER, UNIFORM};
 
 /// A logarithmic axis: from values to pixels, over whole decades or halves of them.
 struct LogAxis {
@@ -43,38 +46,33 @@ fn tick_label(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-fn legend(drawing: &mut Drawing, mut x: f64, y: f64, entries: &[(&str, &str)]) {
+fn legend(drawing: &mut Drawing, mut x: f64, y: f64, entries: &[([u8; 3], &str)]) {
     for (colour, label) in entries {
-        drawing.circle([x, y - 4.5], 5.0, &format!(r#"fill="{colour}""#));
-        drawing.text([x + 10.0, y], Anchor::Start, "", label);
-        x += 34.0 + 7.1 * label.chars().count() as f64;
+        dot(drawing, [x, y - 4.5], 5.0, *colour);
+        drawing.label([x + 10.0, y], label, &plain());
+        // Viewers' fonts differ: this is the mean width of a letter in the widest of the usual ones.
+        x += 34.0 + 7.4 * label.chars().count() as f64;
     }
 }
 
 /// Table 1 as a dot chart: a line for each setting, a dot for each method.
-pub(super) fn table_1(rows: &[Row]) -> String {
+pub(super) fn table_1(rows: &[Row]) -> Result<String, RenderError> {
     let step = 19.0;
     let gap = 12.0;
     let (left, right, top) = (150.0, 740.0, 62.0);
     let models = rows.chunk_by(|a, b| a.model == b.model).count();
     let bottom = top + rows.len() as f64 * step + models as f64 * gap;
-    let mut drawing =
-        Drawing::new(760.0, bottom + 44.0, "Distance to the limit surface by model, angle and method");
+    let mut drawing = Drawing::new(760.0, bottom + 44.0)?;
     let values = rows.iter().flat_map(|r| [&r.paper, &r.amresh, &r.uniform_limit]).map(|m| m.shd_percent);
     let axis = LogAxis::new(values, left, right);
     for tick in axis.ticks() {
         let x = axis.at(tick);
-        drawing.line([x, top - 8.0], [x, bottom], &format!(r#"stroke="{GRID}""#));
-        drawing.text(
-            [x, bottom + 16.0],
-            Anchor::Middle,
-            &format!(r#"font-size="11" fill="{PALE}""#),
-            &tick_label(tick),
-        );
+        drawing.line([x, top - 8.0], [x, bottom], &thin(GRID));
+        drawing.label([x, bottom + 16.0], &tick_label(tick), &small().align(Align::Centre));
     }
     let caption =
         "symmetric Hausdorff distance, % of the bounding-box diagonal (logarithmic; left is better)";
-    drawing.text([0.5 * (left + right), bottom + 36.0], Anchor::Middle, r#"font-size="12""#, caption);
+    drawing.label([0.5 * (left + right), bottom + 36.0], caption, &plain().size(12.0).align(Align::Centre));
     let entries = [
         (PAPER, "limit normal (paper)"),
         (AMRESH, "Amresh"),
@@ -87,10 +85,10 @@ pub(super) fn table_1(rows: &[Row]) -> String {
         for (i, row) in model.iter().enumerate() {
             let middle = y + 0.5 * step;
             if i == 0 {
-                drawing.text([10.0, middle + 4.5], Anchor::Start, r#"font-weight="600""#, row.model);
+                drawing.label([10.0, middle + 4.5], row.model, &plain().bold(true));
             }
             let label = format!("{}°", row.angle_degrees);
-            drawing.text([left - 14.0, middle + 4.5], Anchor::End, &format!(r#"fill="{PALE}""#), &label);
+            drawing.label([left - 14.0, middle + 4.5], &label, &plain().colour(PALE).align(Align::Right));
             dots(&mut drawing, row, &axis, middle);
             y += step;
         }
@@ -103,24 +101,20 @@ fn dots(drawing: &mut Drawing, row: &Row, axis: &LogAxis, y: f64) {
     let [paper, amresh, uniform] =
         [&row.paper, &row.amresh, &row.uniform_limit].map(|m| axis.at(m.shd_percent));
     let (low, high) = (paper.min(amresh).min(uniform), paper.max(amresh).max(uniform));
-    drawing.line([low, y], [high, y], &format!(r#"stroke="{PALE}" stroke-opacity="0.6""#));
-    drawing.circle([uniform, y], 5.0, &format!(r#"fill="{UNIFORM}""#));
-    drawing.circle([amresh, y], 5.0, &format!(r#"fill="{AMRESH}""#));
-    drawing.circle([paper, y], 5.0, &format!(r#"fill="{PAPER}" stroke="white" stroke-width="0.8""#));
+    drawing.line([low, y], [high, y], &thin(PALE).opacity(0.6));
+    for (x, colour) in [(uniform, UNIFORM), (amresh, AMRESH), (paper, PAPER)] {
+        dot(drawing, [x, y], 5.0, colour);
+    }
 }
 
 /// Distance against steps, a small chart for each model, all on the same scales.
-pub(super) fn drift(points: &[DriftPoint], angle_degrees: f64) -> String {
+pub(super) fn drift(points: &[DriftPoint], angle_degrees: f64) -> Result<String, RenderError> {
     let models: Vec<&[DriftPoint]> = points.chunk_by(|a, b| a.model == b.model).collect();
     let columns = models.len().clamp(1, 3);
     let (cell, height, top, left) = (236.0, 190.0, 48.0, 46.0);
     let rows = models.len().div_ceil(columns);
     let width = left + columns as f64 * cell;
-    let mut drawing = Drawing::new(
-        width,
-        top + rows as f64 * height + 28.0,
-        "Distance to the limit surface against the number of steps",
-    );
+    let mut drawing = Drawing::new(width, top + rows as f64 * height + 28.0)?;
     let label = format!("limit normal, {angle_degrees}° (paper)");
     legend(
         &mut drawing,
@@ -136,7 +130,7 @@ pub(super) fn drift(points: &[DriftPoint], angle_degrees: f64) -> String {
     }
     let centre = [left + 0.5 * (width - left), top + rows as f64 * height + 14.0];
     let caption = "steps; vertically the symmetric Hausdorff distance in % of the diagonal (logarithmic)";
-    drawing.text(centre, Anchor::Middle, r#"font-size="12""#, caption);
+    drawing.label(centre, caption, &plain().size(12.0).align(Align::Centre));
     drawing.finish()
 }
 
@@ -153,17 +147,16 @@ fn panel(
     let across =
         |steps: usize| x + 14.0 + (width - 28.0) * (steps as f64 - 1.0) / (most as f64 - 1.0).max(1.0);
     let name = model.first().map_or("", |p| p.model);
-    drawing.text([x + 6.0, y + 11.0], Anchor::Start, r#"font-weight="600""#, name);
-    let pale = format!(r#"font-size="11" fill="{PALE}""#);
+    drawing.label([x + 6.0, y + 11.0], name, &plain().bold(true));
     for tick in axis.ticks() {
-        drawing.line([x, axis.at(tick)], [x + width, axis.at(tick)], &format!(r#"stroke="{GRID}""#));
+        drawing.line([x, axis.at(tick)], [x + width, axis.at(tick)], &thin(GRID));
         if labelled {
-            drawing.text([x - 6.0, axis.at(tick) + 4.0], Anchor::End, &pale, &tick_label(tick));
+            drawing.label([x - 6.0, axis.at(tick) + 4.0], &tick_label(tick), &small().align(Align::Right));
         }
     }
-    drawing.line([x, y + height], [x + width, y + height], &format!(r#"stroke="{PALE}""#));
+    drawing.line([x, y + height], [x + width, y + height], &thin(PALE));
     for steps in 1..=most {
-        drawing.text([across(steps), y + height + 15.0], Anchor::Middle, &pale, &steps.to_string());
+        drawing.label([across(steps), y + height + 15.0], &steps.to_string(), &small().align(Align::Centre));
     }
     let uniform = model.iter().filter_map(|p| Some((p.steps, p.uniform_limit?.shd_percent)));
     let paper = model.iter().map(|p| (p.steps, p.paper.shd_percent));
@@ -171,10 +164,10 @@ fn panel(
     curve(drawing, PAPER, paper.map(|(s, v)| [across(s), axis.at(v)]).collect());
 }
 
-fn curve(drawing: &mut Drawing, colour: &str, points: Vec<[f64; 2]>) {
-    drawing.polyline(&points, &format!(r#"stroke="{colour}" stroke-width="2" stroke-linejoin="round""#));
+fn curve(drawing: &mut Drawing, colour: [u8; 3], points: Vec<[f64; 2]>) {
+    drawing.polyline(&points, &Pen::line(colour, 2.0));
     for point in points {
-        drawing.circle(point, 4.0, &format!(r#"fill="{colour}" stroke="white" stroke-width="0.8""#));
+        dot(drawing, point, 4.0, colour);
     }
 }
 

@@ -7,7 +7,7 @@ use super::figures::head::{Head, PAPER_ADAPTIVE, PAPER_UNIFORM};
 use super::figures::shoe::Shoe;
 use super::figures::view::ViewFigure;
 use super::html::Findings;
-use super::numbers::{Results, ratio, shd, significant};
+use super::numbers::{Results, ratio, shd, signed, significant};
 use super::statistics::{Table1Statistics, rises, spread};
 use super::study::{DriftPoint, Row, SEAMS};
 use crate::words::{counted, thousands};
@@ -71,10 +71,12 @@ pub(super) fn table_1(results: &Results) -> Findings {
         let below = at.iter().filter(|r| r.ratio_percent < 99.95).count();
         format!("{below} of {} at {angle}°", at.len())
     });
+    let by_angle = joined(by_angle);
+    let by_angle =
+        if results.settings.angles_degrees.len() > 1 { format!(" ({by_angle})") } else { String::new() };
     let agrees = format!(
-        "The ratio is below 100 % in {} of {all} settings ({}), as the paper has it for all six of its own.{}",
+        "The ratio is below 100 % in {} of {all} settings{by_angle}, as the paper has it for all six of its own.{}",
         s.below,
-        joined(by_angle),
         if s.equal > 0 { format!(" In {} the distances are equal.", s.equal) } else { String::new() }
     );
     let above = if s.above.is_empty() {
@@ -109,8 +111,10 @@ pub(super) fn table_1_notes(results: &Results) -> Vec<String> {
             significant(s.worst_match, 2)
         )
     } else {
-        let list =
-            s.unmatched.iter().map(|(r, off)| format!("{} at {}° ({off:+.1} %)", r.model, r.angle_degrees));
+        let list = s
+            .unmatched
+            .iter()
+            .map(|(r, off)| format!("{} at {}° ({} %)", r.model, r.angle_degrees, signed(*off, 1)));
         format!(
             "Amresh's face count is a step function of its threshold. It could not be brought within 1 % for {}; \
              elsewhere it is.",
@@ -157,8 +161,8 @@ pub(super) fn figure_2(cone: &ConeFigure) -> Findings {
             inside_steps = counted(cone.stages.len() - inside, "step", "steps"),
         ),
         differs: "Nothing: the figure is a sketch in the paper, and a measurement here.".to_owned(),
-        why: "Halving the edges halves the angle between chord and surface at a vertex of valence 6; at others the \
-              factor is the ring's subdominant eigenvalue."
+        why: "A step shrinks a ring by the subdominant eigenvalue of its matrix, and its height above the tangent \
+              plane by the next smaller one: the angle falls by their ratio, a half at valence 6."
             .to_owned(),
     }
 }
@@ -189,14 +193,14 @@ pub(super) fn figure_5(figure: &ClosureFigure) -> Findings {
 pub(super) fn figure_7(heads: &[Head]) -> Findings {
     let each = |tell: &dyn Fn(&Head) -> String| joined(heads.iter().map(tell));
     let uniform_agrees = heads.iter().all(|head| head.uniform_faces == PAPER_UNIFORM);
-    let counts = each(&|h| format!("{} faces for {}", thousands(h.uniform_faces), h.origin.source));
+    let counts = each(&|h| format!("{} for {}", thousands(h.uniform_faces), h.origin.source));
     let uniform = format!(
-        "Uniform refinement gives {counts}; the paper has {}, printed as 988 in our text of it.",
+        "Uniform refinement gives as many faces as the paper has, {}, which our text of it prints as 988: {counts}.",
         thousands(PAPER_UNIFORM)
     );
     let adaptive = each(&|h| {
         let off = 100.0 * (h.adaptive_faces as f64 / PAPER_ADAPTIVE as f64 - 1.0);
-        format!("{} for {} ({off:+.0} %)", thousands(h.adaptive_faces), h.origin.source)
+        format!("{} for {} ({} %)", thousands(h.adaptive_faces), h.origin.source, signed(off, 0))
     });
     let matching = each(&|h| {
         format!("{:.1}° for {} ({})", h.matching_angle_degrees, h.origin.source, thousands(h.matching_faces))
@@ -234,9 +238,9 @@ pub(super) fn figure_8(shoe: &Shoe) -> Findings {
         let nearest = s.readings.iter().min_by_key(|n| n.abs_diff(s.faces));
         let near = nearest.map_or(String::new(), |&n| {
             format!(
-                "; the nearest to ours, {}, differs by {:+.0} %",
+                "; the nearest to ours, {}, differs by {} %",
                 thousands(n),
-                100.0 * (s.faces as f64 / n as f64 - 1.0)
+                signed(100.0 * (s.faces as f64 / n as f64 - 1.0), 0)
             )
         });
         format!("'{}' at {} may have been {all}{near}", s.printed, s.angle)
@@ -314,14 +318,16 @@ pub(super) fn drift_findings(results: &Results) -> Findings {
     let steps = results.settings.drift_steps;
     Findings {
         agrees: format!(
-            "The first steps help: uniform refinement with limit vertices is further away after one more level in \
-             {uniform} of {uniform_pairs} cases, the paper's method after one more step in {paper} of {paper_pairs}.",
+            "More steps ought to come nearer. Uniform refinement with limit vertices does so in {} of {uniform_pairs} \
+             cases, the paper's method in {} of {paper_pairs}.",
+            uniform_pairs - uniform,
+            paper_pairs - paper
         ),
         differs: format!(
             "The paper does not show what more steps do. After {steps}, {past} of {} models are further away than \
-             they were before, by up to {} times.",
+             they were at best, by up to {} times.",
             ends.len(),
-            significant(worst, 3)
+            significant(worst, 2)
         ),
         why: "Bisected faces change the valence of their vertices, and a mesh of other valences has another limit \
               surface: the next step heads for that one. The distance then stops falling, or grows, however many \

@@ -13,7 +13,7 @@ const COLUMNS: &str = "model,angle_degrees,faces,shd_percent,amresh_faces,amresh
 const MODELS: [&str; 6] = ["bunny", "teddy", "shark", "cup", "radish", "cusp"];
 
 fn read(folder: &Path, name: &str) -> String {
-    fs::read_to_string(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    fs::read_to_string(folder.join(name)).expect(name)
 }
 
 /// What stands between two marks, each time they occur.
@@ -108,7 +108,7 @@ fn links_lead_somewhere(page: &str, folder: &Path) {
         match link.strip_prefix('#') {
             Some(id) => assert!(page.contains(&format!("id=\"{id}\"")), "no {link} on the page"),
             None => {
-                let bytes = fs::read(folder.join(link)).unwrap_or_else(|e| panic!("{link}: {e}"));
+                let bytes = fs::read(folder.join(link)).expect(link);
                 assert!(!bytes.is_empty(), "{link} is empty");
             }
         }

@@ -7,14 +7,16 @@ use limitmesh::index::{FaceId, HalfEdgeId};
 use limitmesh::limit::LimitTable;
 use limitmesh::refine::SeamRule;
 use limitmesh::scheme::Loop;
+use limitmesh_render::svg::{Drawing, Pen};
+use limitmesh_render::{Align, RenderError};
 use serde::Serialize;
 
 use super::Picture;
 use crate::reproduce::cast::Player;
 use crate::reproduce::folder::Folder;
+use crate::reproduce::ink::{AMRESH, INK, PALE, PAPER, plain, small, tinted};
 use crate::reproduce::methods;
 use crate::reproduce::space::{Vector, cross, dot, sub, unit};
-use crate::reproduce::svg::{AMRESH, Anchor, Drawing, INK, PALE, PAPER};
 
 /// The steps and angle whose cases are counted and drawn.
 const STEPS: usize = 3;
@@ -82,7 +84,7 @@ pub(in crate::reproduce) fn closure(
         search(player, &mut best)?;
     }
     let file = "figure5.svg";
-    folder.write(file, picture(&best).as_bytes())?;
+    folder.write(file, picture(&best)?.as_bytes())?;
     Ok(ClosureFigure {
         angle_degrees: ANGLE_DEGREES,
         counts,
@@ -193,16 +195,15 @@ fn shape([a, b, c]: [Vector; 3]) -> f64 {
 }
 
 const PANEL: f64 = 240.0;
-const CAPTIONS: [&str; 4] =
-    ["no divisible neighbour: left", "one: bisected", "two: in three", "three: in four, as if divisible"];
+const CAPTIONS: [&str; 4] = ["none divisible: left", "one: in two", "two: in three", "three: in four"];
 
-fn picture(examples: &[Option<Example>; 4]) -> String {
-    let mut drawing = Drawing::new(4.0 * PANEL, PANEL + 54.0, "The four cases of Figure 5 on real faces");
+fn picture(examples: &[Option<Example>; 4]) -> Result<String, RenderError> {
+    let mut drawing = Drawing::new(4.0 * PANEL, PANEL + 54.0)?;
     for (case, example) in examples.iter().enumerate() {
         let x = case as f64 * PANEL;
         let centre = x + 0.5 * PANEL;
         let words = format!("({}) {}", ["a", "b", "c", "d"][case], CAPTIONS[case]);
-        drawing.text([centre, PANEL + 18.0], Anchor::Middle, r#"font-weight="600""#, &words);
+        drawing.label([centre, PANEL + 18.0], &words, &plain().bold(true).align(Align::Centre));
         let place = match example {
             Some(example) => {
                 panel(&mut drawing, example, x);
@@ -211,8 +212,7 @@ fn picture(examples: &[Option<Example>; 4]) -> String {
             }
             None => "no such face in these models".to_owned(),
         };
-        let style = format!(r#"font-size="11" fill="{PALE}""#);
-        drawing.text([centre, PANEL + 38.0], Anchor::Middle, &style, &place);
+        drawing.label([centre, PANEL + 38.0], &place, &small().align(Align::Centre));
     }
     drawing.finish()
 }
@@ -236,14 +236,10 @@ fn panel(drawing: &mut Drawing, example: &Example, x: f64) {
             Kind::Divisible => (AMRESH, 0.24),
             Kind::Indivisible => (PALE, 0.16),
         };
-        let style = format!(
-            r#"fill="{fill}" fill-opacity="{opacity}" stroke="{INK}" stroke-width="1.2" stroke-linejoin="round""#
-        );
-        drawing.polygon(&triangle.map(place), &style);
+        tinted(drawing, &triangle.map(place), fill, opacity, &Pen::line(INK, 1.2));
     }
     let before: Vec<[f64; 2]> = example.before.iter().map(|&p| place(p)).collect();
-    let dashed = format!(r#"fill="none" stroke="{PAPER}" stroke-width="1.4" stroke-dasharray="5 4""#);
-    drawing.polygon(&before, &dashed);
+    drawing.polygon(&before, &Pen::line(PAPER, 1.4).dashes(&[5.0, 4.0]));
 }
 
 #[cfg(test)]

@@ -8,14 +8,16 @@ use limitmesh::Mesh;
 use limitmesh::index::VertexId;
 use limitmesh::limit::LimitTable;
 use limitmesh::scheme::Loop;
+use limitmesh_render::svg::{Drawing, Pen};
+use limitmesh_render::{Align, RenderError};
 use serde::Serialize;
 
 use super::Picture;
 use crate::reproduce::cast::Player;
 use crate::reproduce::folder::Folder;
+use crate::reproduce::ink::{self, AMRESH, GRID, INK, PALE, PAPER, plain, thin, tinted};
 use crate::reproduce::methods;
 use crate::reproduce::space::{Vector, add_scaled, angle_degrees, cross, dot, sub, tangents, unit};
-use crate::reproduce::svg::{AMRESH, Anchor, Drawing, GRID, INK, PALE, PAPER};
 
 /// The cone's angle α, in degrees.
 const ALPHA: f64 = 10.0;
@@ -80,7 +82,7 @@ pub(in crate::reproduce) fn cone(player: &Player, folder: &mut Folder) -> anyhow
         })
         .collect();
     let file = "figure2.svg";
-    folder.write(file, picture(&stages, normal).as_bytes())?;
+    folder.write(file, picture(&stages, normal)?.as_bytes())?;
     let picture = Picture::new(
         file,
         "Face normals around a vertex entering the cone around its limit normal over two steps",
@@ -133,10 +135,10 @@ fn face_normal([a, b, c]: [Vector; 3]) -> Vector {
 const PANEL: f64 = 300.0;
 const SPACE_HEIGHT: f64 = 270.0;
 
-fn picture(stages: &[Stage], normal: Vector) -> String {
+fn picture(stages: &[Stage], normal: Vector) -> Result<String, RenderError> {
     let width = PANEL * stages.len() as f64;
     let height = SPACE_HEIGHT + PANEL + 20.0;
-    let mut drawing = Drawing::new(width, height, "The cone of normals at a vertex over two steps");
+    let mut drawing = Drawing::new(width, height)?;
     let widest = stages.iter().map(Stage::greatest).fold(ALPHA, f64::max);
     for (column, stage) in stages.iter().enumerate() {
         let x = column as f64 * PANEL;
@@ -145,14 +147,14 @@ fn picture(stages: &[Stage], normal: Vector) -> String {
             1 => "(b) after one step".to_owned(),
             step => format!("(c) after {step} steps"),
         };
-        drawing.text([x + 0.5 * PANEL, 20.0], Anchor::Middle, r#"font-weight="600""#, &title);
+        drawing.label([x + 0.5 * PANEL, 20.0], &title, &plain().bold(true).align(Align::Centre));
         in_space(&mut drawing, stage, normal, x);
         from_above(&mut drawing, stage, normal, widest, [x + 0.5 * PANEL, SPACE_HEIGHT + 0.5 * PANEL]);
     }
     drawing.finish()
 }
 
-fn colour(angle: f64) -> &'static str {
+fn colour(angle: f64) -> [u8; 3] {
     if angle > ALPHA { AMRESH } else { PAPER }
 }
 
@@ -176,11 +178,7 @@ fn in_space(drawing: &mut Drawing, stage: &Stage, normal: Vector, x: f64) {
     }
     faces.sort_by(|a, b| a.0.total_cmp(&b.0));
     for (_, corners, angle) in &faces {
-        let style = format!(
-            r#"fill="{}" fill-opacity="0.16" stroke="{INK}" stroke-width="1" stroke-linejoin="round""#,
-            colour(*angle)
-        );
-        drawing.polygon(corners, &style);
+        tinted(drawing, corners, colour(*angle), 0.16, &thin(INK));
     }
     let alpha = ALPHA.to_radians();
     let rim: Vec<[f64; 2]> = (0..72)
@@ -191,29 +189,25 @@ fn in_space(drawing: &mut Drawing, stage: &Stage, normal: Vector, x: f64) {
         })
         .collect();
     let ends = [rim[0], rim[36]];
-    drawing.polygon(&[origin, ends[0], ends[1]], &format!(r#"fill="{GRID}" fill-opacity="0.8""#));
-    let outline = format!(r#"fill="{GRID}" fill-opacity="0.8" stroke="{PALE}""#);
-    drawing.polygon(&rim, &outline);
+    drawing.polygon(&[origin, ends[0], ends[1]], &Pen::area(GRID).opacity(0.8));
+    tinted(drawing, &rim, GRID, 0.8, &thin(PALE));
     for end in ends {
-        drawing.line(origin, end, &format!(r#"stroke="{PALE}""#));
+        drawing.line(origin, end, &thin(PALE));
     }
     for (face, &angle) in stage.faces.iter().zip(&stage.angles_degrees) {
-        drawing.arrow(origin, flat(face_normal(*face).map(|c| arrow * c)), colour(angle), 1.7);
+        drawing.arrow(origin, flat(face_normal(*face).map(|c| arrow * c)), &Pen::line(colour(angle), 1.7));
     }
-    drawing.arrow(origin, flat(normal.map(|c| arrow * c)), INK, 2.2);
+    drawing.arrow(origin, flat(normal.map(|c| arrow * c)), &Pen::line(INK, 2.2));
 }
 
 /// The normals by angle and direction around the limit normal.
 fn from_above(drawing: &mut Drawing, stage: &Stage, normal: Vector, widest: f64, centre: [f64; 2]) {
     let [u, v] = tangents(normal);
     let scale = 118.0 / widest;
-    let cone = format!(r#"fill="{GRID}" fill-opacity="0.8" stroke="{PALE}""#);
-    drawing.circle(centre, scale * ALPHA, &cone);
-    let pale = format!(r#"font-size="11" fill="{PALE}""#);
+    drawing.circle(centre, scale * ALPHA, &thin(PALE).fill(GRID));
     let mut ring = 2.0 * ALPHA;
-    while ring < widest + ALPHA {
-        let style = format!(r#"fill="none" stroke="{GRID}""#);
-        drawing.circle(centre, scale * ring.min(widest), &style);
+    while ring <= widest {
+        drawing.circle(centre, scale * ring, &thin(GRID));
         ring += ALPHA;
     }
     let place = |n: Vector, angle: f64| {
@@ -221,22 +215,12 @@ fn from_above(drawing: &mut Drawing, stage: &Stage, normal: Vector, widest: f64,
         let length = direction[0].hypot(direction[1]).max(f64::MIN_POSITIVE);
         [centre[0] + scale * angle * direction[0] / length, centre[1] + scale * angle * direction[1] / length]
     };
-    drawing.text(
-        [centre[0] + scale * ALPHA + 4.0, centre[1] + 4.0],
-        Anchor::Start,
-        &pale,
-        &format!("α = {ALPHA}°"),
-    );
     for (face, &angle) in stage.faces.iter().zip(&stage.angles_degrees) {
         let at = place(face_normal(*face), angle);
-        drawing.line(
-            centre,
-            at,
-            &format!(r#"stroke="{}" stroke-width="1.2" stroke-opacity="0.6""#, colour(angle)),
-        );
-        drawing.circle(at, 5.0, &format!(r#"fill="{}" stroke="white""#, colour(angle)));
+        drawing.line(centre, at, &Pen::line(colour(angle), 1.2).opacity(0.6));
+        ink::dot(drawing, at, 5.0, colour(angle));
     }
-    drawing.circle(centre, 4.0, &format!(r#"fill="{INK}""#));
-    let greatest = format!("greatest {:.1}°", stage.greatest());
-    drawing.text([centre[0], centre[1] + 0.5 * PANEL - 4.0], Anchor::Middle, "", &greatest);
+    drawing.circle(centre, 4.0, &Pen::area(INK));
+    let greatest = format!("greatest {:.1}°, cone {ALPHA}°", stage.greatest());
+    drawing.label([centre[0], centre[1] + 0.5 * PANEL - 4.0], &greatest, &plain().align(Align::Centre));
 }
