@@ -7,10 +7,11 @@
 
 use std::sync::Arc;
 
-use super::refined::{Lazy, Refined, RefinedMesh};
+use super::refined::{Refined, RefinedMesh};
 use super::stencil::LimitStencil;
 use super::{LimitError, LimitTable};
 use crate::index::VertexId;
+use crate::masks::Masks;
 use crate::mesh::{Mesh, Topology};
 use crate::parallel;
 use crate::ring::RingShape;
@@ -69,7 +70,7 @@ impl LimitTable<'_> {
         let stencil = self.stencil(mesh.ring_shape(vertex))?;
         Ok(match self.scheme().support() {
             Support::TwoRing if !interpolates(&stencil) => {
-                two_ring_position(mesh, vertex, &stencil, &Lazy::new(self.scheme(), mesh))
+                two_ring_position(mesh, vertex, &stencil, &Masks::on_demand(mesh, self.scheme()))
             }
             _ => one_ring_position(mesh, vertex, &stencil),
         })
@@ -82,7 +83,9 @@ impl LimitTable<'_> {
     pub fn normal(&self, mesh: &Mesh, vertex: VertexId) -> Result<[f64; 3], LimitError> {
         let stencil = self.stencil(mesh.ring_shape(vertex))?;
         Ok(match self.scheme().support() {
-            Support::TwoRing => two_ring_normal(mesh, vertex, &stencil, &Lazy::new(self.scheme(), mesh)),
+            Support::TwoRing => {
+                two_ring_normal(mesh, vertex, &stencil, &Masks::on_demand(mesh, self.scheme()))
+            }
             Support::OneRing => one_ring_normal(mesh, vertex, &stencil),
         })
     }

@@ -4,7 +4,6 @@
 
 mod driver;
 mod junctions;
-mod masks;
 mod split;
 mod step;
 mod stepwise;

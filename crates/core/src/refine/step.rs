@@ -4,9 +4,9 @@
 
 use super::RefineError;
 use super::junctions::{edge_groups, join_copies, vertex_groups};
-use super::masks::Masks;
 use super::split::{SplitEdges, SplitTopology};
 use crate::index::VertexId;
+use crate::masks::Masks;
 use crate::mesh::{INFINITELY_SHARP, Junctions, Mesh, Tags};
 use crate::parallel;
 use crate::scheme::Scheme;

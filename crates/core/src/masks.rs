@@ -1,26 +1,29 @@
 //! A scheme's masks applied to a mesh: where its vertices move and where new ones come to stand.
+//!
+//! Takes a mesh and a scheme; gives points. Refinement and the limits of two-ring schemes build on it.
 
 use std::collections::HashMap;
 
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::Mesh;
 use crate::parallel;
-use crate::ring::{EdgeShape, RingShape};
+use crate::ring::{EdgeShape, RingShape, VertexKind};
 use crate::scheme::{EdgeMask, Scheme, Support, VertexMask};
 use crate::vector::{DVec3, vector};
 
-/// The masks of one scheme for one mesh: those that recur are evaluated once.
-pub(super) struct Masks<'a> {
+/// The masks of one scheme for one mesh. Those that recur are evaluated once where many points are wanted.
+pub(crate) struct Masks<'a> {
     mesh: &'a Mesh,
     scheme: &'a dyn Scheme,
+    /// The shape of each vertex's ring; empty where they are looked up on demand.
     shapes: Vec<RingShape>,
     vertex_masks: HashMap<RingShape, VertexMask>,
     /// Vertex masks of smooth interior vertices of small valence, by valence: nearly all of them.
     common: Vec<Option<VertexMask>>,
     /// The mask of an interior edge that touches no boundary, where the rings' valences do not matter.
     diamond: Option<Diamond>,
-    /// The mask of an edge between two regular interior vertices.
-    regular: EdgeMask,
+    /// The other masks of edges, by ascending shape.
+    edge_masks: Vec<(EdgeShape, EdgeMask)>,
 }
 
 /// Weights of an edge's ends and of the two vertices opposite it.
@@ -33,16 +36,15 @@ struct Diamond {
 /// Valences that [`Masks::common`] holds.
 const COMMON_VALENCES: usize = 32;
 
-const REGULAR: EdgeShape = EdgeShape::between(RingShape::interior(6), RingShape::interior(6));
-
 impl<'a> Masks<'a> {
-    pub(super) fn new(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Self {
+    /// Prepared for points all over the mesh.
+    pub(crate) fn new(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Self {
         let shapes = parallel::map(mesh.vertex_count(), |v| mesh.ring_shape(VertexId(v as u32)));
         let mut vertex_masks = HashMap::new();
         let mut common = vec![None; COMMON_VALENCES];
         for &shape in &shapes {
             match common.get_mut(shape.valence as usize) {
-                Some(slot) if !shape.open && !shape.corner => {
+                Some(slot) if shape.kind() == VertexKind::Interior => {
                     slot.get_or_insert_with(|| scheme.vertex_mask(shape));
                 }
                 _ => {
@@ -50,9 +52,53 @@ impl<'a> Masks<'a> {
                 }
             }
         }
-        let regular = scheme.edge_mask(REGULAR);
-        let diamond = (scheme.support() == Support::OneRing).then(|| Diamond::of(&regular)).flatten();
-        Self { mesh, scheme, shapes, vertex_masks, common, diamond, regular }
+        let mut masks = Self { shapes, vertex_masks, common, ..Self::on_demand(mesh, scheme) };
+        masks.edge_masks = masks.all_edge_masks();
+        masks
+    }
+
+    /// For a few points.
+    pub(crate) fn on_demand(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Self {
+        let regular = || scheme.edge_mask(EdgeShape::between(RingShape::interior(6), RingShape::interior(6)));
+        let diamond = (scheme.support() == Support::OneRing).then(|| Diamond::of(&regular())).flatten();
+        Self {
+            mesh,
+            scheme,
+            shapes: Vec::new(),
+            vertex_masks: HashMap::new(),
+            common: Vec::new(),
+            diamond,
+            edge_masks: Vec::new(),
+        }
+    }
+
+    /// The masks of all edges that the diamond does not serve.
+    fn all_edge_masks(&self) -> Vec<(EdgeShape, EdgeMask)> {
+        let topology = self.mesh.topology();
+        let shapes = parallel::pieces(topology.half_edge_count(), |piece| {
+            let mut shapes: Vec<EdgeShape> = piece
+                .map(|h| HalfEdgeId(h as u32))
+                .filter(|&h| topology.twin(h).is_none_or(|twin| h < twin) && !self.has_diamond(h))
+                .map(|h| self.mesh.edge_shape(h))
+                .collect();
+            shapes.sort_unstable();
+            shapes.dedup();
+            shapes
+        });
+        let mut shapes = shapes.concat();
+        shapes.sort_unstable();
+        shapes.dedup();
+        shapes.into_iter().map(|shape| (shape, self.scheme.edge_mask(shape))).collect()
+    }
+
+    fn shape(&self, vertex: VertexId) -> RingShape {
+        self.shapes.get(vertex.index()).copied().unwrap_or_else(|| self.mesh.ring_shape(vertex))
+    }
+
+    /// Whether the mask of an edge is the diamond.
+    fn has_diamond(&self, h: HalfEdgeId) -> bool {
+        let topology = self.mesh.topology();
+        self.diamond.is_some() && !topology.ends(h).iter().any(|&end| topology.is_boundary(end))
     }
 
     fn at(&self, vertex: VertexId) -> DVec3 {
@@ -60,13 +106,13 @@ impl<'a> Masks<'a> {
     }
 
     /// Where `vertex` moves.
-    pub(super) fn vertex_point(&self, vertex: VertexId) -> DVec3 {
-        let shape = self.shapes[vertex.index()];
-        let common = match self.common.get(shape.valence as usize) {
-            Some(mask) if !shape.open && !shape.corner => mask.as_ref(),
+    pub(crate) fn vertex_point(&self, vertex: VertexId) -> DVec3 {
+        let shape = self.shape(vertex);
+        let known = match self.common.get(shape.valence as usize) {
+            Some(mask) if shape.kind() == VertexKind::Interior => mask.as_ref(),
             _ => self.vertex_masks.get(&shape),
         };
-        match common {
+        match known {
             Some(mask) => self.weigh_vertex(vertex, mask),
             None => self.weigh_vertex(vertex, &self.scheme.vertex_mask(shape)),
         }
@@ -81,24 +127,21 @@ impl<'a> Masks<'a> {
             .fold(mask.centre * self.at(vertex), |sum, (u, &weight)| sum + weight * self.at(u))
     }
 
-    /// Where the new vertex on the edge of `h` comes to stand.
-    pub(super) fn edge_point(&self, h: HalfEdgeId) -> DVec3 {
+    /// Where the new vertex on the edge of `h` comes to stand: the same bits from both of its half-edges.
+    pub(crate) fn edge_point(&self, h: HalfEdgeId) -> DVec3 {
         let topology = self.mesh.topology();
-        let [origin, target] = topology.ends(h);
-        let shapes = [self.shapes[origin.index()], self.shapes[target.index()]];
-        if let (Some(diamond), Some(twin), [false, false]) =
-            (self.diamond, topology.twin(h), shapes.map(|shape| shape.open))
-        {
+        let h = topology.twin(h).map_or(h, |twin| h.min(twin));
+        if let (Some(diamond), Some(twin), true) = (self.diamond, topology.twin(h), self.has_diamond(h)) {
+            let [origin, target] = topology.ends(h);
             return diamond.ends[0] * self.at(origin)
                 + diamond.ends[1] * self.at(target)
                 + diamond.opposite[0] * self.at(topology.opposite(h))
                 + diamond.opposite[1] * self.at(topology.opposite(twin));
         }
         let shape = self.mesh.edge_shape(h);
-        if shape == REGULAR {
-            self.weigh_edge(h, &shape, &self.regular)
-        } else {
-            self.weigh_edge(h, &shape, &self.scheme.edge_mask(shape))
+        match self.edge_masks.binary_search_by(|(known, _)| known.cmp(&shape)) {
+            Ok(i) => self.weigh_edge(h, &shape, &self.edge_masks[i].1),
+            Err(_) => self.weigh_edge(h, &shape, &self.scheme.edge_mask(shape)),
         }
     }
 
