@@ -44,8 +44,8 @@ pub(super) fn brief(results: &Results) -> Vec<String> {
     }
     let (paper, pairs) = rises(drift(results), |p| Some(p.paper.shd_percent));
     lines.push(format!(
-        "One more step takes the paper's method further away from the limit surface in {paper} of {pairs} cases, \
-         since each step's mesh becomes the control mesh of the next."
+        "One more step takes the paper's method further away from the limit surface in {paper} of {pairs} cases: each \
+         step's mesh becomes the control mesh of the next, with a limit surface of its own."
     ));
     lines
 }
@@ -152,8 +152,8 @@ pub(super) fn figure_2(cone: &ConeFigure) -> Findings {
     let inside = cone.stages.iter().filter(|s| s.greatest() <= cone.alpha_degrees).count();
     Findings {
         agrees: format!(
-            "The face normals around vertex {} of the {} come nearer to its limit normal with every step (greatest \
-             angle {greatest}), and after {inside_steps} lie within the cone of {}°. The limit normal, worked out \
+            "The greatest angle between the face normals around vertex {} of the {} and its limit normal is {greatest} \
+             from step to step; after {inside_steps} all are within the cone of {}°. The limit normal, worked out \
              afresh from each mesh, stays the same to within {turn:.0e}°.",
             cone.vertex,
             cone.model,
@@ -179,7 +179,7 @@ pub(super) fn figure_5(figure: &ClosureFigure) -> Findings {
     let [a, b, c, d] = totals.map(thousands);
     Findings {
         agrees: format!(
-            "{found} of the four cases occur: over all steps of all models, {a} faces are left whole (a), {b} \
+            "{found} of 4 cases occur: over all steps of all models, {a} faces are left whole (a), {b} \
              bisected (b), {c} cut in three (c) and {d} in four (d).",
         ),
         differs: "The paper does not say which diagonal cuts the quadrilateral of case (c): here it is the shorter \
@@ -223,8 +223,8 @@ pub(super) fn figure_7(heads: &[Head]) -> Findings {
     };
     let why = format!(
         "The paper's own head of 142 faces is not to be had: these are other meshes of as many faces, and how many \
-         faces exceed an angle depends on how evenly a mesh bends. Which vertices move at a seam explains little: \
-         {seams}."
+         faces exceed an angle depends on how evenly a mesh bends. By which vertices move at a seam, the counts \
+         are {seams}."
     );
     Findings { agrees, differs, why }
 }
@@ -247,7 +247,7 @@ pub(super) fn figure_8(shoe: &Shoe) -> Findings {
     });
     let agrees = if more {
         format!(
-            "The smaller threshold gives many more faces: {tell}, of {} for uniform refinement.",
+            "The smaller threshold gives more faces: {tell}, of {} for uniform refinement.",
             thousands(shoe.uniform_faces)
         )
     } else {
@@ -290,8 +290,8 @@ pub(super) fn figure_9(figure: &ViewFigure) -> Findings {
     });
     Findings {
         agrees: format!(
-            "With two steps and α = π/{part}: {}. Faces that look away are not divided, but for those at the \
-             silhouette that are cut to close it ({}).",
+            "With two steps and α = π/{part}: {}. Faces that look away are left alone, but for those cut to \
+             close the silhouette at each step ({}).",
             joined(tell),
             back.collect::<Vec<_>>().join("; ")
         ),
