@@ -2,12 +2,10 @@
 //!
 //! Takes a mesh and a scheme; gives points. Refinement and the limits of two-ring schemes build on it.
 
-use std::collections::HashMap;
-
 use crate::index::{HalfEdgeId, VertexId};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, RingShapes};
 use crate::parallel;
-use crate::ring::{EdgeShape, RingShape, VertexKind};
+use crate::ring::{EdgeShape, RingShape};
 use crate::scheme::{EdgeMask, Scheme, Support, VertexMask};
 use crate::vector::{DVec3, vector};
 
@@ -15,11 +13,9 @@ use crate::vector::{DVec3, vector};
 pub(crate) struct Masks<'a> {
     mesh: &'a Mesh,
     scheme: &'a dyn Scheme,
-    /// The shape of each vertex's ring; empty where they are looked up on demand.
-    shapes: Vec<RingShape>,
-    vertex_masks: HashMap<RingShape, VertexMask>,
-    /// Vertex masks of smooth interior vertices of small valence, by valence: nearly all of them.
-    common: Vec<Option<VertexMask>>,
+    /// The shape of each vertex's ring, and the mask of each shape; empty where they are looked up on demand.
+    shapes: RingShapes,
+    vertex_masks: Vec<VertexMask>,
     /// The mask of an interior edge that touches no boundary, where the rings' valences do not matter.
     diamond: Option<Diamond>,
     /// The other masks of edges, by ascending shape.
@@ -33,26 +29,12 @@ struct Diamond {
     opposite: [f64; 2],
 }
 
-/// Valences that [`Masks::common`] holds.
-const COMMON_VALENCES: usize = 32;
-
 impl<'a> Masks<'a> {
     /// Prepared for points all over the mesh.
     pub(crate) fn new(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Self {
-        let shapes = parallel::map(mesh.vertex_count(), |v| mesh.ring_shape(VertexId(v as u32)));
-        let mut vertex_masks = HashMap::new();
-        let mut common = vec![None; COMMON_VALENCES];
-        for &shape in &shapes {
-            match common.get_mut(shape.valence as usize) {
-                Some(slot) if shape.kind() == VertexKind::Interior => {
-                    slot.get_or_insert_with(|| scheme.vertex_mask(shape));
-                }
-                _ => {
-                    vertex_masks.entry(shape).or_insert_with(|| scheme.vertex_mask(shape));
-                }
-            }
-        }
-        let mut masks = Self { shapes, vertex_masks, common, ..Self::on_demand(mesh, scheme) };
+        let shapes = RingShapes::of(mesh);
+        let vertex_masks = shapes.distinct.iter().map(|&shape| scheme.vertex_mask(shape)).collect();
+        let mut masks = Self { shapes, vertex_masks, ..Self::on_demand(mesh, scheme) };
         masks.edge_masks = masks.all_edge_masks();
         masks
     }
@@ -64,9 +46,8 @@ impl<'a> Masks<'a> {
         Self {
             mesh,
             scheme,
-            shapes: Vec::new(),
-            vertex_masks: HashMap::new(),
-            common: Vec::new(),
+            shapes: RingShapes::default(),
+            vertex_masks: Vec::new(),
             diamond,
             edge_masks: Vec::new(),
         }
@@ -91,10 +72,6 @@ impl<'a> Masks<'a> {
         shapes.into_iter().map(|shape| (shape, self.scheme.edge_mask(shape))).collect()
     }
 
-    fn shape(&self, vertex: VertexId) -> RingShape {
-        self.shapes.get(vertex.index()).copied().unwrap_or_else(|| self.mesh.ring_shape(vertex))
-    }
-
     /// Whether the mask of an edge is the diamond.
     fn has_diamond(&self, h: HalfEdgeId) -> bool {
         let topology = self.mesh.topology();
@@ -107,14 +84,9 @@ impl<'a> Masks<'a> {
 
     /// Where `vertex` moves.
     pub(crate) fn vertex_point(&self, vertex: VertexId) -> DVec3 {
-        let shape = self.shape(vertex);
-        let known = match self.common.get(shape.valence as usize) {
-            Some(mask) if shape.kind() == VertexKind::Interior => mask.as_ref(),
-            _ => self.vertex_masks.get(&shape),
-        };
-        match known {
-            Some(mask) => self.weigh_vertex(vertex, mask),
-            None => self.weigh_vertex(vertex, &self.scheme.vertex_mask(shape)),
+        match self.shapes.by_vertex.get(vertex.index()) {
+            Some(&shape) => self.weigh_vertex(vertex, &self.vertex_masks[shape as usize]),
+            None => self.weigh_vertex(vertex, &self.scheme.vertex_mask(self.mesh.ring_shape(vertex))),
         }
     }
 

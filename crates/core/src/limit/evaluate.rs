@@ -12,7 +12,7 @@ use super::stencil::LimitStencil;
 use super::{LimitError, LimitTable};
 use crate::index::VertexId;
 use crate::masks::Masks;
-use crate::mesh::{Mesh, Topology};
+use crate::mesh::{Mesh, RingShapes, Topology};
 use crate::parallel;
 use crate::ring::RingShape;
 use crate::scheme::Support;
@@ -104,27 +104,8 @@ struct Stencils {
 
 impl Stencils {
     fn of(table: &LimitTable<'_>, mesh: &Mesh) -> Result<Self, LimitError> {
-        const UNSEEN: u32 = u32::MAX;
-        let topology = mesh.topology();
-        let mut faces = vec![0u32; mesh.vertex_count()];
-        for &v in topology.triangles().as_flattened() {
-            faces[v as usize] += 1;
-        }
-        let most = faces.iter().copied().max().unwrap_or(0) as usize;
-        let mut by_shape = vec![UNSEEN; 4 * (most + 1)];
-        let mut list = Vec::new();
-        let mut by_vertex = faces;
-        for (v, slot) in by_vertex.iter_mut().enumerate() {
-            let (count, vertex) = (*slot, VertexId(v as u32));
-            let (open, corner) = (topology.is_boundary(vertex), mesh.tags().is_corner(vertex));
-            let known = &mut by_shape[4 * count as usize + 2 * usize::from(open) + usize::from(corner)];
-            if *known == UNSEEN {
-                let shape = RingShape { valence: count + u32::from(open), open, corner };
-                *known = list.len() as u32;
-                list.push(table.stencil(shape)?);
-            }
-            *slot = *known;
-        }
+        let RingShapes { distinct, by_vertex } = RingShapes::of(mesh);
+        let list = distinct.into_iter().map(|shape| table.stencil(shape)).collect::<Result<_, _>>()?;
         Ok(Self { list, by_vertex })
     }
 

@@ -6,6 +6,7 @@
 mod build;
 mod diagnosis;
 mod junctions;
+mod ring_shapes;
 mod soup;
 mod tags;
 mod topology;
@@ -13,6 +14,7 @@ mod topology;
 pub use build::{BuildOptions, Weld};
 pub use diagnosis::{Diagnosis, Finding};
 pub use junctions::{Groups, Junctions};
+pub(crate) use ring_shapes::RingShapes;
 pub use soup::{PolygonFaces, PolygonSoup};
 pub use tags::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 pub(crate) use topology::{MAX_FACES, NONE};
