@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal, Sight, View};
 use limitmesh::limit::{LimitError, LimitTable};
+use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::refine::{RefineError, SeamRule, StepwiseOptions, Stop, UniformOptions, stepwise, uniform};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, Mesh};
@@ -364,4 +365,32 @@ fn cut_sheets_stay_together() {
             }
         }
     }
+}
+
+#[test]
+fn tags_go_to_the_pieces_of_what_they_name() {
+    let crease = |a, b, sharpness| CreaseTag { vertices: [a, b], sharpness };
+    let tags = Tags {
+        creases: vec![crease(0, 2, 2.5), crease(2, 4, INFINITELY_SHARP), crease(4, 0, 1.0)],
+        corners: vec![
+            CornerTag { vertex: 1, sharpness: f64::INFINITY },
+            CornerTag { vertex: 5, sharpness: 2.0 },
+        ],
+    };
+    let mesh = octahedron().with_tags(tags).unwrap();
+    let found = refined(&mesh, 2);
+    // Each crease that has not faded now runs along four edges between its old ends.
+    let ends = |of: f64| -> Vec<u32> {
+        let tags = found.tags().creases.iter().filter(|tag| tag.sharpness == of);
+        let all: Vec<u32> = tags.flat_map(|tag| tag.vertices).collect();
+        let mut once: Vec<u32> =
+            all.iter().copied().filter(|v| all.iter().filter(|u| *u == v).count() == 1).collect();
+        once.sort_unstable();
+        once
+    };
+    assert_eq!(found.tags().creases.len(), 8);
+    assert_eq!((ends(0.5), ends(INFINITELY_SHARP)), (vec![0, 2], vec![2, 4]));
+    assert_eq!(found.tags().corners, [CornerTag { vertex: 1, sharpness: f64::INFINITY }]);
+    assert_eq!(found.positions()[1], mesh.positions()[1]);
+    found.validate().unwrap();
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use limitmesh::Mesh;
 use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal, Sight, View};
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::Weld;
+use limitmesh::mesh::{INFINITELY_SHARP, Tags, Weld};
 use limitmesh::refine::{Refinement, StepReport, StepwiseOptions, Stop, UniformOptions, stepwise, uniform};
 use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
@@ -42,6 +42,9 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         faces: input.diagnosis.input_faces,
     };
     let Input { mesh: control, diagnosis, reading, building, .. } = input;
+    if let Some(note) = smoothed_tags(control.tags(), format) {
+        progress.note(note);
+    }
 
     let start = Instant::now();
     let Refinement { mesh, steps, stop, .. } = refine(&control, arguments, progress)?;
@@ -81,6 +84,27 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         picture::draw(path, mesh.as_triangles(), normals.as_deref(), view, &style, picture::SIZE)?;
     }
     Ok(outcome(arguments, &mesh, &steps, stop))
+}
+
+/// Tells about tags across which the refinement smooths.
+fn smoothed_tags(tags: &Tags, format: Format) -> Option<String> {
+    let fading = tags.corners.iter().filter(|corner| corner.sharpness < INFINITELY_SHARP).count();
+    if tags.creases.is_empty() && fading == 0 {
+        return None;
+    }
+    let creases = (tags.creases.len(), "crease tag", "crease tags");
+    let corners = (fading, "semi-sharp corner tag", "semi-sharp corner tags");
+    let found: Vec<String> = [creases, corners]
+        .into_iter()
+        .filter(|&(count, ..)| count > 0)
+        .map(|(count, one, many)| counted(count, one, many))
+        .collect();
+    let kept = if format == Format::Obj {
+        "kept in the output, one level less sharp for each step"
+    } else {
+        "left out of the output, whose format has none"
+    };
+    Some(format!("{}: smoothed across, {kept}", found.join(" and ")))
 }
 
 /// Finds what makes no sense before any work is done; gives the format to write.

@@ -275,3 +275,20 @@ fn tags_reach_the_output_where_its_format_has_them() {
     assert_eq!(soup.corners.len(), 1);
     assert_eq!(soup.positions[soup.corners[0].vertex as usize], [0.0, 0.0, 1.0]);
 }
+
+#[test]
+fn tags_are_kept_or_the_loss_is_told() {
+    let folder = folder();
+    let input = folder.path().join("tagged.obj");
+    let content = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n\
+        t crease 2/1/0 0 1 10\nt corner 1/1/0 3 10\n";
+    std::fs::write(&input, content).expect("a file");
+    for (name, words) in [("out.obj", "kept in the output"), ("out.ply", "left out of the output")] {
+        let output = folder.path().join(name);
+        let run = run("refine {} -o {} --levels 2", &[&input, &output]).expect(0);
+        assert!(run.stderr.contains("1 crease tag: smoothed across") && run.stderr.contains(words));
+        let soup = soup(&output);
+        let kept = name.ends_with("obj");
+        assert_eq!((soup.creases.len(), soup.corners.len()), if kept { (4, 1) } else { (0, 0) });
+    }
+}

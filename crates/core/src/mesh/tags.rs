@@ -26,8 +26,8 @@ pub struct CornerTag {
 
 /// The tags of a mesh.
 ///
-/// Corners of infinite sharpness are honoured by every refinement. Creases and semi-sharp corners are kept
-/// with the control mesh and its files.
+/// Refinement honours corners of infinite sharpness. It hands creases and semi-sharp corners on to the pieces of
+/// what they name, but smooths across them.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Tags {
     /// Sharp edges.

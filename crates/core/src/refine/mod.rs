@@ -7,6 +7,7 @@ mod junctions;
 mod split;
 mod step;
 mod stepwise;
+mod tags;
 mod uniform;
 
 pub use stepwise::{SeamRule, StepwiseOptions, stepwise};

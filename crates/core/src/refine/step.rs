@@ -5,9 +5,10 @@
 use super::RefineError;
 use super::junctions::{edge_groups, join_copies, vertex_groups};
 use super::split::{SplitEdges, SplitTopology};
+use super::tags::refined_tags;
 use crate::index::VertexId;
 use crate::masks::Masks;
-use crate::mesh::{INFINITELY_SHARP, Junctions, Mesh, Tags};
+use crate::mesh::{Junctions, Mesh};
 use crate::parallel;
 use crate::scheme::Scheme;
 
@@ -25,7 +26,7 @@ pub(super) fn advance(
     split.choose_diagonals(mesh, &numbered, &positions);
     let junctions = Junctions { vertices, edges: edge_groups(mesh, &split, &numbered) };
     let topology = numbered.connect(mesh, &split);
-    Ok(Mesh::from_parts(topology, positions, lasting_tags(mesh.tags()), junctions))
+    Ok(Mesh::from_parts(topology, positions, refined_tags(mesh, &split, &numbered), junctions))
 }
 
 /// Old vertices, moved or not, and then the new ones.
@@ -46,10 +47,4 @@ fn new_positions(
             mesh.positions()[v]
         }
     })
-}
-
-/// The tags that hold for the next mesh: corners that stay for ever. Old vertices keep their numbers.
-fn lasting_tags(tags: &Tags) -> Tags {
-    let lasting = |tag: &&crate::mesh::CornerTag| tag.sharpness >= INFINITELY_SHARP;
-    Tags { creases: Vec::new(), corners: tags.corners.iter().filter(lasting).copied().collect() }
 }
