@@ -57,3 +57,7 @@ mod vector;
 
 pub use index::{FaceId, HalfEdgeId, VertexId};
 pub use mesh::{Mesh, PolygonSoup, Triangles};
+
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
