@@ -16,6 +16,8 @@ pub(crate) struct Masks<'a> {
     /// The shape of each vertex's ring, and the mask of each shape; empty where they are looked up on demand.
     shapes: RingShapes,
     vertex_masks: Vec<VertexMask>,
+    /// Whether the mesh is known to have no boundary.
+    is_closed: bool,
     /// The mask of an interior edge that touches no boundary, where the rings' valences do not matter.
     diamond: Option<Diamond>,
     /// The other masks of edges, by ascending shape.
@@ -34,7 +36,8 @@ impl<'a> Masks<'a> {
     pub(crate) fn new(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Self {
         let shapes = RingShapes::of(mesh);
         let vertex_masks = shapes.distinct.iter().map(|&shape| scheme.vertex_mask(shape)).collect();
-        let mut masks = Self { shapes, vertex_masks, ..Self::on_demand(mesh, scheme) };
+        let is_closed = shapes.distinct.iter().all(|shape| !shape.open);
+        let mut masks = Self { shapes, vertex_masks, is_closed, ..Self::on_demand(mesh, scheme) };
         masks.edge_masks = masks.all_edge_masks();
         masks
     }
@@ -48,6 +51,7 @@ impl<'a> Masks<'a> {
             scheme,
             shapes: RingShapes::default(),
             vertex_masks: Vec::new(),
+            is_closed: false,
             diamond,
             edge_masks: Vec::new(),
         }
@@ -55,6 +59,9 @@ impl<'a> Masks<'a> {
 
     /// The masks of all edges that the diamond does not serve.
     fn all_edge_masks(&self) -> Vec<(EdgeShape, EdgeMask)> {
+        if self.diamond.is_some() && self.is_closed {
+            return Vec::new();
+        }
         let topology = self.mesh.topology();
         let shapes = parallel::pieces(topology.half_edge_count(), |piece| {
             let mut shapes: Vec<EdgeShape> = piece
@@ -73,9 +80,18 @@ impl<'a> Masks<'a> {
     }
 
     /// Whether the mask of an edge is the diamond.
+    #[inline]
     fn has_diamond(&self, h: HalfEdgeId) -> bool {
-        let topology = self.mesh.topology();
-        self.diamond.is_some() && !topology.ends(h).iter().any(|&end| topology.is_boundary(end))
+        let ends = || self.mesh.topology().ends(h);
+        self.diamond.is_some() && (self.is_closed || !ends().iter().any(|&end| self.is_open(end)))
+    }
+
+    #[inline]
+    fn is_open(&self, vertex: VertexId) -> bool {
+        match self.shapes.by_vertex.get(vertex.index()) {
+            Some(&shape) => self.shapes.distinct[shape as usize].open,
+            None => self.mesh.topology().is_boundary(vertex),
+        }
     }
 
     fn at(&self, vertex: VertexId) -> DVec3 {
