@@ -2,12 +2,23 @@
 //!
 //! Takes a mesh and a scheme; gives points. Refinement and the limits of two-ring schemes build on it.
 
+mod spoke;
+
 use crate::index::{HalfEdgeId, VertexId};
-use crate::mesh::{Mesh, RingShapes};
+use crate::mesh::{Mesh, RingShapes, Topology};
 use crate::parallel;
 use crate::ring::{EdgeShape, RingShape};
 use crate::scheme::{EdgeMask, Scheme, Support, VertexMask};
 use crate::vector::{DVec3, vector};
+use spoke::Spoke;
+
+/// Up to this valence the place of an edge in an open ring is counted each time; beyond it the places of all edges
+/// are kept, because counting would take time with the square of the valence.
+const MOST_COUNTED: u32 = 32;
+
+/// Weights of edge masks kept at most (32 MB): the edges of a vertex on a boundary all have shapes of their own,
+/// whose masks together grow with the square of the valence. Beyond it masks are evaluated where they are needed.
+const MOST_WEIGHTS: usize = 1 << 22;
 
 /// The masks of one scheme for one mesh. Those that recur are evaluated once where many points are wanted.
 pub(crate) struct Masks<'a> {
@@ -20,6 +31,8 @@ pub(crate) struct Masks<'a> {
     is_closed: bool,
     /// The mask of an interior edge that touches no boundary, where the rings' valences do not matter.
     diamond: Option<Diamond>,
+    /// By half-edge, its place in the ring of its origin where that is open; empty if such rings are all small.
+    slots: Vec<u32>,
     /// The other masks of edges, by ascending shape.
     edge_masks: Vec<(EdgeShape, EdgeMask)>,
 }
@@ -37,7 +50,8 @@ impl<'a> Masks<'a> {
         let shapes = RingShapes::of(mesh);
         let vertex_masks = shapes.distinct.iter().map(|&shape| scheme.vertex_mask(shape)).collect();
         let is_closed = shapes.distinct.iter().all(|shape| !shape.open);
-        let mut masks = Self { shapes, vertex_masks, is_closed, ..Self::on_demand(mesh, scheme) };
+        let slots = slots_of_open_rings(mesh.topology(), &shapes);
+        let mut masks = Self { shapes, vertex_masks, is_closed, slots, ..Self::on_demand(mesh, scheme) };
         masks.edge_masks = masks.all_edge_masks();
         masks
     }
@@ -53,11 +67,12 @@ impl<'a> Masks<'a> {
             vertex_masks: Vec::new(),
             is_closed: false,
             diamond,
+            slots: Vec::new(),
             edge_masks: Vec::new(),
         }
     }
 
-    /// The masks of all edges that the diamond does not serve.
+    /// The masks of edges that the diamond does not serve, as many as there is room for.
     fn all_edge_masks(&self) -> Vec<(EdgeShape, EdgeMask)> {
         if self.diamond.is_some() && self.is_closed {
             return Vec::new();
@@ -67,7 +82,7 @@ impl<'a> Masks<'a> {
             let mut shapes: Vec<EdgeShape> = piece
                 .map(|h| HalfEdgeId(h as u32))
                 .filter(|&h| topology.twin(h).is_none_or(|twin| h < twin) && !self.has_diamond(h))
-                .map(|h| self.mesh.edge_shape(h))
+                .map(|h| self.edge_shape(h))
                 .collect();
             shapes.sort_unstable();
             shapes.dedup();
@@ -76,7 +91,36 @@ impl<'a> Masks<'a> {
         let mut shapes = shapes.concat();
         shapes.sort_unstable();
         shapes.dedup();
+        let mut room = MOST_WEIGHTS;
+        shapes.retain(|shape| {
+            let left = room.checked_sub((shape.origin.valence + shape.target.valence) as usize);
+            room = left.unwrap_or(room);
+            left.is_some()
+        });
         shapes.into_iter().map(|shape| (shape, self.scheme.edge_mask(shape))).collect()
+    }
+
+    /// The shape of an edge, without going round its ends where their rings are known.
+    fn edge_shape(&self, h: HalfEdgeId) -> EdgeShape {
+        if self.shapes.by_vertex.is_empty() {
+            return self.mesh.edge_shape(h);
+        }
+        let topology = self.mesh.topology();
+        let [origin, target] = topology.ends(h).map(|v| self.shapes.at(v));
+        let slot = |shape: RingShape, spoke: Spoke| match spoke {
+            _ if !shape.open => 0,
+            Spoke::Arriving(_) => shape.valence - 1,
+            Spoke::Leaving(h) => self.slots.get(h.index()).copied().unwrap_or_else(|| {
+                let before = core::iter::successors(spoke.previous(topology), |s| s.previous(topology));
+                before.count() as u32
+            }),
+        };
+        EdgeShape {
+            origin,
+            origin_slot: slot(origin, Spoke::from_origin(h)),
+            target,
+            target_slot: slot(target, Spoke::from_target(topology, h)),
+        }
     }
 
     /// Whether the mask of an edge is the diamond.
@@ -126,7 +170,7 @@ impl<'a> Masks<'a> {
                 + diamond.opposite[0] * self.at(topology.opposite(h))
                 + diamond.opposite[1] * self.at(topology.opposite(twin));
         }
-        let shape = self.mesh.edge_shape(h);
+        let shape = self.edge_shape(h);
         match self.edge_masks.binary_search_by(|(known, _)| known.cmp(&shape)) {
             Ok(i) => self.weigh_edge(h, &shape, &self.edge_masks[i].1),
             Err(_) => self.weigh_edge(h, &shape, &self.scheme.edge_mask(shape)),
@@ -136,24 +180,58 @@ impl<'a> Masks<'a> {
     fn weigh_edge(&self, h: HalfEdgeId, shape: &EdgeShape, mask: &EdgeMask) -> DVec3 {
         let [origin, target] = self.mesh.topology().ends(h);
         let mut sum = mask.origin * self.at(origin) + mask.target * self.at(target);
-        for (vertex, ring, weights, other) in [
-            (origin, shape.origin, &mask.origin_ring, target),
-            (target, shape.target, &mask.target_ring, origin),
-        ] {
-            // A closed ring may start anywhere in the mesh, but starts at the edge in the mask.
-            let topology = self.mesh.topology();
-            let start =
-                if ring.open { 0 } else { topology.ring(vertex).position(|u| u == other).unwrap_or(0) };
-            let k = weights.len();
-            for (slot, u) in topology.ring(vertex).enumerate() {
-                let weight = weights[(slot + k - start) % k];
-                if weight != 0.0 {
-                    sum += weight * self.at(u);
-                }
-            }
+        let ends = [
+            (Spoke::from_origin(h), shape.origin, shape.origin_slot, &mask.origin_ring),
+            (Spoke::from_target(self.mesh.topology(), h), shape.target, shape.target_slot, &mask.target_ring),
+        ];
+        for (spoke, ring, slot, weights) in ends {
+            let slot = slot as usize;
+            // A closed ring starts at the edge: the second half of it is nearer clockwise.
+            let (before, from) = if ring.open {
+                weights.split_at(slot)
+            } else {
+                let (near, far) = weights.split_at(weights.len().div_ceil(2));
+                (far, near)
+            };
+            self.weigh_spokes(&mut sum, Some(spoke), Spoke::next, from.iter());
+            let previous = spoke.previous(self.mesh.topology());
+            self.weigh_spokes(&mut sum, previous, Spoke::previous, before.iter().rev());
         }
         sum
     }
+
+    /// Adds the weighted neighbours from `spoke` on, step by step, as far as there are weights that are not zero.
+    fn weigh_spokes<'w>(
+        &self,
+        sum: &mut DVec3,
+        mut spoke: Option<Spoke>,
+        step: impl Fn(Spoke, &Topology) -> Option<Spoke>,
+        weights: impl DoubleEndedIterator<Item = &'w f64> + ExactSizeIterator + Clone,
+    ) {
+        let topology = self.mesh.topology();
+        let reach = weights.clone().rposition(|&weight| weight != 0.0).map_or(0, |last| last + 1);
+        for &weight in weights.take(reach) {
+            let Some(here) = spoke else { return };
+            if weight != 0.0 {
+                *sum += weight * self.at(here.neighbour(topology));
+            }
+            spoke = step(here, topology);
+        }
+    }
+}
+
+/// The place of each half-edge in the ring of its origin, where that is open, if any such ring is large.
+fn slots_of_open_rings(topology: &Topology, shapes: &RingShapes) -> Vec<u32> {
+    if !shapes.distinct.iter().any(|shape| shape.open && shape.valence > MOST_COUNTED) {
+        return Vec::new();
+    }
+    let mut slots = vec![0; topology.half_edge_count()];
+    for vertex in topology.vertices().filter(|&v| topology.is_boundary(v)) {
+        for (slot, h) in (0..).zip(topology.outgoing_ring(vertex)) {
+            slots[h.index()] = slot;
+        }
+    }
+    slots
 }
 
 impl Diamond {
@@ -168,3 +246,6 @@ impl Diamond {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;

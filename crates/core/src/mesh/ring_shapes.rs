@@ -27,6 +27,12 @@ impl RingShapes {
         let by_vertex = parallel::map(shapes.len(), place);
         Self { distinct, by_vertex }
     }
+
+    /// The shape of a vertex's ring.
+    #[inline]
+    pub(crate) fn at(&self, vertex: VertexId) -> RingShape {
+        self.distinct[self.by_vertex[vertex.index()] as usize]
+    }
 }
 
 fn sorted_once(mut shapes: Vec<RingShape>) -> Vec<RingShape> {
