@@ -431,3 +431,15 @@ fn long_and_unprintable_words_are_shortened() {
     assert!(message.contains("met '\\u{7}é") || message.contains("met 'é"), "{message}");
     assert!(message.len() < 150, "{message}");
 }
+
+#[cfg(unix)]
+#[test]
+fn devices_that_never_end_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for format in Format::ALL {
+        let path = folder.path().join("endless").with_extension(format.extension());
+        std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains("endless") && error.contains("it is a device"), "{error}");
+    }
+}

@@ -8,6 +8,7 @@ mod stl;
 use crate::error::{Flaw, Place, ReadError};
 use crate::format::{Format, looks_like_other};
 use limitmesh::mesh::{PolygonFaces, PolygonSoup};
+use std::io;
 use std::path::Path;
 
 /// Reads a mesh file in the format of its extension.
@@ -17,8 +18,21 @@ use std::path::Path;
 /// the rules of its format; each names the file, and the last the line or byte as well.
 pub fn read(path: &Path) -> Result<PolygonSoup, ReadError> {
     let format = Format::from_path(path)?;
-    let bytes = std::fs::read(path).map_err(|reason| ReadError::Io { path: path.to_owned(), reason })?;
+    let bytes = read_all(path).map_err(|reason| ReadError::Io { path: path.to_owned(), reason })?;
     read_bytes(&bytes, format).map_err(|error| error.in_file(path))
+}
+
+/// All bytes of a file or a pipe. A device is refused: some, like `/dev/zero`, never end.
+fn read_all(path: &Path) -> io::Result<Vec<u8>> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        let kind = std::fs::metadata(path)?.file_type();
+        if kind.is_char_device() || kind.is_block_device() {
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a device, expected a file"));
+        }
+    }
+    std::fs::read(path)
 }
 
 /// Reads the bytes of a mesh file in the given format.
