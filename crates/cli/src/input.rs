@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
-use limitmesh::mesh::{BuildOptions, Diagnosis, MeshError};
+use limitmesh::mesh::{BuildOptions, Diagnosis, MeshError, Weld};
 use limitmesh::{Mesh, PolygonSoup, models};
 use limitmesh_io::Format;
 
 use crate::progress::Progress;
 use crate::report;
-use crate::words::counted;
+use crate::words::{counted, thousands};
 
 /// What marks the name of a built-in model.
 const BUILTIN: &str = "builtin:";
@@ -78,13 +78,38 @@ pub(crate) fn load(name: &str, options: &BuildOptions, progress: &Progress) -> a
     progress.stage(format!("connecting {}", counted(soup.faces.len(), "face", "faces")));
     let start = Instant::now();
     let (mesh, diagnosis) = Mesh::from_soup(&soup, options).map_err(|error| describe(&name, error))?;
+    let near = nearly_closed(&soup, &mesh, options);
     // Large soups are given back before refinement needs the memory.
     drop(soup);
     let building = start.elapsed();
     for line in report::diagnosis::repairs_in_words(&diagnosis) {
         progress.note(format!("{name}: {line}"));
     }
+    if let Some(near) = near {
+        progress.note(format!("{name}: {near}"));
+    }
     Ok(Input { name, format, mesh, diagnosis, reading, building })
+}
+
+/// Vertices nearer to each other than this share of the diagonal are usually one, written with too few digits: about
+/// ten steps of single precision.
+const NEAR: f64 = 1e-6;
+
+/// Tells where open edges would close if nearly equal positions were merged too.
+fn nearly_closed(soup: &PolygonSoup, mesh: &Mesh, options: &BuildOptions) -> Option<String> {
+    let open = mesh.topology().boundary_edge_count();
+    if open == 0 || options.weld != Weld::Exact {
+        return None;
+    }
+    // As it would be typed: one digit.
+    let distance: f64 = format!("{:.0e}", NEAR * mesh.diagonal()).parse().ok()?;
+    let (welded, _) = Mesh::from_soup(soup, &BuildOptions::default().weld(Weld::Within(distance))).ok()?;
+    let left = welded.topology().boundary_edge_count();
+    (left < open).then(|| {
+        let closing = if left == 0 { "all of them".to_owned() } else { thousands(open - left) };
+        let open = counted(open, "edge is open", "edges are open");
+        format!("{open}; {closing} would close with --weld {distance:e}, which merges nearly equal positions")
+    })
 }
 
 /// An error of building with the input's name before it.

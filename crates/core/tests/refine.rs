@@ -7,8 +7,8 @@ mod support;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal, Sight, View};
-use limitmesh::limit::{LimitError, LimitTable};
+use limitmesh::criterion::{Criterion, CriterionError, LimitNormal, NeighbourNormal, Sight, View};
+use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::refine::{RefineError, SeamRule, StepwiseOptions, Stop, UniformOptions, stepwise, uniform};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
@@ -29,7 +29,7 @@ impl Criterion for Arbitrary {
         "arbitrary"
     }
 
-    fn divisible(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<bool>, LimitError> {
+    fn divisible(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
         let mut random = Random::new((self.seed + mesh.face_count()) as u64);
         Ok((0..mesh.face_count()).map(|_| random.below(self.one_in) == 0).collect())
     }
@@ -116,7 +116,7 @@ fn seam_rules_move_the_vertices_they_name() {
         fn name(&self) -> &str {
             "first"
         }
-        fn divisible(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<bool>, LimitError> {
+        fn divisible(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
             Ok((0..mesh.face_count()).map(|f| f == 0).collect())
         }
     }
@@ -187,7 +187,7 @@ fn the_quadrilateral_of_two_split_edges_gets_its_shorter_diagonal() {
         fn name(&self) -> &str {
             "others"
         }
-        fn divisible(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<bool>, LimitError> {
+        fn divisible(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
             Ok((0..mesh.face_count()).map(|f| f > 0).collect())
         }
     }
@@ -393,4 +393,45 @@ fn tags_go_to_the_pieces_of_what_they_name() {
     assert_eq!(found.tags().corners, [CornerTag { vertex: 1, sharpness: f64::INFINITY }]);
     assert_eq!(found.positions()[1], mesh.positions()[1]);
     found.validate().unwrap();
+}
+
+#[test]
+fn parameters_out_of_range_are_errors() {
+    let options = StepwiseOptions::default();
+    let named = |criterion: &dyn Criterion| match stepwise(&octahedron(), &Loop, criterion, &options) {
+        Err(RefineError::Criterion(CriterionError::BadParameter { name, .. })) => name,
+        other => panic!("expected an error, found {other:?}"),
+    };
+    for angle in [f64::NAN, -0.1, 3.2, f64::INFINITY] {
+        assert_eq!(named(&LimitNormal::new(angle)), "angle");
+        assert_eq!(named(&NeighbourNormal::new(angle)), "angle");
+    }
+    let seen = |sight, dilatation| LimitNormal::new(0.1).view(View { sight, dilatation });
+    assert_eq!(named(&seen(Sight::Direction([0.0; 3]), 1.0)), "direction of sight");
+    assert_eq!(named(&seen(Sight::Eye([0.0, f64::NAN, 0.0]), 1.0)), "eye point");
+    assert_eq!(named(&seen(Sight::Eye([0.0; 3]), -1.0)), "dilatation");
+}
+
+#[test]
+fn the_size_of_a_mesh_does_not_matter() {
+    let mesh = lumpy(20, 3);
+    let count = |size: f64, criterion: &dyn Criterion| {
+        let positions = mesh.positions().iter().map(|p| p.map(|x| x * size)).collect();
+        let scaled = mesh.clone().with_positions(positions).unwrap();
+        stepwise(&scaled, &Loop, criterion, &StepwiseOptions::default()).unwrap().mesh.face_count()
+    };
+    let view = View { sight: Sight::Direction([0.0, 1e-200, -1e-200]), dilatation: 1.0 };
+    let criteria: [&dyn Criterion; 3] = [
+        &LimitNormal::new(10.0 * DEGREE),
+        &NeighbourNormal::new(10.0 * DEGREE),
+        &LimitNormal::new(10.0 * DEGREE).view(view),
+    ];
+    for criterion in criteria {
+        let usual = count(1.0, criterion);
+        assert!(usual > mesh.face_count());
+        // Powers of two: scaling is exact, so that the flags are the same.
+        for exponent in [-600, -200, 200, 600] {
+            assert_eq!(count(2f64.powi(exponent), criterion), usual, "size 2^{exponent}");
+        }
+    }
 }

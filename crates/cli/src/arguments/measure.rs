@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::SchemeName;
-use super::values;
+use super::{BuildArguments, SchemeName, values};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -50,6 +49,9 @@ pub(crate) struct MeasureArguments {
     /// Samples on each surface; all its vertices are among them, however many they are
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::positive)]
     pub(crate) samples: usize,
+
+    #[command(flatten)]
+    pub(crate) build: BuildArguments,
 
     /// Print JSON instead of text
     #[arg(long)]

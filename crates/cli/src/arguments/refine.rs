@@ -23,7 +23,7 @@ pub(crate) enum Method {
 const EXAMPLES: &str = "\
 Examples:
   limitmesh refine builtin:cup -o cup.ply --angle 5 --levels 4 --report cup.json
-  limitmesh refine scan.stl -o smooth.obj --weld 1e-6 --limit
+  limitmesh refine scan.stl -o smooth.obj --weld 1e-6
   limitmesh refine builtin:sphere -o seen.ply --view 0,0,-1 --levels 5
   limitmesh refine big.ply -o fine.ply --method uniform --max-triangles 20000000
 
@@ -84,6 +84,9 @@ pub(crate) struct RefineArguments {
     pub(crate) dilatation: Option<f64>,
 
     /// Move the vertices to the limit surface of the last mesh at the end
+    ///
+    /// With --method uniform that is the limit surface of the input. The adaptive methods have drifted from it by
+    /// then, and may come out farther from it than without this option.
     #[arg(long)]
     pub(crate) limit: bool,
 

@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use limitmesh::Mesh;
 use limitmesh::measure::{Hausdorff, SamplingOptions, hausdorff};
-use limitmesh::mesh::BuildOptions;
 
 use super::heatmap;
 use crate::arguments::MeasureArguments;
@@ -21,7 +20,7 @@ use crate::words::{counted, number, point, table, thousands};
 pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     check(arguments)?;
     let start = Instant::now();
-    let surface = input::load(&arguments.surface, &BuildOptions::default(), progress)?;
+    let surface = input::load(&arguments.surface, &arguments.build.options(), progress)?;
     let (reference, reference_report) = load_reference(arguments, progress)?;
     let prepare = start.elapsed().as_secs_f64();
 
@@ -58,7 +57,7 @@ fn load_reference(
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, SurfaceReport)> {
-    let build = BuildOptions::default();
+    let build = arguments.build.options();
     let Some(control) = &arguments.limit_of else {
         let name = arguments.reference.as_deref().unwrap_or_default();
         let input = input::load(name, &build, progress)?;

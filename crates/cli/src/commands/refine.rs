@@ -268,8 +268,12 @@ fn summary(
     refining: Duration,
 ) -> String {
     let early = if stop == Stop::Satisfied { ", no face is divisible any more" } else { "" };
+    let edges = match mesh.topology().boundary_edge_count() {
+        0 => "closed".to_owned(),
+        open => counted(open, "open edge", "open edges"),
+    };
     format!(
-        "{}: {}, {} ({}{early}; refined in {})",
+        "{}: {}, {}, {edges} ({}{early}; refined in {})",
         arguments.output.display(),
         counted(mesh.face_count(), "triangle", "triangles"),
         counted(mesh.vertex_count(), "vertex", "vertices"),

@@ -38,7 +38,7 @@ use numbers::Results;
 use settings::Settings;
 use studio::Studio;
 
-/// Figure 9's uniform counts, printed as 576 and 1328, and its adaptive counts as our text of the paper has
+/// Figure 9's uniform counts, printed as 576 and 1328, and its adaptive counts as the text extracted from its PDF has
 /// them. 5,760 is a sphere of 20 slices by 10 stacks after two levels; 13,280 is 830 faces after two.
 const FIGURE_9_SPHERE: (usize, &str) = (5760, "188");
 const FIGURE_9_BUNNY: (usize, &str) = (13_280, "6626");

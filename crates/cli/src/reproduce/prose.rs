@@ -195,7 +195,7 @@ pub(super) fn figure_7(heads: &[Head]) -> Findings {
     let uniform_agrees = heads.iter().all(|head| head.uniform_faces == PAPER_UNIFORM);
     let counts = each(&|h| format!("{} for {}", thousands(h.uniform_faces), h.origin.source));
     let uniform = format!(
-        "Uniform refinement gives as many faces as the paper has, {}, which our text of it prints as 988: {counts}.",
+        "Uniform refinement gives as many faces as the paper has, {}, which the text extracted from its PDF has as 988: {counts}.",
         thousands(PAPER_UNIFORM)
     );
     let adaptive = each(&|h| {
@@ -254,7 +254,7 @@ pub(super) fn figure_8(shoe: &Shoe) -> Findings {
         format!("The mesh starts from as many faces ({}).", thousands(shoe.control_faces))
     };
     let differs = format!(
-        "The paper's counts have lost digits in our text of it, all of them zeros as far as can be seen: {}.",
+        "The paper's counts have lost digits in the text extracted from its PDF, all of them zeros as far as can be seen: {}.",
         readings.collect::<Vec<_>>().join(". ")
     );
     let against = if more { "" } else { " The counts do not grow as the threshold shrinks." };

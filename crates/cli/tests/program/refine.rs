@@ -292,3 +292,24 @@ fn tags_are_kept_or_the_loss_is_told() {
         assert_eq!((soup.creases.len(), soup.corners.len()), if kept { (4, 1) } else { (0, 0) });
     }
 }
+
+/// A tetrahedron whose faces name their own vertices, one of them a rounding away from the others at its place.
+const NEARLY_CLOSED: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1.0000001 0 0\n\
+    f 1 3 2\nf 1 2 4\nf 5 3 4\nf 3 1 4\n";
+
+#[test]
+fn edges_that_nearly_equal_positions_keep_open_are_told() {
+    let folder = folder();
+    let input = file(&folder, "nearly.obj", NEARLY_CLOSED);
+    let output = folder.path().join("out.ply");
+    let first = run("refine {} -o {} --levels 1", &[&input, &output]).expect(0);
+    let told = first.stderr.split("--weld ").nth(1).and_then(|rest| rest.split(',').next());
+    let distance = told.unwrap_or_else(|| panic!("no distance in {}", first.stderr)).to_owned();
+    let second =
+        run(&format!("refine {{}} -o {{}} --levels 1 --weld {distance}"), &[&input, &output]).expect(0);
+    assert!(!second.stderr.contains("--weld") && second.stderr.contains(", closed ("), "{}", second.stderr);
+    assert_eq!(counts(&self::soup(&output)).boundary_edges, 0);
+    // The same option lets the result be measured against its own control mesh.
+    run(&format!("measure {{}} --limit-of {{}} --weld {distance} --samples 1000"), &[&output, &input])
+        .expect(0);
+}

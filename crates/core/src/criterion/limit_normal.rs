@@ -1,11 +1,11 @@
 //! The paper's criterion, equation (2), and its view-dependent form, equation (11).
 
 use super::view::Threshold;
-use super::{Criterion, View};
-use crate::limit::{LimitError, LimitTable};
+use super::{Criterion, CriterionError, View, check_angle};
+use crate::limit::LimitTable;
 use crate::mesh::Mesh;
 use crate::parallel;
-use crate::vector::{unit_or_zero, vector};
+use crate::vector::vector;
 
 /// A face is divided where its normal leaves the cone of angle α around the limit normal of one of its vertices:
 /// `min_i N_Vi · N_f < cos α`.
@@ -47,12 +47,14 @@ impl Criterion for LimitNormal {
         "limit-normal"
     }
 
-    fn divisible(&self, mesh: &Mesh, limits: &LimitTable<'_>) -> Result<Vec<bool>, LimitError> {
+    fn divisible(&self, mesh: &Mesh, limits: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
+        check_angle(self.angle)?;
+        self.view.map_or(Ok(()), |view| view.check())?;
         let normals = limits.normals(mesh)?;
         // Without a view the cosine is the same for all faces.
         let plain_cosine = self.angle.cos();
         Ok(parallel::map(mesh.face_count(), |face| {
-            let normal = unit_or_zero(mesh.face_normal_vector(face));
+            let normal = mesh.unit_face_normal(face);
             if normal.length_squared() == 0.0 {
                 return false;
             }

@@ -1,11 +1,10 @@
 //! The criterion of Amresh, Farin and Razdan (2000), with which the paper compares itself.
 
-use super::Criterion;
+use super::{Criterion, CriterionError, check_angle};
 use crate::index::{FaceId, HalfEdgeId};
-use crate::limit::{LimitError, LimitTable};
+use crate::limit::LimitTable;
 use crate::mesh::Mesh;
 use crate::parallel;
-use crate::vector::unit_or_zero;
 
 /// A face is divided where its normal and that of an edge neighbour differ by more than an angle.
 ///
@@ -29,8 +28,9 @@ impl Criterion for NeighbourNormal {
         "amresh"
     }
 
-    fn divisible(&self, mesh: &Mesh, _limits: &LimitTable<'_>) -> Result<Vec<bool>, LimitError> {
-        let normals = parallel::map(mesh.face_count(), |f| unit_or_zero(mesh.face_normal_vector(f)));
+    fn divisible(&self, mesh: &Mesh, _limits: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
+        check_angle(self.angle)?;
+        let normals = parallel::map(mesh.face_count(), |f| mesh.unit_face_normal(f));
         let cosine = self.angle.cos();
         Ok(parallel::map(mesh.face_count(), |face| {
             let normal = normals[face];

@@ -2,6 +2,7 @@
 
 use core::f64::consts::PI;
 
+use super::CriterionError;
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// Where the viewer looks from.
@@ -46,6 +47,25 @@ impl View {
         }
         let scaled = angle * self.dilatation * -cosine;
         if scaled > 0.0 { Threshold::Angle(scaled.min(PI)) } else { Threshold::Always }
+    }
+
+    /// Refuses a dilatation below 0, a direction without length, and what is no number.
+    pub(super) fn check(&self) -> Result<(), CriterionError> {
+        let bad = |name, value, expected| Err(CriterionError::BadParameter { name, value, expected });
+        if !(self.dilatation >= 0.0 && self.dilatation.is_finite()) {
+            return bad("dilatation", self.dilatation, "a finite number of at least 0");
+        }
+        let (name, place) = match self.sight {
+            Sight::Direction(direction) => ("direction of sight", direction),
+            Sight::Eye(eye) => ("eye point", eye),
+        };
+        if let Some(&value) = place.iter().find(|x| !x.is_finite()) {
+            return bad(name, value, "finite coordinates");
+        }
+        if matches!(self.sight, Sight::Direction([0.0, 0.0, 0.0])) {
+            return bad(name, 0.0, "a vector other than 0");
+        }
+        Ok(())
     }
 
     /// The unit direction of sight towards a face with that centroid.

@@ -158,17 +158,10 @@ impl Tangents {
         if !long(self.first) || !long(self.second) {
             return None;
         }
-        let normal = direction(self.first).cross(direction(self.second));
+        let normal = unit_or_zero(self.first).cross(unit_or_zero(self.second));
         let sine = normal.length();
         (sine > LEAST_SINE).then(|| normal / sine)
     }
-}
-
-/// The unit vector along `v`, for any size of `v` that is finite; zero where it has no direction.
-#[inline]
-fn direction(v: DVec3) -> DVec3 {
-    let greatest = v.abs().max_element();
-    if greatest > 0.0 && greatest.is_finite() { unit_or_zero(v / greatest) } else { DVec3::ZERO }
 }
 
 fn point(mesh: &Mesh, vertex: VertexId) -> DVec3 {
@@ -258,5 +251,5 @@ fn face_average(mesh: &Mesh, vertex: VertexId) -> DVec3 {
         sum += normal;
         areas += normal.length();
     }
-    if sum.length() > LEAST_SINE * areas { direction(sum) } else { DVec3::ZERO }
+    if sum.length() > LEAST_SINE * areas { unit_or_zero(sum) } else { DVec3::ZERO }
 }

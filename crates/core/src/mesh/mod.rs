@@ -22,7 +22,7 @@ pub use topology::{RingNeighbours, Topology};
 
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::ring::{EdgeShape, RingShape};
-use crate::vector::{DVec3, vector};
+use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// What can be wrong with the data a mesh is made of.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -305,6 +305,15 @@ impl Mesh {
     pub(crate) fn face_normal_vector(&self, face: usize) -> DVec3 {
         let [a, b, c] = self.topology.triangles()[face].map(|v| vector(self.positions[v as usize]));
         (b - a).cross(c - a)
+    }
+
+    /// The unit normal of a face of any size; zero where it has no area.
+    #[inline]
+    pub(crate) fn unit_face_normal(&self, face: usize) -> DVec3 {
+        let [a, b, c] = self.topology.triangles()[face].map(|v| vector(self.positions[v as usize]));
+        let (ab, ac) = (b - a, c - a);
+        let size = ab.abs().max(ac.abs()).max_element();
+        unit_or_zero((ab / size).cross(ac / size))
     }
 
     /// Checks every invariant of the mesh: topology, finite positions, tags and junctions.

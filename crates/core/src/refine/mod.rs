@@ -16,6 +16,7 @@ pub use uniform::{UniformOptions, uniform};
 use core::ops::ControlFlow;
 use core::time::Duration;
 
+use crate::criterion::CriterionError;
 use crate::limit::LimitError;
 use crate::mesh::{Mesh, MeshError};
 
@@ -23,7 +24,10 @@ use crate::mesh::{Mesh, MeshError};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RefineError {
-    /// A limit position or normal does not exist.
+    /// The criterion has no answer.
+    #[error(transparent)]
+    Criterion(#[from] CriterionError),
+    /// A limit position does not exist.
     #[error(transparent)]
     Limit(#[from] LimitError),
     /// The result would not be a mesh, or an option is out of range.

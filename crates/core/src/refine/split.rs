@@ -95,9 +95,9 @@ impl SplitEdges {
     /// In every face with two split edges, cuts the quadrilateral by its shorter diagonal, or by the one from
     /// the vertex with the lower number where they are equally long.
     pub(super) fn choose_diagonals(&mut self, mesh: &Mesh, numbered: &SplitTopology, positions: &[[f64; 3]]) {
-        let distance_squared = |a: u32, b: u32| {
+        let between = |a: u32, b: u32| {
             let [a, b] = [a, b].map(|v| crate::vector::vector(positions[v as usize]));
-            a.distance_squared(b)
+            b - a
         };
         parallel::for_each_chunk(&mut self.faces, 4096, |chunk, faces| {
             for (i, bits) in faces.iter_mut().enumerate() {
@@ -110,7 +110,10 @@ impl SplitEdges {
                 let [start, end] = mesh.topology().ends(h).map(|v| v.0);
                 let after = numbered.vertex_on[h.next().index()];
                 let before = numbered.vertex_on[h.previous().index()];
-                let (from_start, from_end) = (distance_squared(start, after), distance_squared(end, before));
+                let (from_start, from_end) = (between(start, after), between(end, before));
+                // Scaled, so that squares neither vanish nor overflow.
+                let size = from_start.abs().max(from_end.abs()).max_element();
+                let [from_start, from_end] = [from_start, from_end].map(|d| (d / size).length_squared());
                 if from_end < from_start || (from_end == from_start && end < start) {
                     *bits |= DIAGONAL_BIT;
                 }

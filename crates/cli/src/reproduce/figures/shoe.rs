@@ -28,7 +28,7 @@ pub(in crate::reproduce) struct Shoe {
 pub(in crate::reproduce) struct ShoeSetting {
     pub(in crate::reproduce) angle: &'static str,
     pub(in crate::reproduce) faces: usize,
-    /// The paper's count as our text of it has it.
+    /// The paper's count as the text extracted from its PDF has it.
     pub(in crate::reproduce) printed: &'static str,
     /// What it may have been: between the control mesh's count and the uniform one's.
     pub(in crate::reproduce) readings: Vec<usize>,
