@@ -131,6 +131,7 @@ fn check(arguments: &RefineArguments) -> anyhow::Result<Format> {
     }
     let format = Format::from_path(&arguments.output).map_err(|unknown| UsageError(unknown.to_string()))?;
     output::check_folder(&arguments.output)?;
+    let input = Path::new(&arguments.input);
     let mut written = vec![arguments.output.as_path()];
     if let Some(picture) = &arguments.picture {
         picture::check_name(picture)?;
@@ -139,6 +140,9 @@ fn check(arguments: &RefineArguments) -> anyhow::Result<Format> {
     if let Some(report) = &arguments.report {
         output::check_folder(report)?;
         written.push(report);
+    }
+    if let Some(path) = written[1..].iter().find(|path| input::same_file(input, path)) {
+        return usage(format!("{} is the input; a report or picture would replace it", path.display()));
     }
     for (i, path) in written.iter().enumerate() {
         if written[..i].iter().any(|earlier| input::same_file(earlier, path)) {

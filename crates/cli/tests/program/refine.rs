@@ -313,3 +313,15 @@ fn edges_that_nearly_equal_positions_keep_open_are_told() {
     run(&format!("measure {{}} --limit-of {{}} --weld {distance} --samples 1000"), &[&output, &input])
         .expect(0);
 }
+
+#[test]
+fn the_input_is_not_replaced_by_a_report_or_picture() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    for (name, option) in [("in.obj", "--report"), ("in.png", "--picture")] {
+        let input = file(&folder, name, NEARLY_CLOSED);
+        let run = run(&format!("refine {{}} -o {{}} {option} {{}}"), &[&input, &output, &input]).expect(2);
+        assert!(run.stderr.contains("is the input"), "{}", run.stderr);
+        assert_eq!(std::fs::read_to_string(&input).expect("a file"), NEARLY_CLOSED);
+    }
+}

@@ -38,7 +38,7 @@ impl LimitNormal {
             return Threshold::Angle(self.angle);
         };
         let [a, b, c] = mesh.as_triangles().corners(face).map(vector);
-        view.threshold(self.angle, view.direction((a + b + c) / 3.0).dot(normal))
+        view.threshold(self.angle, view.direction(a / 3.0 + b / 3.0 + c / 3.0).dot(normal))
     }
 }
 
