@@ -47,7 +47,7 @@ pub(crate) struct MeasureArguments {
     pub(crate) scheme: Option<SchemeName>,
 
     /// Samples on each surface; all its vertices are among them, however many they are
-    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::positive)]
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::samples)]
     pub(crate) samples: usize,
 
     #[command(flatten)]

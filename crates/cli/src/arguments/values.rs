@@ -2,6 +2,7 @@
 
 use std::str::FromStr;
 
+use limitmesh::measure::SamplingOptions;
 use limitmesh::mesh::Weld;
 
 /// Levels beyond this would need more than 4^12 (16 million) triangles for a single input triangle.
@@ -74,6 +75,11 @@ pub(super) fn positive(text: &str) -> Result<usize, String> {
     bounded(text, 1, usize::MAX, "a count")
 }
 
+/// A number of samples.
+pub(super) fn samples(text: &str) -> Result<usize, String> {
+    bounded(text, 1, SamplingOptions::MOST_SAMPLES, "samples")
+}
+
 /// A number of threads.
 pub(super) fn threads(text: &str) -> Result<usize, String> {
     bounded(text, 0, MAX_THREADS, "threads")
@@ -133,6 +139,14 @@ mod tests {
         assert_eq!(weld("0.5"), Ok(Weld::Within(0.5)));
         assert_eq!(weld("none"), Ok(Weld::Never));
         assert!(weld("-0.5").is_err());
+    }
+
+    #[test]
+    fn samples_are_as_many_as_memory_can_hold() {
+        assert_eq!(samples("1"), Ok(1));
+        for bad in ["0", "1000000000000", "18446744073709551615", "1.5"] {
+            assert!(samples(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

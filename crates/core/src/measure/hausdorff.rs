@@ -20,7 +20,7 @@ use crate::vector::{DVec3, vector};
 pub struct SamplingOptions {
     /// Number of samples on each surface, spread over vertices, sides and insides of triangles. All vertices are
     /// always taken and count; where they are nearly as many or more, a quarter of this number is still spread
-    /// over the rest of the surface.
+    /// over the rest of the surface. More than [`Self::MOST_SAMPLES`] count as that many.
     pub samples: usize,
 }
 
@@ -31,6 +31,9 @@ impl Default for SamplingOptions {
 }
 
 impl SamplingOptions {
+    /// Samples asked for at most: each takes 8 bytes while it is measured, so that these take 2 gigabytes.
+    pub const MOST_SAMPLES: usize = 1 << 28;
+
     /// Sets [`Self::samples`].
     pub fn samples(mut self, samples: usize) -> Self {
         self.samples = samples;
@@ -128,7 +131,7 @@ pub fn hausdorff_between(surface: &Bvh<'_>, reference: &Bvh<'_>, options: &Sampl
 
 /// Distances from samples of one surface to another.
 fn one_sided(from: &Bvh<'_>, to: &Bvh<'_>, options: &SamplingOptions) -> OneSided {
-    let samples = Samples::new(from, options.samples);
+    let samples = Samples::new(from, options.samples.min(SamplingOptions::MOST_SAMPLES));
     let distances =
         measure_points(to, samples.len(), |range, run| samples.visit(range, |point| run.push(point)));
     let (mut farthest, mut max) = (0, 0.0);
