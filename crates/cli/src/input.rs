@@ -33,6 +33,8 @@ pub(crate) struct Input {
     pub(crate) name: String,
     /// `obj`, `ply`, `stl`, `off` or `builtin`.
     pub(crate) format: &'static str,
+    /// What else the file held and was left out, in words.
+    pub(crate) left_out: Vec<String>,
     /// The mesh.
     pub(crate) mesh: Mesh,
     /// What was found and repaired.
@@ -74,21 +76,25 @@ fn builtin(name: &str) -> anyhow::Result<PolygonSoup> {
 /// # Errors
 /// As for [`read`]; or no mesh can be made of it, or only by a repair that `options` forbid.
 pub(crate) fn load(name: &str, options: &BuildOptions, progress: &Progress) -> anyhow::Result<Input> {
-    let Soup { name, format, soup, reading } = read(name, progress)?;
+    let Soup { name, format, mut soup, reading } = read(name, progress)?;
     progress.stage(format!("connecting {}", counted(soup.faces.len(), "face", "faces")));
     let start = Instant::now();
     let (mesh, diagnosis) = Mesh::from_soup(&soup, options).map_err(|error| describe(&name, error))?;
     let near = nearly_closed(&soup, &mesh, options);
+    let left_out = std::mem::take(&mut soup.left_out);
     // Large soups are given back before refinement needs the memory.
     drop(soup);
     let building = start.elapsed();
+    if !left_out.is_empty() {
+        progress.note(format!("{name}: left out: {}", left_out.join("; ")));
+    }
     for line in report::diagnosis::repairs_in_words(&diagnosis) {
         progress.note(format!("{name}: {line}"));
     }
     if let Some(near) = near {
         progress.note(format!("{name}: {near}"));
     }
-    Ok(Input { name, format, mesh, diagnosis, reading, building })
+    Ok(Input { name, format, left_out, mesh, diagnosis, reading, building })
 }
 
 /// Vertices nearer to each other than this share of the diagonal are usually one, written with too few digits: about
@@ -96,7 +102,7 @@ pub(crate) fn load(name: &str, options: &BuildOptions, progress: &Progress) -> a
 const NEAR: f64 = 1e-6;
 
 /// Tells where open edges would close if nearly equal positions were merged too.
-fn nearly_closed(soup: &PolygonSoup, mesh: &Mesh, options: &BuildOptions) -> Option<String> {
+pub(crate) fn nearly_closed(soup: &PolygonSoup, mesh: &Mesh, options: &BuildOptions) -> Option<String> {
     let open = mesh.topology().boundary_edge_count();
     if open == 0 || options.weld != Weld::Exact {
         return None;

@@ -276,3 +276,18 @@ fn extensions_in_capitals_and_small_letters() {
         assert!(message.contains(expected), "{message}");
     }
 }
+
+#[test]
+fn what_a_soup_cannot_hold_is_named() {
+    let obj = b"o one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl red\nf 1/1/1 2/1/1 3/1/1\n";
+    assert_eq!(read_bytes(obj, Format::Obj).unwrap().left_out, ["texture coordinates", "materials"]);
+    let ply =
+        b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        property float nx\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\n\
+        property int flags\nelement edge 1\nproperty int a\nend_header\n\
+        0 0 0 1 9\n1 0 0 1 9\n0 1 0 1 9\n3 0 1 2 7\n5\n";
+    let named = read_bytes(ply, Format::Ply).unwrap().left_out;
+    assert_eq!(named, ["vertex properties red", "face properties flags", "element edge"]);
+    let plain = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
+    assert!(read_bytes(plain, Format::Obj).unwrap().left_out.is_empty());
+}

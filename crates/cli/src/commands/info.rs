@@ -24,11 +24,19 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
     }
     let polygons = corners.into_iter().map(|(corners, count)| PolygonCount { corners, count }).collect();
     let tags = TagCounts { creases: soup.creases.len(), corners: soup.corners.len() };
-    let input =
-        InputReport { path: name.clone(), format, vertices: soup.positions.len(), faces: soup.faces.len() };
+    let input = InputReport {
+        path: name.clone(),
+        format,
+        vertices: soup.positions.len(),
+        faces: soup.faces.len(),
+        left_out: soup.left_out.clone(),
+    };
     progress.stage(format!("connecting {}", counted(input.faces, "face", "faces")));
     let (mesh, diagnosis) =
         Mesh::from_soup(&soup, &arguments.build.options()).map_err(|error| input::describe(&name, error))?;
+    if let Some(near) = input::nearly_closed(&soup, &mesh, &arguments.build.options()) {
+        progress.note(format!("{name}: {near}"));
+    }
     drop(soup);
     progress.stage("examining the mesh");
     let report = InformationReport {
@@ -58,7 +66,7 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
 }
 
 fn describe_file(report: &InformationReport) -> String {
-    let InputReport { path, format, vertices, faces } = &report.input;
+    let InputReport { path, format, vertices, faces, left_out } = &report.input;
     let format = if *format == "builtin" { "built-in model".to_owned() } else { format.to_uppercase() };
     let mut text = format!(
         "{path}: {format}, {}, {}",
@@ -74,6 +82,9 @@ fn describe_file(report: &InformationReport) -> String {
         text.push_str(&format!(" ({})", sizes.join(", ")));
     }
     text.push('\n');
+    if !left_out.is_empty() {
+        text.push_str(&format!("left out: {}\n", left_out.join("; ")));
+    }
     let TagCounts { creases, corners } = report.tags;
     if creases + corners > 0 {
         let (creases, corners) =

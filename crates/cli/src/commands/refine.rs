@@ -40,6 +40,7 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         format: input.format,
         vertices: input.diagnosis.input_vertices,
         faces: input.diagnosis.input_faces,
+        left_out: input.left_out,
     };
     let Input { mesh: control, diagnosis, reading, building, .. } = input;
     if let Some(note) = smoothed_tags(control.tags(), format) {

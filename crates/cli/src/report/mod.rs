@@ -30,4 +30,6 @@ pub(crate) struct InputReport {
     pub(crate) vertices: usize,
     /// Polygons in the file.
     pub(crate) faces: usize,
+    /// What else the file held and was left out, in words.
+    pub(crate) left_out: Vec<String>,
 }

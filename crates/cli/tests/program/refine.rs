@@ -325,3 +325,15 @@ fn the_input_is_not_replaced_by_a_report_or_picture() {
         assert_eq!(std::fs::read_to_string(&input).expect("a file"), NEARLY_CLOSED);
     }
 }
+
+#[test]
+fn what_is_left_out_is_told() {
+    let folder = folder();
+    let content = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl red\nf 1/1 2/1 3/1\n";
+    let (input, output) = (file(&folder, "in.obj", content), folder.path().join("out.obj"));
+    let words = "left out: texture coordinates; materials";
+    run("refine {} -o {}", &[&input, &output]).expect(0).saying(words);
+    assert!(run("info {}", &[&input]).expect(0).stdout.contains(words));
+    let report = run("info {} --json", &[&input]).expect(0).json();
+    assert_eq!(report["input"]["left_out"], serde_json::json!(["texture coordinates", "materials"]));
+}

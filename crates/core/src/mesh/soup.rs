@@ -75,4 +75,6 @@ pub struct PolygonSoup {
     pub creases: Vec<CreaseTag>,
     /// Sharp vertices.
     pub corners: Vec<CornerTag>,
+    /// What the file held beside these and was left out, in words such as "texture coordinates".
+    pub left_out: Vec<String>,
 }

@@ -23,6 +23,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
         polygon: Vec::new(),
         highest_corner: Latest::default(),
         highest_tag: Latest::default(),
+        left_out: [0; 3],
     }
     .run()
 }
@@ -67,6 +68,8 @@ struct Reader<'a> {
     polygon: Vec<u32>,
     highest_corner: Latest,
     highest_tag: Latest,
+    /// How many statements of texture coordinates, materials and groups were passed over.
+    left_out: [usize; 3],
 }
 
 impl Reader<'_> {
@@ -76,12 +79,21 @@ impl Reader<'_> {
                 b"v" => self.vertex()?,
                 b"f" | b"fo" => self.face()?,
                 b"t" => self.tag()?,
+                b"vt" => self.left_out[0] += 1,
+                b"usemtl" => self.left_out[1] += 1,
+                b"g" | b"o" => self.left_out[2] += 1,
                 _ => {}
             }
             self.scanner.next_line();
         }
         self.check_indices()?;
         self.soup.positions.shrink_to_fit();
+        // A single group or object is only the file's title.
+        let [texture, materials, groups] = self.left_out;
+        let named =
+            [("texture coordinates", texture > 0), ("materials", materials > 0), ("groups", groups > 1)];
+        self.soup.left_out =
+            named.iter().filter(|(_, met)| *met).map(|(name, _)| (*name).to_owned()).collect();
         Ok(self.soup)
     }
 

@@ -114,6 +114,23 @@ pub(super) struct Header {
     pub(super) body: (usize, usize),
 }
 
+impl Header {
+    /// What a soup has no place for, in words. Normals follow from the shape and are not among them.
+    pub(super) fn left_out(&self) -> Vec<String> {
+        const TAKEN: [&str; 8] = ["x", "y", "z", "nx", "ny", "nz", "vertex_indices", "vertex_index"];
+        let extra = |element: &Element| -> Option<String> {
+            let known = matches!(element.name.as_str(), "vertex" | "face" | "tristrips");
+            if !known {
+                return (element.count > 0).then(|| format!("element {}", element.name));
+            }
+            let names: Vec<&str> =
+                element.properties.iter().map(|p| &p.name[..]).filter(|name| !TAKEN.contains(name)).collect();
+            (!names.is_empty()).then(|| format!("{} properties {}", element.name, names.join(", ")))
+        };
+        self.elements.iter().filter_map(extra).collect()
+    }
+}
+
 /// Reads the header at the beginning of `bytes`.
 pub(super) fn read(bytes: &[u8]) -> Result<Header, Flaw> {
     let mut lines = Lines::new(bytes);
