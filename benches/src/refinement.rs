@@ -9,16 +9,16 @@ use limitmesh::scheme::Loop;
 
 use crate::{best_of, mesh, peers};
 
-const REPEATS: usize = 7;
+const REPEATS: usize = 5;
 
-/// Uniform Loop refinement, levels 3 to 5.
+/// Uniform Loop refinement, levels 3 to 6.
 pub(crate) fn uniform(model: &Path) -> Result<()> {
     let control = mesh(model)?;
     println!("uniform Loop of {}: million output triangles per second, best of {REPEATS}", name(model));
     println!(
         "level  triangles  1 thread  2 threads  gain  with limit positions, 1 thread  OpenSubdiv Far, 1 thread"
     );
-    for level in 3..=5 {
+    for level in 3..=6 {
         let run = |threads, limit| {
             best_of(REPEATS, threads, || {
                 let options = UniformOptions::default().levels(level).limit(limit);
