@@ -23,7 +23,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let output = arguments.next().unwrap_or_else(|| std::env::temp_dir().join("limitmesh-cup.ply"));
 
     let (control, diagnosis) = Mesh::from_soup(&soup, &Default::default())?;
-    print!("{diagnosis}");
+    if !diagnosis.is_clean() {
+        println!("{diagnosis}");
+    }
     let criterion = LimitNormal::new(10f64.to_radians());
     let refined = stepwise(&control, &Loop, &criterion, &StepwiseOptions::default().levels(3))?;
     for step in &refined.steps {

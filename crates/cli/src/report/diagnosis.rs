@@ -1,5 +1,7 @@
 //! What was found in the input: each finding with its count and the first few places, and in words.
 
+use std::collections::BTreeMap;
+
 use limitmesh::mesh::{Diagnosis, Finding};
 use serde::Serialize;
 
@@ -23,35 +25,15 @@ impl From<&Finding> for FindingReport {
 pub(crate) struct DiagnosisReport {
     /// Whether nothing had to be repaired; polygons and equal positions are no defects.
     pub(crate) clean: bool,
-    pub(crate) polygons: FindingReport,
-    pub(crate) welded_vertices: FindingReport,
-    pub(crate) collapsed_faces: FindingReport,
-    pub(crate) zero_area_faces: FindingReport,
-    pub(crate) repeated_faces: FindingReport,
-    pub(crate) isolated_vertices: FindingReport,
-    pub(crate) flipped_faces: FindingReport,
-    pub(crate) non_orientable_faces: FindingReport,
-    pub(crate) non_manifold_edges: FindingReport,
-    pub(crate) bow_tie_vertices: FindingReport,
-    pub(crate) dropped_tags: FindingReport,
+    /// By the library's names of the findings.
+    #[serde(flatten)]
+    pub(crate) findings: BTreeMap<&'static str, FindingReport>,
 }
 
 impl From<&Diagnosis> for DiagnosisReport {
     fn from(d: &Diagnosis) -> Self {
-        Self {
-            clean: repairs_in_words(d).is_empty(),
-            polygons: (&d.polygons).into(),
-            welded_vertices: (&d.welded_vertices).into(),
-            collapsed_faces: (&d.collapsed_faces).into(),
-            zero_area_faces: (&d.zero_area_faces).into(),
-            repeated_faces: (&d.repeated_faces).into(),
-            isolated_vertices: (&d.isolated_vertices).into(),
-            flipped_faces: (&d.flipped_faces).into(),
-            non_orientable_faces: (&d.non_orientable_faces).into(),
-            non_manifold_edges: (&d.non_manifold_edges).into(),
-            bow_tie_vertices: (&d.bow_tie_vertices).into(),
-            dropped_tags: (&d.dropped_tags).into(),
-        }
+        let findings = d.findings().map(|(name, finding)| (name, finding.into())).collect();
+        Self { clean: d.is_clean(), findings }
     }
 }
 
@@ -68,7 +50,13 @@ const COLLAPSED: Telling = [
     "left out",
     "face",
 ];
-const ZERO_AREA: Telling = ["face without area", "faces without area", "left out", "face"];
+const TWISTED: Telling = [
+    "polygon that crosses itself",
+    "polygons that cross themselves",
+    "cut into triangles as well as may be",
+    "face",
+];
+const ZERO_AREA: Telling = ["face without area", "faces without area", "removed", "face"];
 const REPEATED: Telling = ["face that repeats another", "faces that repeat another", "left out", "face"];
 const ISOLATED: Telling = ["vertex in no face", "vertices in no face", "left out", "vertex"];
 const FLIPPED: Telling =
@@ -124,5 +112,7 @@ pub(crate) fn repairs_in_words(d: &Diagnosis) -> Vec<String> {
 
 /// A line for each property that needs preparation but is no defect.
 pub(crate) fn preparations_in_words(d: &Diagnosis) -> Vec<String> {
-    [(&d.polygons, POLYGONS), (&d.welded_vertices, WELDED)].into_iter().filter_map(line).collect()
+    let preparations =
+        [(&d.polygons, POLYGONS), (&d.twisted_polygons, TWISTED), (&d.welded_vertices, WELDED)];
+    preparations.into_iter().filter_map(line).collect()
 }

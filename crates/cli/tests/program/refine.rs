@@ -8,7 +8,7 @@ use crate::common::{Counts, claimed, counts, file, folder, has_keys, run, soup};
 
 /// The keys that users of the report may rely on.
 const CONTRACT: &str = "version input.path input.format input.vertices input.faces diagnosis.clean
-    diagnosis.polygons.count diagnosis.polygons.first diagnosis.welded_vertices.count
+    input.left_out diagnosis.twisted_polygons.count diagnosis.polygons.count diagnosis.polygons.first diagnosis.welded_vertices.count
     diagnosis.collapsed_faces.count diagnosis.zero_area_faces.count diagnosis.repeated_faces.count
     diagnosis.isolated_vertices.count diagnosis.flipped_faces.count diagnosis.non_orientable_faces.count
     diagnosis.non_manifold_edges.count diagnosis.bow_tie_vertices.count diagnosis.dropped_tags.count

@@ -5,7 +5,7 @@ use super::{Criterion, CriterionError, View, check_angle};
 use crate::limit::LimitTable;
 use crate::mesh::Mesh;
 use crate::parallel;
-use crate::vector::vector;
+use crate::vector::{DVec3, vector};
 
 /// A face is divided where its normal leaves the cone of angle α around the limit normal of one of its vertices:
 /// `min_i N_Vi · N_f < cos α`.
@@ -31,15 +31,12 @@ impl LimitNormal {
         self.view = Some(view);
         self
     }
+}
 
-    /// The threshold for face `face`, whose unit normal is given.
-    fn threshold(&self, mesh: &Mesh, face: usize, normal: crate::vector::DVec3) -> Threshold {
-        let Some(view) = self.view else {
-            return Threshold::Angle(self.angle);
-        };
-        let [a, b, c] = mesh.as_triangles().corners(face).map(vector);
-        view.threshold(self.angle, view.direction(a / 3.0 + b / 3.0 + c / 3.0).dot(normal))
-    }
+/// The threshold for face `face`, whose unit normal is given, as a view has it.
+fn seen(view: &View, angle: f64, mesh: &Mesh, face: usize, normal: DVec3) -> Threshold {
+    let [a, b, c] = mesh.as_triangles().corners(face).map(vector);
+    view.threshold(angle, view.direction(a / 3.0 + b / 3.0 + c / 3.0).dot(normal))
 }
 
 impl Criterion for LimitNormal {
@@ -58,14 +55,11 @@ impl Criterion for LimitNormal {
             if normal.length_squared() == 0.0 {
                 return false;
             }
-            let cosine = if self.view.is_none() {
-                plain_cosine
-            } else {
-                match self.threshold(mesh, face, normal) {
-                    Threshold::Never => return false,
-                    Threshold::Always => return true,
-                    Threshold::Angle(angle) => angle.cos(),
-                }
+            let cosine = match self.view.map(|view| seen(&view, self.angle, mesh, face, normal)) {
+                None => plain_cosine,
+                Some(Threshold::Never) => return false,
+                Some(Threshold::Always) => return true,
+                Some(Threshold::Angle(angle)) => angle.cos(),
             };
             mesh.triangles()[face].iter().any(|&v| {
                 let limit_normal = vector(normals[v as usize]);
