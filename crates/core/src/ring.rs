@@ -24,17 +24,20 @@ pub struct RingShape {
     pub open: bool,
     /// Whether the vertex keeps its place.
     pub corner: bool,
+    /// Whether a crease ends at the vertex, along the first edge of its closed ring. The rules of the vertex and of
+    /// its other edges are those without it; masks never see it, the limit does.
+    pub dart: bool,
 }
 
 impl RingShape {
     /// A smooth interior vertex with `valence` edges (and as many faces).
     pub const fn interior(valence: u32) -> Self {
-        Self { valence, open: false, corner: false }
+        Self { valence, open: false, corner: false, dart: false }
     }
 
     /// A smooth boundary vertex with `valence` edges (and one face fewer).
     pub const fn boundary(valence: u32) -> Self {
-        Self { valence, open: true, corner: false }
+        Self { valence, open: true, corner: false, dart: false }
     }
 
     /// The rules the vertex follows.

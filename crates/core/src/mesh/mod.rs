@@ -7,6 +7,7 @@ mod build;
 mod diagnosis;
 mod junctions;
 mod ring_shapes;
+mod sharpness;
 mod soup;
 mod tags;
 mod topology;
@@ -15,6 +16,7 @@ pub use build::{BuildOptions, Weld};
 pub use diagnosis::{Diagnosis, Finding};
 pub use junctions::{Groups, Junctions};
 pub(crate) use ring_shapes::RingShapes;
+pub use sharpness::{Sector, Sharpness, VertexRule};
 pub use soup::{PolygonFaces, PolygonSoup};
 pub use tags::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 pub(crate) use topology::{MAX_FACES, NONE};
@@ -275,11 +277,12 @@ impl Mesh {
         self.as_triangles().diagonal()
     }
 
-    /// The shape of the one-ring of `vertex`, which decides its rules.
+    /// The shape of the one-ring of `vertex`, which decides its rules unless there are sharp edges inside the mesh or
+    /// corners that fade (see [`Sharpness::sectors`]).
     #[inline]
     pub fn ring_shape(&self, vertex: VertexId) -> RingShape {
         let (valence, open) = self.topology.valence_and_openness(vertex);
-        RingShape { valence, open, corner: self.tags.is_corner(vertex) }
+        RingShape { valence, open, corner: self.tags.is_corner(vertex), dart: false }
     }
 
     /// The shapes of the rings at both ends of `edge`, and where it stands in them.

@@ -7,7 +7,9 @@ const SCHEMES: [&dyn Scheme; 3] = [&Loop, &LoopWarren, &ModifiedButterfly];
 
 fn all_rings() -> Vec<RingShape> {
     let flags = [(false, false), (false, true), (true, false), (true, true)];
-    let rings = |(open, corner)| (2..=12).chain([33]).map(move |valence| RingShape { valence, open, corner });
+    let rings = |(open, corner)| {
+        (2..=12).chain([33]).map(move |valence| RingShape { valence, open, corner, dart: false })
+    };
     flags.into_iter().flat_map(rings).collect()
 }
 

@@ -29,7 +29,7 @@ fn every_shape() -> Vec<RingShape> {
     let boundary = (2..=10).map(RingShape::boundary);
     let corners = [false, true]
         .into_iter()
-        .flat_map(|open| (2..=6).map(move |valence| RingShape { valence, open, corner: true }));
+        .flat_map(|open| (2..=6).map(move |valence| RingShape { valence, open, corner: true, dart: false }));
     interior.chain(boundary).chain(corners).collect()
 }
 

@@ -104,7 +104,7 @@ fn boundary_tangents_of_loop() {
 /// shrink no faster, and there is no plane. A closed corner is the tip of a cone.
 #[test]
 fn corners_of_loop() {
-    let corner = |valence, open| RingShape { valence, open, corner: true };
+    let corner = |valence, open| RingShape { valence, open, corner: true, dart: false };
     for k in 2..=12 {
         let open = stencil(&Loop, corner(k, true));
         assert_eq!(open.position_weights()[0], 1.0);

@@ -1,0 +1,205 @@
+//! How sharp the edges and vertices of a mesh are, which rule each vertex follows, and into which sectors its sharp
+//! edges cut its ring.
+//!
+//! Takes a mesh with its tags; answers for single half-edges and vertices. The classification is OpenSubdiv's: it
+//! goes by the number of sharp edges at a vertex, those of a boundary included.
+//!
+//! At a vertex with two sharp edges or more, each part of the ring between two of them refines as a boundary's open
+//! ring would: the rules on sharp edges use points on sharp edges only, and all others points of their own side.
+//! Masks and limits of such a [`Sector`] are therefore those of its [`RingShape`].
+
+use super::{INFINITELY_SHARP, Mesh, Topology};
+use crate::index::{HalfEdgeId, VertexId};
+use crate::ring::RingShape;
+
+/// Which rule a vertex follows.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[non_exhaustive]
+pub enum VertexRule {
+    /// No sharp edge.
+    Smooth,
+    /// One sharp edge, which ends here: the vertex itself moves as if it were smooth.
+    Dart,
+    /// Two sharp edges: the vertex stays on the curve that they form. Boundary vertices among them.
+    Crease,
+    /// Three sharp edges or more, or a tag of its own: the vertex keeps its place.
+    Corner,
+}
+
+/// One side of the sharp edges at a vertex; all of the ring where there are fewer than two of them.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Sector {
+    /// The half-edge that leaves the vertex along the first edge of the sector, counter-clockwise. It is sharp but
+    /// in the closed ring of a vertex without sharp edges.
+    pub first: HalfEdgeId,
+    /// The shape of the ring from there on: open between two sharp edges.
+    pub shape: RingShape,
+}
+
+impl Sector {
+    /// The half-edges that leave the vertex, counter-clockwise: one for each face of the sector.
+    pub fn outgoing<'t>(&self, topology: &'t Topology) -> impl Iterator<Item = HalfEdgeId> + use<'t> {
+        let next = |h: &HalfEdgeId| topology.twin(h.previous());
+        core::iter::successors(Some(self.first), next).take(self.shape.faces() as usize)
+    }
+
+    /// The vertices at the other ends of the sector's edges, counter-clockwise: as many as the valence of its shape.
+    pub fn neighbours<'t>(&self, topology: &'t Topology) -> impl Iterator<Item = VertexId> + use<'t> {
+        let faces = self.shape.faces() as usize;
+        let last = self.shape.open.then(|| self.outgoing(topology).nth(faces - 1)).flatten();
+        let last = last.map(|h| topology.opposite(h));
+        self.outgoing(topology).map(|h| topology.target(h)).chain(last)
+    }
+}
+
+/// The sharpness of a mesh's edges and vertices. Takes no memory where there are no tags.
+#[derive(Clone, Debug)]
+pub struct Sharpness<'m> {
+    topology: &'m Topology,
+    /// One bit a vertex: whether an interior edge at it is sharp, or it is tagged itself. Empty without tags.
+    tagged: Vec<u64>,
+    /// Both half-edges of each sharp interior edge, ascending, and their sharpness.
+    half_edges: Vec<(HalfEdgeId, f64)>,
+    /// Tagged vertices, ascending, and their sharpness.
+    vertices: Vec<(VertexId, f64)>,
+}
+
+impl<'m> Sharpness<'m> {
+    /// The sharpness that the tags of `mesh` give its edges and vertices.
+    pub fn of(mesh: &'m Mesh) -> Self {
+        let (topology, tags) = (mesh.topology(), mesh.tags());
+        let mut half_edges = Vec::with_capacity(2 * tags.creases.len());
+        for tag in tags.creases.iter().filter(|tag| tag.sharpness > 0.0) {
+            let [a, b] = tag.vertices.map(VertexId);
+            let sides = topology.edge_between(a, b).and_then(|h| Some([h, topology.twin(h)?]));
+            half_edges.extend(sides.into_iter().flatten().map(|h| (h, tag.sharpness)));
+        }
+        // Of several tags on one edge the sharpest counts.
+        half_edges.sort_unstable_by(|a: &(HalfEdgeId, f64), b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
+        half_edges.dedup_by_key(|&mut (h, _)| h);
+        let sharp = tags.corners.iter().filter(|tag| tag.sharpness > 0.0);
+        let vertices = sharp.map(|tag| (VertexId(tag.vertex), tag.sharpness)).collect();
+        Self::new(topology, half_edges, vertices)
+    }
+
+    fn new(
+        topology: &'m Topology,
+        half_edges: Vec<(HalfEdgeId, f64)>,
+        vertices: Vec<(VertexId, f64)>,
+    ) -> Self {
+        let mut tagged = Vec::new();
+        if !half_edges.is_empty() || !vertices.is_empty() {
+            tagged.resize(topology.vertex_count().div_ceil(64), 0);
+            let origins = half_edges.iter().map(|&(h, _)| topology.origin(h));
+            for v in origins.chain(vertices.iter().map(|&(v, _)| v)) {
+                tagged[v.index() / 64] |= 1u64 << (v.index() % 64);
+            }
+        }
+        Self { topology, tagged, half_edges, vertices }
+    }
+
+    /// What is left after so many levels of refinement that only what never fades is still sharp.
+    pub fn lasting(&self) -> Self {
+        let half_edges = self.half_edges.iter().copied().filter(|&(_, s)| s >= INFINITELY_SHARP);
+        let vertices = self.vertices.iter().copied().filter(|&(_, s)| s >= INFINITELY_SHARP);
+        Self::new(self.topology, half_edges.collect(), vertices.collect())
+    }
+
+    /// Whether no vertex and no edge but those of boundaries are sharp.
+    pub fn is_empty(&self) -> bool {
+        self.tagged.is_empty()
+    }
+
+    /// Whether something sharp that will fade is left.
+    pub fn fades(&self) -> bool {
+        let mut all = self.half_edges.iter().map(|&(_, s)| s).chain(self.vertices.iter().map(|&(_, s)| s));
+        all.any(|s| s < INFINITELY_SHARP)
+    }
+
+    /// Whether an interior edge at `vertex` is sharp, or the vertex itself by its tag: whether it may follow other
+    /// rules than its ring alone says.
+    #[inline]
+    pub fn is_tagged(&self, vertex: VertexId) -> bool {
+        self.tagged.get(vertex.index() / 64).is_some_and(|word| word >> (vertex.index() % 64) & 1 != 0)
+    }
+
+    /// The sharpness of the edge of `h`: infinite on a boundary, 0 where it is smooth.
+    #[inline]
+    pub fn edge(&self, h: HalfEdgeId) -> f64 {
+        if self.topology.twin(h).is_none() {
+            return f64::INFINITY;
+        }
+        // Most edges at tagged vertices lead to others.
+        if self.is_empty() || !self.topology.ends(h).iter().all(|&end| self.is_tagged(end)) {
+            return 0.0;
+        }
+        self.half_edges.binary_search_by_key(&h, |&(h, _)| h).map_or(0.0, |i| self.half_edges[i].1)
+    }
+
+    /// The sharpness of `vertex` by its tag, whatever its edges: 0 without one.
+    #[inline]
+    pub fn vertex(&self, vertex: VertexId) -> f64 {
+        if !self.is_tagged(vertex) {
+            return 0.0;
+        }
+        self.vertices.binary_search_by_key(&vertex, |&(v, _)| v).map_or(0.0, |i| self.vertices[i].1)
+    }
+
+    /// The sharpness of the edges at `vertex`, in ring order; the last edge of an open ring included.
+    pub fn spokes(&self, vertex: VertexId) -> impl Iterator<Item = f64> + '_ {
+        let boundary = self.topology.is_boundary(vertex).then_some(f64::INFINITY);
+        self.topology.outgoing_ring(vertex).map(|h| self.edge(h)).chain(boundary)
+    }
+
+    /// The number of sharp edges at `vertex`, those of a boundary included.
+    pub fn sharp_edges(&self, vertex: VertexId) -> usize {
+        if !self.is_tagged(vertex) {
+            return 2 * usize::from(self.topology.is_boundary(vertex));
+        }
+        self.spokes(vertex).filter(|&sharpness| sharpness > 0.0).count()
+    }
+
+    /// The rule that `vertex` follows, as sharp as everything is now.
+    pub fn rule(&self, vertex: VertexId) -> VertexRule {
+        rule(self.vertex(vertex), self.sharp_edges(vertex))
+    }
+
+    /// The sectors of the ring of `vertex`, counter-clockwise, as sharp as everything is now.
+    pub fn sectors(&self, vertex: VertexId) -> Vec<Sector> {
+        let topology = self.topology;
+        let corner = self.rule(vertex) == VertexRule::Corner;
+        let is_sharp = |h: HalfEdgeId| match self.is_tagged(vertex) {
+            true => self.edge(h) > 0.0,
+            false => topology.twin(h).is_none(),
+        };
+        let ring = (0..).zip(topology.outgoing_ring(vertex));
+        let sharp: Vec<(u32, HalfEdgeId)> = ring.filter(|&(_, h)| is_sharp(h)).collect();
+        let (valence, open) = topology.valence_and_openness(vertex);
+        if !open && sharp.len() < 2 {
+            let first = sharp.first().map_or(topology.outgoing(vertex), |&(_, h)| h);
+            let shape = RingShape { corner, dart: sharp.len() == 1, ..RingShape::interior(valence) };
+            return vec![Sector { first, shape }];
+        }
+        let end = if open { valence - 1 } else { valence + sharp.first().map_or(0, |&(slot, _)| slot) };
+        let ends = sharp.iter().skip(1).map(|&(slot, _)| slot).chain([end]);
+        let sector = |(&(slot, first), end): (&(u32, HalfEdgeId), u32)| {
+            let shape = RingShape { corner, ..RingShape::boundary(end - slot + 1) };
+            Sector { first, shape }
+        };
+        sharp.iter().zip(ends).map(sector).collect()
+    }
+}
+
+/// The rule of a vertex of the given sharpness with so many sharp edges.
+pub(crate) fn rule(sharpness: f64, sharp_edges: usize) -> VertexRule {
+    match sharp_edges {
+        _ if sharpness > 0.0 => VertexRule::Corner,
+        0 => VertexRule::Smooth,
+        1 => VertexRule::Dart,
+        2 => VertexRule::Crease,
+        _ => VertexRule::Corner,
+    }
+}
+
+#[cfg(test)]
+mod tests;
