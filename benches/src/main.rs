@@ -1,7 +1,7 @@
 //! Benchmarks, side by side with peers in the same run.
 //!
 //! `cargo run --release -p limitmesh-benches -- WORK [MODELS]` with WORK one of `uniform`, `stepwise`, `distance`,
-//! `load` or `all`, and MODELS the folder of the shared models (default: the environment variable
+//! `certified`, `load` or `all`, and MODELS the folder of the shared models (default: the environment variable
 //! `LIMITMESH_MODELS`). Peers that are not installed are left out, and that is said.
 
 mod distance;
@@ -27,6 +27,7 @@ fn main() -> Result<()> {
         "uniform" => refinement::uniform(&bunny),
         "stepwise" => refinement::stepwise(&bunny),
         "distance" => distance::distance(&bunny),
+        "certified" => distance::certified(&bunny),
         "load" => load::load(&models.join("gcanyon_530k.ply")),
         // Reading and building in a process of its own, whose peak of memory is then that work's.
         "load-child" => load::child(&models),
@@ -34,9 +35,10 @@ fn main() -> Result<()> {
             refinement::uniform(&bunny)?;
             refinement::stepwise(&bunny)?;
             distance::distance(&bunny)?;
+            distance::certified(&bunny)?;
             load::load(&models.join("gcanyon_530k.ply"))
         }
-        other => bail!("no benchmark is called {other}: uniform, stepwise, distance, load, all"),
+        other => bail!("no benchmark is called {other}: uniform, stepwise, distance, certified, load, all"),
     }
 }
 

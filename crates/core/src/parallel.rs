@@ -45,8 +45,17 @@ const PIECE: usize = 1 << 14;
 
 /// Cuts `0..n` into pieces of fixed length and returns `f` of each, in order.
 pub(crate) fn pieces<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(n: usize, f: F) -> Vec<T> {
-    let range = |piece: usize| piece * PIECE..((piece + 1) * PIECE).min(n);
-    let count = n.div_ceil(PIECE);
+    pieces_of(n, PIECE, f)
+}
+
+/// The same with pieces of `length` elements, for work that takes long at each.
+pub(crate) fn pieces_of<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(
+    n: usize,
+    length: usize,
+    f: F,
+) -> Vec<T> {
+    let range = |piece: usize| piece * length..((piece + 1) * length).min(n);
+    let count = n.div_ceil(length);
     #[cfg(feature = "parallel")]
     {
         use rayon::prelude::*;

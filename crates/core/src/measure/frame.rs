@@ -31,12 +31,12 @@ pub(super) struct Located {
 }
 
 /// The least power of two above a finite `x ≥ 0`, as an exponent.
-fn exponent_above(x: f64) -> i64 {
+pub(super) fn exponent_above(x: f64) -> i64 {
     ((x.to_bits() >> 52) & 0x7ff) as i64 - 1022
 }
 
 /// 2^`exponent`, subnormal below -1022 (the greatest numbers have no normal reciprocal).
-fn power_of_two(exponent: i64) -> f64 {
+pub(super) fn power_of_two(exponent: i64) -> f64 {
     let exponent = exponent.clamp(-1074, 1023);
     f64::from_bits(if exponent < -1022 { 1 << (exponent + 1074) } else { ((exponent + 1023) as u64) << 52 })
 }

@@ -3,6 +3,7 @@
 //! Takes [`Triangles`], manifold or not; knows nothing of how they came about.
 
 mod bvh;
+mod certified;
 mod climb;
 mod frame;
 mod hausdorff;
@@ -13,6 +14,9 @@ mod triangle;
 mod watertight;
 
 pub use bvh::{Bvh, ClosestPoint};
+pub use certified::{
+    Bounds, CertifiedHausdorff, CertifiedOptions, certified_hausdorff, certified_hausdorff_between,
+};
 pub use hausdorff::{Hausdorff, OneSided, SamplingOptions, distances_to, hausdorff, hausdorff_between};
 pub use limit_reference::limit_reference;
 pub use quality::{TriangleQuality, triangle_quality};
@@ -62,6 +66,16 @@ pub enum MeasureError {
         axis: usize,
         /// The value met.
         value: f64,
+    },
+    /// A coordinate so large that distances could not be represented.
+    #[error("the {which} surface has a coordinate of {value:e}, at most {greatest:e} can be measured")]
+    TooLarge {
+        /// Which of the two surfaces.
+        which: &'static str,
+        /// The value met, without its sign.
+        value: f64,
+        /// The greatest allowed.
+        greatest: f64,
     },
 }
 

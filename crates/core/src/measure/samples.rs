@@ -77,6 +77,11 @@ impl<'s, 'a> Samples<'s, 'a> {
         Self { surface, vertices, sides, insides }
     }
 
+    /// The vertices, which are the first samples, in their order.
+    pub(super) fn vertices(&self) -> &[u32] {
+        &self.vertices
+    }
+
     /// Number of samples.
     pub(super) fn len(&self) -> usize {
         self.vertices.len() + self.sides.count + self.insides.count

@@ -27,29 +27,37 @@ struct Frontier {
 impl Bvh<'_> {
     /// The distance of each of the finite `points`; fastest where consecutive ones are near each other.
     pub(in crate::measure) fn distances(&self, points: &[DVec3], distances: &mut [f64]) {
+        self.each_nearest(points, |i, distance, _| distances[i] = distance);
+    }
+
+    /// Calls `found` with the number, distance and nearest triangle of each of the finite `points`, in their order;
+    /// fastest where consecutive ones are near each other.
+    pub(in crate::measure) fn each_nearest(&self, points: &[DVec3], mut found: impl FnMut(usize, f64, u32)) {
         let mut frontier = Frontier::EMPTY;
         let mut guess = None;
-        for (points, distances) in points.chunks(GROUP).zip(distances.chunks_mut(GROUP)) {
-            guess = self.group_distances(points, distances, guess, &mut frontier);
+        for (group, points) in points.chunks(GROUP).enumerate() {
+            let found = |i: usize, distance: f64, face: u32| found(group * GROUP + i, distance, face);
+            guess = self.group_nearest(points, guess, &mut frontier, found);
         }
     }
 
     /// The same for one group; takes and gives a triangle near it.
-    fn group_distances(
+    fn group_nearest(
         &self,
         points: &[DVec3],
-        distances: &mut [f64],
         mut guess: Option<u32>,
         frontier: &mut Frontier,
+        mut found: impl FnMut(usize, f64, u32),
     ) -> Option<u32> {
         let (low, high) = points
             .iter()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
         let centre = self.frame.locate(low * 0.5 + high * 0.5);
         if [low, high].iter().any(|&corner| self.frame.locate(corner).pulled_in) {
-            for (distance, point) in distances.iter_mut().zip(points) {
+            for (i, point) in points.iter().enumerate() {
                 let closest = self.closest_with_guess(point.to_array(), guess);
-                (*distance, guess) = (closest.distance, Some(closest.face));
+                found(i, closest.distance, closest.face);
+                guess = Some(closest.face);
             }
             return guess;
         }
@@ -59,10 +67,10 @@ impl Bvh<'_> {
         let reach = nearest.squared.sqrt() + 2.0 * radius;
         self.collect(frontier, &centre, Nearest { squared: reach * reach, ..nearest }.bound(), radius);
         let mut face = nearest.face;
-        for (distance, &point) in distances.iter_mut().zip(points) {
+        for (i, &point) in points.iter().enumerate() {
             let nearest = self.search_frontier(frontier, &self.frame.locate(point), face);
             face = nearest.face;
-            *distance = self.frame.length(nearest.squared.sqrt());
+            found(i, self.frame.length(nearest.squared.sqrt()), face);
         }
         Some(face)
     }

@@ -1,0 +1,210 @@
+//! The Hausdorff distance between two triangle meshes, bounded from both sides.
+//!
+//! Takes any two sets of triangles; gives for each direction an interval that the true greatest distance certainly
+//! lies in, and the place where its lower end is attained. Branch and bound: [`search`] keeps the farthest point
+//! found and splits triangles until none of their pieces can be farther away by more than the gap; [`piece`] and
+//! [`cover`] bound the distance of a piece from above.
+//!
+//! *Rounding.* Lower ends are distances of points as the hierarchy finds them, less what the search and the points may
+//! be off; upper ends never rest on a search, only on points that lie on the other surface, and are increased by what
+//! those may be off. [`scale`] says by how much: about 4e-12 of the surface's size below, 4e-14 of the greatest
+//! coordinate above.
+//!
+//! *Rejected.* Steps and single triangles alone (Tang, Lee and Kim 2009; CGAL): where surfaces nearly coincide a triangle
+//! must be split until its pieces are as small as the distance. Clipping each triangle along the triangles of the other
+//! surface, piece by piece: as tight as the cover, but a nearest point and a clip for every piece, where the cover
+//! asks for one nearest point and three scalar products a triangle.
+
+mod cover;
+mod neighbours;
+mod piece;
+mod scale;
+mod search;
+mod seen;
+mod target;
+
+use super::MeasureError;
+use super::bvh::Bvh;
+use super::frame::distance;
+use crate::mesh::Triangles;
+use crate::vector::vector;
+use neighbours::Neighbours;
+use scale::Scale;
+use search::Search;
+use target::Target;
+
+/// How narrow the interval is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CertifiedOptions {
+    /// An interval no wider than this is narrow enough, in the surfaces' unit. `None`, the default: a millionth of
+    /// the diagonal of the reference's bounding box. Negative numbers and NaN count as 0, and less than rounding
+    /// allows (about 1e-11 of the surfaces' size) as that.
+    pub gap: Option<f64>,
+    /// So is one no wider than this share of the lower bound; 0.01 by default. Negative numbers and NaN count as 0.
+    pub relative_gap: f64,
+    /// Work after which the search ends in each direction, with the interval that it has reached by then, which is
+    /// wider than asked for but as certain. A unit is a piece bounded or a triangle looked at for that; the default, 10⁹,
+    /// is about a minute on one thread. A first bound of every triangle is always made.
+    pub max_work: u64,
+}
+
+impl Default for CertifiedOptions {
+    fn default() -> Self {
+        Self { gap: None, relative_gap: 0.01, max_work: 1_000_000_000 }
+    }
+}
+
+impl CertifiedOptions {
+    /// Sets [`Self::gap`].
+    pub fn gap(mut self, gap: Option<f64>) -> Self {
+        self.gap = gap;
+        self
+    }
+
+    /// Sets [`Self::relative_gap`].
+    pub fn relative_gap(mut self, relative_gap: f64) -> Self {
+        self.relative_gap = relative_gap;
+        self
+    }
+
+    /// Sets [`Self::max_work`].
+    pub fn max_work(mut self, max_work: u64) -> Self {
+        self.max_work = max_work;
+        self
+    }
+}
+
+/// The greatest distance from one surface to the other lies in [`lower`, `upper`].
+///
+/// [`lower`]: Self::lower
+/// [`upper`]: Self::upper
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Bounds {
+    /// Some point, [`Self::at`], is at least this far away.
+    pub lower: f64,
+    /// No point is farther away.
+    pub upper: f64,
+    /// The farthest point found.
+    pub at: [f64; 3],
+    /// The other surface's closest point to it.
+    pub to: [f64; 3],
+    /// Whether the interval is as narrow as was asked for.
+    pub converged: bool,
+}
+
+/// Both directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CertifiedHausdorff {
+    /// From the first surface to the second.
+    pub forward: Bounds,
+    /// From the second surface to the first.
+    pub backward: Bounds,
+    /// Diagonal of the bounding box of the triangles of the second surface, the reference.
+    pub reference_diagonal: f64,
+    /// Work done, in the units of [`CertifiedOptions::max_work`].
+    pub work: u64,
+}
+
+impl CertifiedHausdorff {
+    /// The symmetric distance is at least this.
+    pub fn lower(&self) -> f64 {
+        self.forward.lower.max(self.backward.lower)
+    }
+
+    /// The symmetric distance is at most this.
+    pub fn upper(&self) -> f64 {
+        self.forward.upper.max(self.backward.upper)
+    }
+
+    /// Whether both intervals are as narrow as was asked for.
+    pub fn converged(&self) -> bool {
+        self.forward.converged && self.backward.converged
+    }
+}
+
+/// Bounds the distance between two surfaces, in both directions and from both sides.
+///
+/// Any triangles will do: open, non-manifold, intersecting, without area. The search is fast where the surfaces are near
+/// each other and the triangles of the one measured to are connected, as by [`Mesh::from_soup`](crate::Mesh::from_soup).
+/// The same surfaces and options give the same bytes for any number of threads.
+///
+/// ```
+/// use limitmesh::Triangles;
+/// use limitmesh::measure::{CertifiedOptions, certified_hausdorff};
+///
+/// let square = |z| [[0.0, 0.0, z], [1.0, 0.0, z], [1.0, 1.0, z], [0.0, 1.0, z]];
+/// let (below, above) = (square(0.0), square(0.25));
+/// let triangles = [[0, 1, 2], [0, 2, 3]];
+/// let distance = certified_hausdorff(
+///     Triangles { positions: &below, triangles: &triangles },
+///     Triangles { positions: &above, triangles: &triangles },
+///     &CertifiedOptions::default(),
+/// )?;
+/// assert!(distance.lower() <= 0.25 && 0.25 <= distance.upper() && distance.upper() <= 0.2525);
+/// # Ok::<(), limitmesh::measure::MeasureError>(())
+/// ```
+///
+/// # Errors
+/// A surface without triangles or with more than 2^32 / 3, an index out of range, a coordinate that is not finite or
+/// beyond 1e300.
+pub fn certified_hausdorff(
+    surface: Triangles<'_>,
+    reference: Triangles<'_>,
+    options: &CertifiedOptions,
+) -> Result<CertifiedHausdorff, MeasureError> {
+    let surface = Bvh::named(surface, "measured")?;
+    let reference = Bvh::named(reference, "reference")?;
+    certified_hausdorff_between(&surface, &reference, options)
+}
+
+/// The same between surfaces whose hierarchies are at hand, for measuring several against one.
+///
+/// # Errors
+/// A surface with more than 2^32 / 3 triangles or with a coordinate beyond 1e300.
+pub fn certified_hausdorff_between(
+    surface: &Bvh<'_>,
+    reference: &Bvh<'_>,
+    options: &CertifiedOptions,
+) -> Result<CertifiedHausdorff, MeasureError> {
+    let [low, high] = reference.bounding_box().map(vector);
+    let reference_diagonal = distance(low, high);
+    let gap = options.gap.unwrap_or(DEFAULT_GAP * reference_diagonal);
+    let (forward, forward_work) =
+        Search::run(surface, &target(surface, reference, "reference")?, gap, options);
+    let (backward, backward_work) =
+        Search::run(reference, &target(reference, surface, "measured")?, gap, options);
+    Ok(CertifiedHausdorff { forward, backward, reference_diagonal, work: forward_work + backward_work })
+}
+
+/// Share of the diagonal that a gap is by default.
+const DEFAULT_GAP: f64 = 1e-6;
+
+/// Coordinates up to here leave room for the length of a diagonal.
+const GREATEST: f64 = 1e300;
+
+/// The surface `to`, called `which` in errors, made ready for distances from `from`.
+fn target<'s, 'a>(
+    from: &Bvh<'_>,
+    to: &'s Bvh<'a>,
+    which: &'static str,
+) -> Result<Target<'s, 'a>, MeasureError> {
+    let magnitude = |bvh: &Bvh<'_>| {
+        bvh.bounding_box().as_flattened().iter().fold(0.0f64, |greatest, x| greatest.max(x.abs()))
+    };
+    let value = magnitude(to);
+    if value > GREATEST {
+        return Err(MeasureError::TooLarge { which, value, greatest: GREATEST });
+    }
+    let [low, high] = to.bounding_box().map(vector);
+    let scale = Scale::new(value.max(magnitude(from)), (high - low).max_element());
+    let surface = to.surface();
+    let neighbours = Neighbours::new(surface.triangles, surface.positions.len())
+        .ok_or(MeasureError::TooMany { which, count: surface.triangles.len() })?;
+    Ok(Target { bvh: to, neighbours, scale })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,250 @@
+//! Branch and bound over the pieces of a surface's triangles.
+//!
+//! Takes the surface that is measured and the one it is measured to; gives the interval of the greatest distance.
+//! First samples and a climb give a lower bound, from which most triangles can be dropped at once; the pieces of the
+//! others are split, the worst first, until all that is left is within the gap of the lower bound. Pieces are
+//! treated in batches between which alone the lower bound changes, so that threads do not matter.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use super::piece::{Piece, Sample, Worker};
+use super::target::Target;
+use super::{Bounds, CertifiedOptions};
+use crate::measure::bvh::Bvh;
+use crate::measure::climb::climb;
+use crate::measure::samples::Samples;
+use crate::parallel;
+use crate::vector::{DVec3, vector};
+
+/// Points that the first lower bound is sampled at, beside the vertices: enough for the climb to start near the
+/// maximum on most surfaces, few beside the rest of the work.
+const SAMPLES: usize = 50_000;
+
+/// Samples measured, and triangles bounded, in one go.
+const RUN: usize = 1024;
+
+/// Pieces split before the lower bound is looked at again, and those of them in one go.
+const BATCH: usize = 4096;
+const PIECES: usize = 32;
+
+/// Pieces waiting at most; each takes about 100 bytes.
+const WAITING: usize = 1 << 22;
+
+/// A sheet has at most this many triangles, and this many times as many as the surface searched has for one of the
+/// surface measured: a piece over more is split first, so that no number of triangles as large as the surface takes
+/// time with the product of both.
+const SHEET: usize = 256;
+
+/// A waiting piece, ordered by its bound and then by age.
+struct Waiting {
+    piece: Piece,
+    number: u64,
+}
+
+impl Ord for Waiting {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.piece.upper.total_cmp(&other.piece.upper).then(other.number.cmp(&self.number))
+    }
+}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Waiting {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Waiting {}
+
+/// What a run over pieces found.
+struct Found {
+    kept: Vec<Piece>,
+    /// Greatest bound of what was dropped.
+    dropped: f64,
+    farthest: Sample,
+    work: u64,
+}
+
+/// The search in one direction.
+pub(super) struct Search<'t, 's, 'a> {
+    from: &'s Bvh<'a>,
+    target: &'t Target<'s, 'a>,
+    /// In the common unit.
+    gap: f64,
+    relative_gap: f64,
+    most_work: u64,
+    farthest: Sample,
+    waiting: BinaryHeap<Waiting>,
+    number: u64,
+    /// Greatest bound of the pieces that are done with.
+    dropped: f64,
+    work: u64,
+}
+
+impl<'t, 's, 'a> Search<'t, 's, 'a> {
+    /// The greatest distance from `from` to the target. `gap` is in the surfaces' unit.
+    pub(super) fn run(
+        from: &'s Bvh<'a>,
+        target: &'t Target<'s, 'a>,
+        gap: f64,
+        options: &CertifiedOptions,
+    ) -> (Bounds, u64) {
+        // No interval can be narrower than what rounding is allowed for.
+        let least = 4.0 * (target.scale.slack + target.scale.search_slack);
+        let mut search = Self {
+            from,
+            target,
+            gap: target.scale.length(gap).max(least),
+            relative_gap: options.relative_gap.max(0.0),
+            most_work: options.max_work,
+            farthest: Sample { point: DVec3::ZERO, distance: f64::NEG_INFINITY },
+            waiting: BinaryHeap::new(),
+            number: 0,
+            dropped: f64::NEG_INFINITY,
+            work: 0,
+        };
+        let faces = search.sample();
+        search.first_pass(&faces);
+        search.refine();
+        (search.bounds(), search.work)
+    }
+
+    /// The proven lower bound so far.
+    fn lower(&self) -> f64 {
+        let distance = self.farthest.distance;
+        (distance - self.target.scale.search_slack - distance * f64::EPSILON).max(0.0)
+    }
+
+    /// What pieces need not exceed.
+    fn goal(&self) -> f64 {
+        let lower = self.lower();
+        lower + self.gap.max(self.relative_gap * lower)
+    }
+
+    /// Measures samples and climbs from the farthest; returns the triangle nearest to each vertex in use.
+    fn sample(&mut self) -> Vec<u32> {
+        let samples = Samples::new(self.from, SAMPLES);
+        let runs = parallel::pieces_of(samples.len(), RUN, |range| {
+            let mut points = Vec::with_capacity(range.len());
+            samples.visit(range, |point| points.push(point));
+            let mut near = Vec::with_capacity(points.len());
+            self.target.bvh.each_nearest(&points, |_, distance, face| near.push((distance, face)));
+            near
+        });
+        let near = runs.concat();
+        let mut faces = vec![0; self.from.surface().positions.len()];
+        for (&vertex, &(_, face)) in samples.vertices().iter().zip(&near) {
+            faces[vertex as usize] = face;
+        }
+        let distances: Vec<f64> = near.into_iter().map(|(distance, _)| distance).collect();
+        let (mut best, mut most) = (0, f64::NEG_INFINITY);
+        for (index, &distance) in distances.iter().enumerate() {
+            if distance > most {
+                (best, most) = (index, distance);
+            }
+        }
+        let scale = self.target.scale;
+        let sample = |point, distance| Sample { point: scale.point(point), distance: scale.length(distance) };
+        self.farthest = sample(samples.point(best), most);
+        if let Some((point, distance)) = climb(&samples, &distances, self.from, self.target.bvh) {
+            self.farthest = self.farthest.farther(sample(point, distance));
+        }
+        faces
+    }
+
+    /// Triangles in a sheet at most.
+    fn limit(&self) -> usize {
+        let count = |bvh: &Bvh<'_>| bvh.surface().triangles.len();
+        SHEET * (1 + count(self.target.bvh) / count(self.from) / 4)
+    }
+
+    fn worker(&self) -> Worker<'t, 's, 'a> {
+        let count = |bvh: &Bvh<'_>| bvh.surface().triangles.len();
+        Worker::new(self.target, self.limit(), count(self.target.bvh) > count(self.from))
+    }
+
+    /// Bounds every triangle and keeps those that may be farther away than the goal.
+    fn first_pass(&mut self, faces: &[u32]) {
+        let goal = self.goal();
+        let runs = parallel::pieces_of(self.from.surface().triangles.len(), RUN, |range| {
+            let mut worker = self.worker();
+            let (mut kept, mut dropped) = (Vec::new(), f64::NEG_INFINITY);
+            for slot in range {
+                let corners = self.from.corners(slot).map(|p| self.target.scale.point(p));
+                let faces = self.from.in_order(slot).map(|v| faces[v as usize]);
+                let upper = worker.bound(corners, faces, goal);
+                if upper <= goal {
+                    dropped = f64::max(dropped, upper);
+                } else {
+                    kept.push(Piece { upper, corners, faces, depth: 0 });
+                }
+            }
+            Found { kept, dropped, farthest: worker.farthest, work: worker.work() }
+        });
+        self.take(runs);
+    }
+
+    /// Splits pieces until all are within the goal or the work is used up.
+    fn refine(&mut self) {
+        let mut batch = Vec::with_capacity(BATCH);
+        while self.work < self.most_work && self.waiting.len() < WAITING {
+            let goal = self.goal();
+            batch.clear();
+            while batch.len() < BATCH && self.waiting.peek().is_some_and(|worst| worst.piece.upper > goal) {
+                let Some(Waiting { piece, .. }) = self.waiting.pop() else { break };
+                if piece.is_deepest() {
+                    self.dropped = self.dropped.max(piece.upper);
+                } else {
+                    batch.push(piece);
+                }
+            }
+            if batch.is_empty() {
+                return;
+            }
+            let runs = parallel::pieces_of(batch.len(), PIECES, |range| {
+                let mut worker = self.worker();
+                let (mut kept, mut dropped) = (Vec::new(), f64::NEG_INFINITY);
+                for piece in &batch[range] {
+                    dropped = dropped.max(worker.split(piece, goal, &mut kept));
+                }
+                Found { kept, dropped, farthest: worker.farthest, work: worker.work() }
+            });
+            self.take(runs);
+        }
+    }
+
+    /// Takes in what the runs found, in order.
+    fn take(&mut self, runs: Vec<Found>) {
+        for run in runs {
+            self.dropped = self.dropped.max(run.dropped);
+            self.farthest = self.farthest.farther(run.farthest);
+            self.work += run.work;
+            for piece in run.kept {
+                self.waiting.push(Waiting { piece, number: self.number });
+                self.number += 1;
+            }
+        }
+    }
+
+    /// The interval in the surfaces' unit.
+    fn bounds(&self) -> Bounds {
+        let scale = self.target.scale;
+        let lower = self.lower();
+        let left = self.waiting.peek().map_or(f64::NEG_INFINITY, |worst| worst.piece.upper);
+        let upper = self.dropped.max(left).max(lower);
+        let at = scale.back(self.farthest.point).to_array();
+        Bounds {
+            lower: scale.length_back(lower),
+            upper: scale.length_back(upper),
+            at,
+            to: vector(self.target.bvh.closest(at).point).to_array(),
+            converged: upper <= self.goal(),
+        }
+    }
+}
