@@ -53,6 +53,7 @@ mod parallel;
 pub mod refine;
 pub mod ring;
 pub mod scheme;
+mod surface;
 mod vector;
 
 pub use index::{FaceId, HalfEdgeId, VertexId};

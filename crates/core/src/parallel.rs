@@ -66,6 +66,25 @@ pub(crate) fn pieces_of<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(
     (0..count).map(|piece| f(range(piece))).collect()
 }
 
+/// Cuts `0..n` into blocks of the given length and returns `f` of each, in order: for elements whose work is worth a
+/// call of its own.
+pub(crate) fn blocks<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(
+    n: usize,
+    length: usize,
+    f: F,
+) -> Vec<T> {
+    let range = |block: usize| block * length..((block + 1) * length).min(n);
+    let count = n.div_ceil(length);
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        if count > 1 && rayon::current_num_threads() > 1 {
+            return (0..count).into_par_iter().map(|block| f(range(block))).collect();
+        }
+    }
+    (0..count).map(|block| f(range(block))).collect()
+}
+
 /// The least `i` below `n` for which `found(i)` holds.
 pub(crate) fn first<F: Fn(usize) -> bool + Sync + Send>(n: usize, found: F) -> Option<usize> {
     pieces(n, |mut piece| piece.find(|&i| found(i))).into_iter().flatten().next()

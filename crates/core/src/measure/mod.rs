@@ -20,6 +20,7 @@ pub use certified::{
 pub use hausdorff::{Hausdorff, OneSided, SamplingOptions, distances_to, hausdorff, hausdorff_between};
 pub use limit_reference::limit_reference;
 pub use quality::{TriangleQuality, triangle_quality};
+pub(crate) use triangle::closest_to_origin;
 pub use watertight::{Watertightness, watertightness};
 
 use crate::mesh::Triangles;

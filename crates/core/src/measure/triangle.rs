@@ -10,11 +10,11 @@ use crate::vector::DVec3;
 
 /// The closest point as a convex combination of the corners, and its squared distance from the origin.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Foot {
+pub(crate) struct Foot {
     /// Weights of the corners: none negative, their sum 1.
-    pub(super) weights: [f64; 3],
+    pub(crate) weights: [f64; 3],
     /// Squared distance.
-    pub(super) squared: f64,
+    pub(crate) squared: f64,
 }
 
 /// The region tests are trusted where the squared sine of the triangle, as seen against the greater of its size
@@ -30,7 +30,7 @@ fn foot(weights: [f64; 3], at: DVec3) -> Foot {
 
 /// The point of triangle `a`, `b`, `c` closest to the origin.
 #[inline]
-pub(super) fn closest_to_origin(a: DVec3, b: DVec3, c: DVec3) -> Foot {
+pub(crate) fn closest_to_origin(a: DVec3, b: DVec3, c: DVec3) -> Foot {
     let (ab, ac) = (b - a, c - a);
     let (ab_a, ac_a) = (-ab.dot(a), -ac.dot(a));
     if ab_a <= 0.0 && ac_a <= 0.0 {

@@ -19,7 +19,7 @@ pub(crate) use ring_shapes::RingShapes;
 pub use sharpness::{Sector, Sharpness, VertexRule};
 pub use soup::{PolygonFaces, PolygonSoup};
 pub use tags::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
-pub(crate) use topology::{MAX_FACES, NONE};
+pub(crate) use topology::{MAX_FACES, NONE, outgoing_half_edges};
 pub use topology::{RingNeighbours, Topology};
 
 use crate::index::{FaceId, HalfEdgeId, VertexId};

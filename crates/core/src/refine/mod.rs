@@ -3,6 +3,7 @@
 //! Takes a control mesh, a scheme and what decides (levels, a criterion); gives a finer mesh and a report.
 
 mod driver;
+mod exact;
 mod junctions;
 mod split;
 mod step;
@@ -10,6 +11,7 @@ mod stepwise;
 mod tags;
 mod uniform;
 
+pub use exact::{ErrorBounds, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin, exact};
 pub use stepwise::{SeamRule, StepwiseOptions, stepwise};
 pub use uniform::{UniformOptions, uniform};
 
@@ -33,6 +35,12 @@ pub enum RefineError {
     /// The result would not be a mesh, or an option is out of range.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// The scheme's limit surface is not made of the pieces that exact refinement is for.
+    #[error("exact refinement is for Loop's scheme and its variants, not for {scheme}")]
+    NotExact {
+        /// The scheme's name.
+        scheme: String,
+    },
     /// The observer asked to stop.
     #[error("cancelled after {steps} steps")]
     Cancelled {

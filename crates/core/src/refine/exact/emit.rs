@@ -1,0 +1,176 @@
+//! Emits the leaves as a conforming mesh: the closure patterns of the paper's Figure 5, connected by table.
+
+use super::forest::Forest;
+use super::grow::Growth;
+use super::options::{Exact, ExactStop, Origin};
+use crate::emit::{Diagonal, Pattern, closure};
+use crate::mesh::{Groups, Junctions, Mesh, NONE, Tags, Topology, check_finite, outgoing_half_edges};
+use crate::refine::RefineError;
+
+/// The emitted triangles.
+pub(super) struct Emission {
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Twins of their half-edges.
+    pub(super) twins: Vec<u32>,
+    pub(super) leaves: Leaves,
+}
+
+impl Emission {
+    /// The triangles of the leaves as they stand.
+    pub(super) fn of(growth: &Growth<'_>) -> Self {
+        let leaves = growth.leaves();
+        let (triangles, twins) = growth.connect(&leaves);
+        Self { triangles, twins, leaves }
+    }
+}
+
+/// The leaves in the order of the control faces, and where each one's triangles start.
+pub(super) struct Leaves {
+    pub(super) order: Vec<u32>,
+    /// By node: its first triangle.
+    pub(super) starts: Vec<u32>,
+    roots: Vec<u32>,
+}
+
+impl Growth<'_> {
+    /// The mesh as it stands.
+    pub(super) fn finish(self, stop: ExactStop, emission: Emission) -> Result<Exact, RefineError> {
+        let error = self.probe(&emission);
+        let Emission { triangles, twins, leaves } = emission;
+        let parents = leaves.parents(&self.forest, |leaf| self.pattern(leaf));
+        let origins = self.origins();
+        let outgoing = outgoing_half_edges(&triangles, &twins, self.forest.vertex_count());
+        let junctions = Junctions { vertices: Groups::default(), edges: Groups::default() };
+        let positions: Vec<[f64; 3]> = self.points.iter().map(|point| point.position.to_array()).collect();
+        check_finite(&positions)?;
+        let topology = Topology::from_parts(triangles, twins, outgoing);
+        Ok(Exact {
+            mesh: Mesh::from_parts(topology, positions, Tags::default(), junctions),
+            normals: self.points.iter().map(|point| point.normal.to_array()).collect(),
+            origins,
+            parents,
+            error,
+            stop,
+            levels: (0..self.forest.node_count() as u32)
+                .map(|node| self.forest.level(node))
+                .max()
+                .unwrap_or(0),
+        })
+    }
+
+    fn pattern(&self, leaf: u32) -> &'static Pattern {
+        let diagonal = if self.diagonals[leaf as usize] { Diagonal::FromEnd } else { Diagonal::FromStart };
+        closure(self.forest.split_edges(leaf), diagonal)
+    }
+
+    fn leaves(&self) -> Leaves {
+        let forest = &self.forest;
+        let mut leaves =
+            Leaves { order: Vec::new(), starts: vec![NONE; forest.node_count()], roots: Vec::new() };
+        let mut count = 0u32;
+        let mut stack = Vec::new();
+        for root in 0..forest.roots() as u32 {
+            stack.push(root);
+            while let Some(node) = stack.pop() {
+                if let Some(first) = forest.children(node) {
+                    stack.extend((first..first + 4).rev());
+                    continue;
+                }
+                leaves.order.push(node);
+                leaves.roots.push(root);
+                leaves.starts[node as usize] = count;
+                count += 1 + forest.split_edges(node).count_ones();
+            }
+        }
+        leaves
+    }
+
+    /// Triangles and twins of their half-edges.
+    fn connect(&self, leaves: &Leaves) -> (Vec<[u32; 3]>, Vec<u32>) {
+        let forest = &self.forest;
+        let total = forest.triangle_count();
+        let mut triangles = Vec::with_capacity(total);
+        let mut twins = vec![NONE; 3 * total];
+        for &leaf in &leaves.order {
+            let pattern = self.pattern(leaf);
+            let corners = forest.corners(leaf);
+            let middles = [0, 1, 2].map(|edge| forest.middle(leaf, edge).unwrap_or(NONE));
+            let labels = [corners, middles].concat();
+            triangles
+                .extend(pattern.triangles().iter().map(|triangle| triangle.map(|at| labels[at as usize])));
+            let base = 3 * leaves.starts[leaf as usize];
+            for h in 0..3 * pattern.triangles().len() {
+                if let Some(twin) = pattern.twin(h) {
+                    twins[base as usize + h] = base + twin as u32;
+                }
+            }
+            for edge in 0..3 {
+                let Some(twin) = forest.twin(leaf, edge) else { continue };
+                let (other, side) = (twin / 3, twin as usize % 3);
+                let own = pattern.border(edge).map(|h| base + h as u32);
+                match forest.children(other) {
+                    None => join(&mut twins, own[0], self.border(leaves, other, side)),
+                    Some(first) => {
+                        let next = first + (side as u32 + 1) % 3;
+                        join(&mut twins, own[0], self.border(leaves, next, side));
+                        join(&mut twins, own[1], self.border(leaves, first + side as u32, side));
+                    }
+                }
+            }
+        }
+        (triangles, twins)
+    }
+
+    /// The half-edge of the emitted triangles along an edge of a leaf that is not split.
+    fn border(&self, leaves: &Leaves, leaf: u32, edge: usize) -> u32 {
+        3 * leaves.starts[leaf as usize] + self.pattern(leaf).border(edge)[0] as u32
+    }
+
+    /// Where the vertices came from.
+    fn origins(&self) -> Vec<Origin> {
+        const NOWHERE: Origin = Origin { face: NONE, barycentric: [0.0; 3] };
+        let mut origins = vec![NOWHERE; self.forest.vertex_count()];
+        for root in 0..self.forest.roots() as u32 {
+            let corners = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            self.place(root, root, corners, &mut origins);
+        }
+        origins
+    }
+
+    fn place(&self, root: u32, node: u32, corners: [[f64; 3]; 3], origins: &mut [Origin]) {
+        for (vertex, barycentric) in self.forest.corners(node).into_iter().zip(corners) {
+            let origin = &mut origins[vertex as usize];
+            if origin.face == NONE {
+                *origin = Origin { face: root, barycentric };
+            }
+        }
+        let Some(first) = self.forest.children(node) else { return };
+        let middle = |edge: usize| {
+            let (a, b) = (corners[edge], corners[(edge + 1) % 3]);
+            [0, 1, 2].map(|i| 0.5 * (a[i] + b[i]))
+        };
+        for part in 0..3 {
+            let mut own = corners;
+            own[(part + 1) % 3] = middle(part);
+            own[(part + 2) % 3] = middle((part + 2) % 3);
+            self.place(root, first + part as u32, own, origins);
+        }
+        self.place(root, first + 3, [middle(1), middle(2), middle(0)], origins);
+    }
+}
+
+impl Leaves {
+    /// The control face of each triangle.
+    fn parents(&self, forest: &Forest, pattern: impl Fn(u32) -> &'static Pattern) -> Vec<u32> {
+        let mut parents = Vec::with_capacity(forest.triangle_count());
+        for (&leaf, &root) in self.order.iter().zip(&self.roots) {
+            parents.extend(core::iter::repeat_n(root, pattern(leaf).triangles().len()));
+        }
+        parents
+    }
+}
+
+fn join(twins: &mut [u32], a: u32, b: u32) {
+    twins[a as usize] = b;
+    twins[b as usize] = a;
+}

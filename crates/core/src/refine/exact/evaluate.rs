@@ -1,0 +1,155 @@
+//! How well the leaves stand for the limit surface, as they would be emitted, and where new vertices lie.
+//!
+//! Takes the leaves that are new or whose closure changed; walks down to them from their control faces, refining the
+//! patches on the way, so that no points of any level need be kept.
+
+use super::demand::Demand;
+use super::forest::Forest;
+use super::leaf::{LeafTriangle, leaf_triangles};
+use crate::index::FaceId;
+use crate::mesh::Mesh;
+use crate::parallel;
+use crate::surface::{Deviation, Effort, Facet, LimitPoint, Patch, Rules, deviation, root_patch};
+
+/// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
+const BLOCK: usize = 64;
+
+/// Set for a leaf that is to be evaluated.
+pub(super) const WANTED: u8 = 1;
+/// Set for a node with such a leaf below it.
+pub(super) const ABOVE_WANTED: u8 = 2;
+
+/// What an evaluation found.
+#[derive(Default)]
+pub(super) struct Found {
+    pub(super) leaves: Vec<Leaf>,
+    /// Limits of vertices that had none yet.
+    pub(super) points: Vec<(u32, LimitPoint)>,
+}
+
+/// The value of a leaf: how many times over it fails the demands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leaf {
+    pub(super) node: u32,
+    pub(super) value: f64,
+    pub(super) deviation: Deviation,
+    /// The diagonal by which a leaf with two split edges is cut starts at the unsplit edge's end.
+    pub(super) diagonal_from_end: bool,
+}
+
+/// What an evaluation looks at.
+pub(super) struct Evaluation<'a> {
+    pub(super) control: &'a Mesh,
+    pub(super) rules: &'a Rules<'a>,
+    pub(super) forest: &'a Forest,
+    /// Limits of the vertices; positions that are not a number are not known yet.
+    pub(super) points: &'a [LimitPoint],
+    pub(super) marks: &'a [u8],
+    pub(super) demand: &'a Demand,
+    /// Values at or below this need not be told apart.
+    pub(super) target: f64,
+    /// How often regular pieces may be halved to tighten a bound.
+    pub(super) halvings: usize,
+}
+
+impl Evaluation<'_> {
+    /// Evaluates all wanted leaves below the given control faces, in their order.
+    pub(super) fn run(&self, roots: &[u32]) -> Vec<Found> {
+        parallel::blocks(roots.len(), BLOCK, |block| {
+            let mut found = Found::default();
+            for &root in &roots[block] {
+                let patch = root_patch(self.control, FaceId(root));
+                let corners = self.forest.corners(root).map(|vertex| self.points[vertex as usize]);
+                self.visit(root, &patch, corners, &mut found);
+            }
+            found
+        })
+    }
+
+    fn visit(&self, node: u32, patch: &Patch, corners: [LimitPoint; 3], found: &mut Found) {
+        let Some(first) = self.forest.children(node) else {
+            if self.marks[node as usize] & WANTED != 0 {
+                self.leaf(node, patch, corners, found);
+            }
+            return;
+        };
+        let refined = patch.refined(self.rules);
+        let middles = [0, 1, 2].map(|edge| {
+            let vertex = self.forest.corners(first + edge as u32)[(edge + 1) % 3];
+            self.limit(vertex, || refined.middle(edge), found)
+        });
+        for part in 0..4 {
+            let child = first + part as u32;
+            if self.marks[child as usize] == 0 {
+                continue;
+            }
+            let mut own = [middles[1], middles[2], middles[0]];
+            if part < 3 {
+                own[part] = corners[part];
+                own[(part + 1) % 3] = middles[part];
+                own[(part + 2) % 3] = middles[(part + 2) % 3];
+            }
+            self.visit(child, &refined.part(part), own, found);
+        }
+    }
+
+    /// The limit of a vertex: as it is known, with the normal on this side where that matters.
+    fn limit(&self, vertex: u32, compute: impl FnOnce() -> LimitPoint, found: &mut Found) -> LimitPoint {
+        let known = self.points[vertex as usize];
+        if known.position.is_nan() {
+            let computed = compute();
+            found.points.push((vertex, computed));
+            computed
+        } else if self.demand.needs_normals() {
+            LimitPoint { normal: compute().normal, ..known }
+        } else {
+            known
+        }
+    }
+
+    fn leaf(&self, node: u32, patch: &Patch, corners: [LimitPoint; 3], found: &mut Found) {
+        let split = self.forest.split_edges(node);
+        let mut middles = [None; 3];
+        if split != 0 {
+            let refined = patch.refined(self.rules);
+            for edge in (0..3).filter(|edge| split & 1 << edge != 0) {
+                if let Some(vertex) = self.forest.middle(node, edge) {
+                    middles[edge] = Some(self.limit(vertex, || refined.middle(edge), found));
+                }
+            }
+        }
+        let scale = self.demand.scale(patch);
+        let open = self.forest.open_edges(node);
+        let mut best: Option<Leaf> = None;
+        for diagonal_from_end in [false, true] {
+            let mut leaf = Leaf { node, value: 0.0, deviation: Deviation::default(), diagonal_from_end };
+            for triangle in leaf_triangles(corners, middles, diagonal_from_end) {
+                let LeafTriangle { part, corners: triangle, borders } = triangle;
+                let facet = Facet::new(triangle.map(|point| point.position));
+                let (chord, slope) = expected(&facet, &triangle);
+                let open = borders.map(|border| border.is_some_and(|edge| open[edge]));
+                let effort =
+                    Effort { target: self.target / scale, halvings: self.halvings, open, chord, slope };
+                let found = deviation(patch, part, &facet, self.rules, effort);
+                let value = (found.bound(chord, slope) * scale).max(self.demand.cone(&facet, &triangle));
+                leaf.value = leaf.value.max(value);
+                leaf.deviation = leaf.deviation.max(found);
+            }
+            if best.is_none_or(|best| leaf.value < best.value) {
+                best = Some(leaf);
+            }
+            if split.count_ones() != 2 {
+                break;
+            }
+        }
+        found.leaves.extend(best);
+    }
+}
+
+/// What is expected of the neighbours of a triangle: the chord of the angle between their planes, from the limit
+/// normals at its corners, and the greatest slope of a drift, from its own angles.
+fn expected(facet: &Facet, corners: &[LimitPoint; 3]) -> (f64, f64) {
+    // The neighbour stands as far from the limit normals, on their other side.
+    let chords = corners.iter().map(|corner| 2.0 * corner.normal.distance(facet.normal()));
+    (chords.fold(0.0, f64::max), facet.least_slope())
+}

@@ -1,0 +1,42 @@
+//! Exact refinement: triangles within a tolerance of the true limit surface, with all vertices on it.
+//!
+//! Takes a control mesh, a scheme and goals; gives a conforming mesh, limit normals, where each vertex and triangle
+//! came from, and a certified interval for the distance between the mesh and the limit surface.
+//!
+//! The sequence of refined meshes of the *original* control mesh is never altered: a forest of quadtrees over its
+//! faces says how far each part of it is looked at, the limit surface over a node follows
+//! from its patch, and the paper's closure (Figure 5) happens when triangles are emitted and is never refined.
+//! Rounds of "evaluate what changed, split what fails, worst first" go on until the goals are met.
+
+mod demand;
+mod emit;
+mod evaluate;
+mod forest;
+mod grow;
+mod leaf;
+mod options;
+mod probe;
+
+pub use options::{ErrorBounds, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin};
+
+use super::RefineError;
+use crate::mesh::Mesh;
+use crate::scheme::Scheme;
+use crate::surface::Rules;
+use grow::Growth;
+
+/// Refines `control` until the goals are met: each distance, angle or pixel goal everywhere, or as many triangles as
+/// allowed, whichever comes first.
+///
+/// # Errors
+/// A goal that is no positive number, a scheme that the exact pieces are not for, a control vertex without a limit,
+/// more elements than can be numbered, or the observer's wish to stop.
+pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions<'_>) -> Result<Exact, RefineError> {
+    options.check()?;
+    let Some(rules) = Rules::of(scheme) else {
+        return Err(RefineError::NotExact { scheme: scheme.name().to_owned() });
+    };
+    let mut growth = Growth::new(control, scheme, &rules, options)?;
+    let (stop, emission) = growth.run()?;
+    growth.finish(stop, emission)
+}

@@ -1,0 +1,178 @@
+//! Irregular pieces: a face and its one-ring as the fans of its three corners, whatever their rings are like.
+//!
+//! A fan is the part of a vertex's ring that decides the surface on the face's side: the whole ring of a smooth
+//! vertex or a dart, the sector between two sharp edges (or boundary edges) of a crease vertex or a corner. One
+//! refinement gives the fans of the four parts; all but the corner's own are regular then.
+
+use super::lattice::{self, Points};
+use super::rules::Rules;
+use crate::vector::DVec3;
+
+/// What becomes of a fan's centre.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Centre {
+    /// Faces all round; with the slot of its sharp edge where it has just one (a dart).
+    Smooth { sharp: Option<usize> },
+    /// Smooth along the sharp or boundary curve that the fan starts and ends at.
+    Crease,
+    /// Keeps its place; the fan is open where `open`.
+    Corner { open: bool },
+}
+
+/// A vertex with its neighbours, counter-clockwise, on the side of one of its faces.
+#[derive(Clone, Debug)]
+pub(crate) struct Fan {
+    pub(crate) at: DVec3,
+    pub(crate) neighbours: Vec<DVec3>,
+    pub(crate) centre: Centre,
+    /// The neighbour that is the face's next corner; the one after it is the corner after that.
+    pub(crate) slot: usize,
+}
+
+impl Fan {
+    /// Whether the fan ends at two sharp or boundary edges.
+    pub(crate) fn is_open(&self) -> bool {
+        matches!(self.centre, Centre::Crease | Centre::Corner { open: true })
+    }
+
+    /// The neighbour `offset` slots on from the face's next corner.
+    fn neighbour(&self, offset: isize) -> usize {
+        (self.slot as isize + offset).rem_euclid(self.neighbours.len() as isize) as usize
+    }
+
+    /// Whether the edge to the neighbour in `slot` is sharp or a boundary.
+    fn is_sharp(&self, slot: usize) -> bool {
+        match self.centre {
+            Centre::Smooth { sharp } => sharp == Some(slot),
+            _ => self.is_open() && (slot == 0 || slot + 1 == self.neighbours.len()),
+        }
+    }
+
+    /// Where the centre moves.
+    fn moved(&self, rules: &Rules) -> DVec3 {
+        match self.centre {
+            Centre::Corner { .. } => self.at,
+            Centre::Crease => {
+                0.75 * self.at + 0.125 * (self.neighbours[0] + self.neighbours[self.neighbours.len() - 1])
+            }
+            Centre::Smooth { .. } => {
+                let valence = self.neighbours.len();
+                let beta = rules.beta(valence);
+                (1.0 - valence as f64 * beta) * self.at + beta * self.neighbours.iter().sum::<DVec3>()
+            }
+        }
+    }
+
+    /// The new vertices on the edges to the neighbours.
+    fn edge_points(&self) -> Vec<DVec3> {
+        let count = self.neighbours.len();
+        (0..count)
+            .map(|slot| {
+                let end = self.neighbours[slot];
+                if self.is_sharp(slot) {
+                    return 0.5 * (self.at + end);
+                }
+                let before = self.neighbours[if slot == 0 { count - 1 } else { slot - 1 }];
+                let after = self.neighbours[if slot + 1 == count { 0 } else { slot + 1 }];
+                0.375 * (self.at + end) + 0.125 * (before + after)
+            })
+            .collect()
+    }
+
+    /// The six neighbours, the face's next corner first, of a regular fan; on an open one those beyond the curve are
+    /// mirrored, which gives the same surface.
+    fn regular_ring(&self) -> Option<[DVec3; 6]> {
+        let ring: [DVec3; 6] = match (self.centre, &self.neighbours[..]) {
+            (Centre::Smooth { sharp: None }, &[a, b, c, d, e, f]) => [a, b, c, d, e, f],
+            (Centre::Crease, &[a, b, c, d]) => [a, b, c, d, self.at + d - c, self.at + a - b],
+            _ => return None,
+        };
+        Some(core::array::from_fn(|i| ring[(self.slot + i) % 6]))
+    }
+}
+
+/// The fans of a face's corners.
+#[derive(Clone, Debug)]
+pub(crate) struct Fans(pub(crate) [Fan; 3]);
+
+impl Fans {
+    /// The twelve points of a regular face.
+    pub(crate) fn regular(&self) -> Option<Points> {
+        let [a, b, c] = &self.0;
+        let rings = [a.regular_ring()?, b.regular_ring()?, c.regular_ring()?];
+        Some(lattice::assemble([a.at, b.at, c.at], &rings))
+    }
+
+    /// All points, corners first; some more than once.
+    pub(crate) fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
+        self.0.iter().flat_map(|fan| core::iter::once(fan.at).chain(fan.neighbours.iter().copied()))
+    }
+
+    /// The points after one refinement.
+    pub(crate) fn refined(&self, rules: &Rules) -> RefinedFans<'_> {
+        RefinedFans {
+            fans: self,
+            moved: [0, 1, 2].map(|corner| self.0[corner].moved(rules)),
+            edge_points: [0, 1, 2].map(|corner| self.0[corner].edge_points()),
+        }
+    }
+}
+
+/// The points around the four parts of an irregular face.
+pub(crate) struct RefinedFans<'a> {
+    fans: &'a Fans,
+    moved: [DVec3; 3],
+    edge_points: [Vec<DVec3>; 3],
+}
+
+impl RefinedFans<'_> {
+    /// The new point on the edge from corner `edge`.
+    fn middle(&self, edge: usize) -> DVec3 {
+        self.edge_points[edge][self.fans.0[edge].slot]
+    }
+
+    /// The neighbours of that point: from the edge's end over the face to its start, and on beyond the edge unless that is
+    /// sharp or a boundary.
+    fn around_middle(&self, edge: usize) -> (Vec<DVec3>, Centre) {
+        let (next, last) = ((edge + 1) % 3, (edge + 2) % 3);
+        let (from, to) = (&self.fans.0[edge], &self.fans.0[next]);
+        let near = [self.moved[next], self.middle(next), self.middle(last), self.moved[edge]];
+        if from.is_sharp(from.slot) || to.is_sharp(to.neighbour(1)) {
+            return (near.to_vec(), Centre::Crease);
+        }
+        let beyond = [self.edge_points[edge][from.neighbour(-1)], self.edge_points[next][to.neighbour(2)]];
+        ([near.as_slice(), &beyond].concat(), Centre::Smooth { sharp: None })
+    }
+
+    /// The fan of the new point on the edge from corner `edge`, with the face that starts at neighbour `slot`.
+    fn middle_fan(&self, edge: usize, slot: usize) -> Fan {
+        let (neighbours, centre) = self.around_middle(edge);
+        Fan { at: self.middle(edge), neighbours, centre, slot }
+    }
+
+    /// The new point on the edge from corner `edge` and its six neighbours: new points are always regular.
+    pub(crate) fn regular_middle(&self, edge: usize) -> (DVec3, [DVec3; 6]) {
+        let fan = self.middle_fan(edge, 0);
+        let ring = fan.regular_ring().unwrap_or([fan.at; 6]);
+        (fan.at, ring)
+    }
+
+    /// The fans of a part; numbered as [`lattice::Refined::part`] does.
+    pub(crate) fn part(&self, part: usize) -> Fans {
+        // Around the middle of an edge the parts follow each other: the end's, the middle one, the start's.
+        if part == 3 {
+            return Fans([1, 2, 0].map(|edge| self.middle_fan(edge, 1)));
+        }
+        let old = &self.fans.0[part];
+        let own = Fan {
+            at: self.moved[part],
+            neighbours: self.edge_points[part].clone(),
+            centre: old.centre,
+            slot: old.slot,
+        };
+        let (on_next, on_last) = (self.middle_fan(part, 2), self.middle_fan((part + 2) % 3, 0));
+        let mut fans = [own, on_next, on_last];
+        fans.rotate_right(part);
+        Fans(fans)
+    }
+}

@@ -1,0 +1,21 @@
+//! The limit surface of a control mesh in exact pieces, for schemes of Loop's family.
+//!
+//! Each control face carries a [`Patch`]: its corners and their one-ring, which is all that the surface over it
+//! depends on. Refining a patch gives the four over its parts, at any depth, so that only what is needed is ever
+//! computed; limit positions and normals of new vertices come with it. [`deviation`] certifies how far a triangle
+//! can be from the piece that it stands for.
+
+mod bound;
+mod facet;
+mod fan;
+mod lattice;
+mod net;
+mod patch;
+mod root;
+mod rules;
+
+pub(crate) use bound::{Deviation, Effort, Part, deviation};
+pub(crate) use facet::Facet;
+pub(crate) use patch::{LimitPoint, Patch};
+pub(crate) use root::root_patch;
+pub(crate) use rules::Rules;

@@ -1,0 +1,97 @@
+//! Pieces of the limit surface: the part over one face of some level, with the points that decide it.
+
+use super::fan::{Fans, RefinedFans};
+use super::lattice::{Points, Refined};
+use super::rules::Rules;
+use crate::vector::{DVec3, unit_or_zero};
+
+/// The limit surface over one face.
+// Almost all are regular: boxing them would cost an allocation for each face.
+#[allow(clippy::large_enum_variant)]
+#[derive(Clone, Debug)]
+pub(crate) enum Patch {
+    /// All corners have six edges, or mirror images beyond a crease make it so.
+    Regular(Points),
+    /// Anything else.
+    Irregular(Box<Fans>),
+}
+
+/// A point of the limit surface with its unit normal on the side it was asked for; zero without one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LimitPoint {
+    pub(crate) position: DVec3,
+    pub(crate) normal: DVec3,
+}
+
+impl LimitPoint {
+    /// The limit of a regular vertex: weights 1/2 and 1/12, tangents by cosines and sines.
+    fn regular(at: DVec3, ring: &[DVec3; 6]) -> Self {
+        const SINE: f64 = 0.866_025_403_784_438_6;
+        let [a, b, c, d, e, f] = *ring;
+        let position = (6.0 * at + (a + d) + (b + e) + (c + f)) / 12.0;
+        let along = (a - d) + 0.5 * ((b - e) + (f - c));
+        let across = SINE * ((b - e) + (c - f));
+        Self { position, normal: unit_or_zero(along.cross(across)) }
+    }
+}
+
+/// A patch refined once: its parts and the limits of its new vertices.
+pub(crate) enum RefinedPatch<'a> {
+    /// Of a regular patch.
+    Regular(Box<Refined>),
+    /// Of an irregular one.
+    Irregular(RefinedFans<'a>),
+}
+
+impl Patch {
+    /// The simplest form of a piece.
+    pub(crate) fn of(fans: Fans) -> Self {
+        match fans.regular() {
+            Some(points) => Self::Regular(points),
+            None => Self::Irregular(Box::new(fans)),
+        }
+    }
+
+    /// The patch refined once.
+    pub(crate) fn refined(&self, rules: &Rules) -> RefinedPatch<'_> {
+        match self {
+            Self::Regular(points) => RefinedPatch::Regular(Box::new(Refined::of(points))),
+            Self::Irregular(fans) => RefinedPatch::Irregular(fans.refined(rules)),
+        }
+    }
+
+    /// Calls `visit` for points whose hull holds the piece.
+    pub(crate) fn for_each_hull_point(&self, mut visit: impl FnMut(DVec3)) {
+        match self {
+            Self::Regular(points) => points.iter().for_each(|&point| visit(point)),
+            Self::Irregular(fans) => fans.points().for_each(visit),
+        }
+    }
+}
+
+impl RefinedPatch<'_> {
+    /// One of the four parts: 0 to 2 keep the corner of their number, at its place; corner `i` of part 3, the middle
+    /// one, is the new vertex opposite corner `i`.
+    #[inline]
+    pub(crate) fn part(&self, part: usize) -> Patch {
+        match self {
+            Self::Regular(refined) => Patch::Regular(refined.part(part)),
+            Self::Irregular(refined) => Patch::of(refined.part(part)),
+        }
+    }
+
+    /// The limit of the new vertex on the edge from corner `edge`, seen from this face.
+    #[inline]
+    pub(crate) fn middle(&self, edge: usize) -> LimitPoint {
+        match self {
+            Self::Regular(refined) => {
+                let (at, ring) = refined.middle(edge);
+                LimitPoint::regular(at, &ring)
+            }
+            Self::Irregular(refined) => {
+                let (at, ring) = refined.regular_middle(edge);
+                LimitPoint::regular(at, &ring)
+            }
+        }
+    }
+}
