@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{BuildArguments, SchemeName, values};
+use super::values::{self, Extent};
+use super::{BuildArguments, SchemeName};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -12,12 +13,15 @@ Examples:
         how far one mesh is from another, both ways
   limitmesh measure refined.ply --limit-of control.obj --samples 500000 --json
         how far a refined mesh is from the limit surface of its control mesh
-  limitmesh measure refined.ply --limit-of control.obj --heatmap error.png";
+  limitmesh measure refined.ply --limit-of control.obj --heatmap error.png
+  limitmesh measure refined.ply scan.ply --certified --gap 0.01%
+        between which two values the distance certainly lies";
 
 /// Measure the symmetric Hausdorff distance between two surfaces
 ///
 /// The distance is sampled on vertices, edges and faces of both: a lower bound of the true one. It is given
 /// as a length and in per cent of the bounding-box diagonal of the reference, which is B or the limit surface.
+/// With --certified it is bounded from both sides instead.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct MeasureArguments {
@@ -49,6 +53,25 @@ pub(crate) struct MeasureArguments {
     /// Samples on each surface; all its vertices are among them, however many they are
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::samples)]
     pub(crate) samples: usize,
+
+    /// Bound the distance from both sides instead of sampling it: no point is farther away than the upper bound
+    ///
+    /// Branch and bound over the triangles of both meshes. The interval is as narrow as --gap says, or wider if
+    /// the work runs out first (exit code 3). For two meshes, not for a limit surface.
+    #[arg(long, conflicts_with = "samples")]
+    pub(crate) certified: bool,
+
+    /// How wide the interval may be: a length, or per cent of the reference's diagonal such as 0.01%
+    ///
+    /// Default: 1 % of the distance, or 0.0001% of the diagonal where that is more. With --certified only.
+    #[arg(long, value_name = "G", value_parser = values::extent, allow_hyphen_values = true)]
+    pub(crate) gap: Option<Extent>,
+
+    /// Work after which the interval is given as it is, in each direction [default: 1000000000, about a minute]
+    ///
+    /// A unit is a piece of a triangle bounded, or a triangle looked at for that. With --certified only.
+    #[arg(long, value_name = "N")]
+    pub(crate) max_work: Option<u64>,
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,

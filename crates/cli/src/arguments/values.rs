@@ -49,6 +49,37 @@ pub(super) fn weld(text: &str) -> Result<Weld, String> {
     }
 }
 
+/// A length, absolute or beside a diagonal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Extent {
+    /// In the mesh's unit.
+    Length(f64),
+    /// In per cent of the diagonal of a bounding box.
+    Percent(f64),
+}
+
+impl Extent {
+    /// The length, where the diagonal is this long.
+    pub(crate) fn length(self, diagonal: f64) -> f64 {
+        match self {
+            Self::Length(length) => length,
+            Self::Percent(percent) => percent / 100.0 * diagonal,
+        }
+    }
+}
+
+/// A length, or per cent of a diagonal if `%` follows: at least 0.
+pub(super) fn extent(text: &str) -> Result<Extent, String> {
+    let text = text.trim();
+    let percent = text.strip_suffix('%');
+    let value = finite(percent.unwrap_or(text))
+        .map_err(|what| format!("{what}; a length or per cent such as 0.01% is expected"))?;
+    if value < 0.0 {
+        return Err(format!("{text} is out of range: a length is at least 0"));
+    }
+    Ok(if percent.is_some() { Extent::Percent(value) } else { Extent::Length(value) })
+}
+
 /// Three numbers with commas between them.
 pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
     let numbers = text.split(',').map(finite).collect::<Result<Vec<_>, _>>()?;
@@ -139,6 +170,17 @@ mod tests {
         assert_eq!(weld("0.5"), Ok(Weld::Within(0.5)));
         assert_eq!(weld("none"), Ok(Weld::Never));
         assert!(weld("-0.5").is_err());
+    }
+
+    #[test]
+    fn extents_are_lengths_or_per_cent() {
+        assert_eq!(extent("0.5"), Ok(Extent::Length(0.5)));
+        assert_eq!(extent("0.01%"), Ok(Extent::Percent(0.01)));
+        assert_eq!(extent(" 2 % "), Ok(Extent::Percent(2.0)));
+        assert_eq!(Extent::Percent(2.0).length(50.0), 1.0);
+        for bad in ["", "%", "-1", "-1%", "1 mm", "NaN", "inf%"] {
+            assert!(extent(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use limitmesh::Mesh;
-use limitmesh::measure::{Hausdorff, SamplingOptions, hausdorff};
+use limitmesh::measure::{CertifiedHausdorff, Hausdorff, SamplingOptions, hausdorff};
+use limitmesh::{Mesh, Triangles};
 
-use super::heatmap;
+use super::{certified, heatmap};
 use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
 use crate::input::{self, Input};
@@ -13,7 +13,7 @@ use crate::output;
 use crate::progress::Progress;
 use crate::reference::{self, USUAL_LEVELS};
 use crate::report::measurement::MeasureSeconds;
-use crate::report::{LimitReport, MeasureReport, SurfaceReport, VERSION};
+use crate::report::{DistanceReport, LimitReport, MeasureReport, SurfaceReport, VERSION};
 use crate::words::{counted, number, point, table, thousands};
 
 /// Measures one surface against another.
@@ -31,17 +31,17 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
         counted(a.triangles.len(), "triangle", "triangles"),
         counted(b.triangles.len(), "triangle", "triangles")
     ));
-    let measured = hausdorff(a, b, &SamplingOptions::default().samples(arguments.samples))?;
+    let measured = Distance::between(a, b, arguments)?;
     let report = MeasureReport {
         version: VERSION,
         surface: describe(&surface),
         reference: reference_report,
-        hausdorff: (&measured).into(),
+        hausdorff: measured.report(),
         seconds: MeasureSeconds { prepare, measure: start.elapsed().as_secs_f64() },
     };
     if let Some(path) = &arguments.heatmap {
         progress.stage(format!("writing {}", path.display()));
-        heatmap::write(path, a, b, measured.reference_diagonal)?;
+        heatmap::write(path, a, b, measured.reference_diagonal())?;
     }
     progress.clear();
     if arguments.json {
@@ -49,7 +49,43 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
     } else {
         output::print(&in_words(&report, &measured))?;
     }
-    Ok(Outcome::Done)
+    Ok(measured.outcome())
+}
+
+/// The distance as it was asked for.
+enum Distance {
+    Sampled(Hausdorff),
+    Certified(CertifiedHausdorff),
+}
+
+impl Distance {
+    fn between(a: Triangles<'_>, b: Triangles<'_>, arguments: &MeasureArguments) -> anyhow::Result<Self> {
+        if arguments.certified {
+            return Ok(Self::Certified(certified::between(a, b, arguments)?));
+        }
+        Ok(Self::Sampled(hausdorff(a, b, &SamplingOptions::default().samples(arguments.samples))?))
+    }
+
+    fn report(&self) -> DistanceReport {
+        match self {
+            Self::Sampled(measured) => DistanceReport::Sampled(measured.into()),
+            Self::Certified(measured) => DistanceReport::Certified(measured.into()),
+        }
+    }
+
+    fn reference_diagonal(&self) -> f64 {
+        match self {
+            Self::Sampled(measured) => measured.reference_diagonal,
+            Self::Certified(measured) => measured.reference_diagonal,
+        }
+    }
+
+    fn outcome(&self) -> Outcome {
+        match self {
+            Self::Sampled(_) => Outcome::Done,
+            Self::Certified(measured) => certified::outcome(measured),
+        }
+    }
 }
 
 /// The second surface: a mesh as it is, or one that stands for a limit surface.
@@ -92,19 +128,27 @@ fn describe(input: &Input) -> SurfaceReport {
     }
 }
 
-fn in_words(report: &MeasureReport, measured: &Hausdorff) -> String {
+fn in_words(report: &MeasureReport, measured: &Distance) -> String {
+    let mut text = format!("from  {}\n", surface_in_words(&report.surface));
+    text.push_str(&format!("to    {}\n\n", surface_in_words(&report.reference)));
+    text.push_str(&match measured {
+        Distance::Sampled(measured) => sampled_in_words(measured),
+        Distance::Certified(measured) => certified::in_words(measured),
+    });
+    text
+}
+
+fn sampled_in_words(measured: &Hausdorff) -> String {
     let diagonal = measured.reference_diagonal;
     let percent = |length: f64| {
         if diagonal > 0.0 { format!("{} %", number(100.0 * length / diagonal)) } else { "-".to_owned() }
     };
-    let mut text = format!("from  {}\n", surface_in_words(&report.surface));
-    text.push_str(&format!("to    {}\n\n", surface_in_words(&report.reference)));
-    text.push_str(&format!(
+    let mut text = format!(
         "symmetric Hausdorff distance  {}  ({} of the reference's diagonal {})\n",
         number(measured.symmetric()),
         percent(measured.symmetric()),
         number(diagonal)
-    ));
+    );
     text.push_str(&format!(
         "sampled: a lower bound, from {} samples of the first surface and {} of the second\n\n",
         thousands(measured.forward.samples),
@@ -149,5 +193,6 @@ fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
     if arguments.limit_of.is_none() && (arguments.reference_levels.is_some() || arguments.scheme.is_some()) {
         return usage("--reference-levels and --scheme belong to a limit surface; they need --limit-of");
     }
+    certified::check(arguments)?;
     arguments.heatmap.as_deref().map_or(Ok(()), heatmap::check_name)
 }

@@ -1,5 +1,6 @@
 //! The commands, one file each: arguments in, files and text out.
 
+mod certified;
 pub(crate) mod compare;
 mod heatmap;
 pub(crate) mod info;

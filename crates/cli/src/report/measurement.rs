@@ -3,6 +3,7 @@
 use limitmesh::measure::{Hausdorff, OneSided};
 use serde::Serialize;
 
+use super::certified::CertifiedReport;
 use super::diagnosis::DiagnosisReport;
 use crate::arguments::SchemeName;
 
@@ -15,8 +16,16 @@ pub(crate) struct MeasureReport {
     pub(crate) version: &'static str,
     pub(crate) surface: SurfaceReport,
     pub(crate) reference: SurfaceReport,
-    pub(crate) hausdorff: HausdorffReport,
+    pub(crate) hausdorff: DistanceReport,
     pub(crate) seconds: MeasureSeconds,
+}
+
+/// The distance, by its kind.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+pub(crate) enum DistanceReport {
+    Sampled(HausdorffReport),
+    Certified(CertifiedReport),
 }
 
 /// One of the two surfaces.

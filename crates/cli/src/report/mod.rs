@@ -1,6 +1,7 @@
 //! The JSON contract: what reports and `--json` output hold. Names of fields stay as they are once released;
 //! all numbers are finite, angles in degrees, times in seconds.
 
+pub(crate) mod certified;
 mod comparison;
 pub(crate) mod diagnosis;
 pub(crate) mod information;
@@ -9,7 +10,7 @@ pub(crate) mod refinement;
 
 pub(crate) use comparison::ComparedMethod;
 pub(crate) use information::{InformationReport, MeshInformation};
-pub(crate) use measurement::{LimitReport, MeasureReport, SurfaceReport};
+pub(crate) use measurement::{DistanceReport, LimitReport, MeasureReport, SurfaceReport};
 pub(crate) use refinement::{
     OutputReport, ParametersReport, RefineReport, SecondsReport, StepEntry, ViewReport,
 };

@@ -117,3 +117,60 @@ fn heat_maps_are_meshes_or_pictures() {
     assert!(std::fs::read(&picture).expect("a file").starts_with(b"\x89PNG"));
     run("measure {} {} --heatmap {}", &[&tilted, &low, &low]).expect(2).saying(".png");
 }
+
+const CERTIFIED: &str = "version surface.path reference.path hausdorff.kind hausdorff.lower hausdorff.upper
+    hausdorff.lower_percent hausdorff.upper_percent hausdorff.converged hausdorff.work hausdorff.reference_diagonal
+    hausdorff.forward.lower hausdorff.forward.upper hausdorff.forward.converged hausdorff.forward.at
+    hausdorff.forward.to hausdorff.backward.lower hausdorff.backward.upper hausdorff.backward.converged
+    hausdorff.backward.at hausdorff.backward.to seconds.prepare seconds.measure";
+
+fn certified(arguments: &str, paths: &[&Path], code: i32) -> Value {
+    let report = run(&format!("measure {arguments} --certified --json"), paths).expect(code).json();
+    has_keys(&report, CERTIFIED);
+    report["hausdorff"].clone()
+}
+
+#[test]
+fn certified_intervals_hold_the_distance() {
+    let folder = folder();
+    let low = file(&folder, "low.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    let high = file(&folder, "high.obj", "v 0 0 .25\nv 2 0 .25\nv 2 1 .25\nv 0 1 .25\nf 1 2 3 4\n");
+    let far = (1.0f64 + 0.0625).sqrt();
+    for (gap, widest) in
+        [("", 0.01 * far), ("--gap 1e-6", 1e-6), ("--gap 0.1%", 0.001 * 5f64.sqrt()), ("--gap 0", 1e-9)]
+    {
+        let h = certified(&format!("{{}} {{}} {gap}"), &[&low, &high], 0);
+        assert_eq!((&h["kind"], &h["converged"]), (&"certified interval".into(), &true.into()));
+        for (direction, truth) in [(&h["forward"], 0.25), (&h["backward"], far), (&h, far)] {
+            let (lower, upper) = (number(&direction["lower"]), number(&direction["upper"]));
+            assert!(lower <= truth && truth <= upper && upper - lower <= widest, "{gap}: {direction}");
+        }
+        near(&h["upper_percent"], 100.0 * number(&h["upper"]) / 5f64.sqrt());
+    }
+    let text = run("measure {} {} --certified", &[&low, &high]).expect(0).stdout;
+    for words in ["certified", "at least", "at most", "backward maximum near (2, ", "% of the reference"] {
+        assert!(text.contains(words), "{words} in:\n{text}");
+    }
+}
+
+#[test]
+fn a_certified_interval_that_is_cut_short_is_given_with_code_3() {
+    let arguments = "builtin:cup builtin:torus --gap 1e-5% --max-work 1";
+    let short = certified(arguments, &[], 3);
+    assert_eq!(short["converged"], false);
+    let whole = certified("builtin:cup builtin:torus", &[], 0);
+    assert!(number(&short["lower"]) <= number(&whole["upper"]));
+    assert!(number(&whole["lower"]) <= number(&short["upper"]));
+    assert!(number(&short["upper"]) > number(&short["lower"]));
+    run(&format!("measure {arguments} --certified"), &[]).expect(3).saying("--max-work");
+}
+
+#[test]
+fn what_belongs_to_certified_distances_and_what_does_not() {
+    let two = "measure builtin:cup builtin:torus";
+    run(&format!("{two} --gap 1%"), &[]).expect(2).saying("--certified");
+    run(&format!("{two} --max-work 5"), &[]).expect(2).saying("--certified");
+    run(&format!("{two} --certified --gap -1"), &[]).expect(2).saying("at least 0");
+    run(&format!("{two} --certified --samples 9"), &[]).expect(2).saying("--samples");
+    run("measure builtin:cup --limit-of builtin:cup --certified", &[]).expect(2).saying("two meshes");
+}

@@ -7,7 +7,6 @@ use core::ops::Range;
 
 use super::bvh::Bvh;
 use super::climb::climb;
-use super::frame::distance;
 use super::samples::Samples;
 use super::{MeasureError, check_finite};
 use crate::mesh::Triangles;
@@ -121,11 +120,10 @@ pub fn hausdorff(
 
 /// The same between surfaces whose hierarchies are at hand, for measuring several against one.
 pub fn hausdorff_between(surface: &Bvh<'_>, reference: &Bvh<'_>, options: &SamplingOptions) -> Hausdorff {
-    let [low, high] = reference.bounding_box().map(vector);
     Hausdorff {
         forward: one_sided(surface, reference, options),
         backward: one_sided(reference, surface, options),
-        reference_diagonal: distance(low, high),
+        reference_diagonal: reference.diagonal(),
     }
 }
 

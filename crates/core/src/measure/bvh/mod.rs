@@ -163,6 +163,11 @@ impl<'a> Bvh<'a> {
         self.bounds.map(|corner| corner.to_array())
     }
 
+    /// Length of the diagonal of that box.
+    pub fn diagonal(&self) -> f64 {
+        distance(self.bounds[0], self.bounds[1])
+    }
+
     /// Bytes that the hierarchy takes beside the surface it borrows.
     pub fn memory(&self) -> usize {
         size_of_val(self.slots.as_slice())

@@ -25,7 +25,6 @@ mod target;
 
 use super::MeasureError;
 use super::bvh::Bvh;
-use super::frame::distance;
 use crate::mesh::Triangles;
 use crate::vector::vector;
 use neighbours::Neighbours;
@@ -94,6 +93,17 @@ pub struct Bounds {
     pub converged: bool,
 }
 
+impl Bounds {
+    /// The interval where one of the surfaces only stands for another, within `error` of it in both directions: that
+    /// much wider on both sides.
+    ///
+    /// The distances of two surfaces to a third differ by at most their own symmetric distance. Rounded outwards.
+    pub fn widened(self, error: f64) -> Self {
+        let lower = (self.lower - error).next_down().max(0.0);
+        Self { lower, upper: (self.upper + error).next_up(), ..self }
+    }
+}
+
 /// Both directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -117,6 +127,11 @@ impl CertifiedHausdorff {
     /// The symmetric distance is at most this.
     pub fn upper(&self) -> f64 {
         self.forward.upper.max(self.backward.upper)
+    }
+
+    /// [`Bounds::widened`] in both directions.
+    pub fn widened(self, error: f64) -> Self {
+        Self { forward: self.forward.widened(error), backward: self.backward.widened(error), ..self }
     }
 
     /// Whether both intervals are as narrow as was asked for.
@@ -169,8 +184,7 @@ pub fn certified_hausdorff_between(
     reference: &Bvh<'_>,
     options: &CertifiedOptions,
 ) -> Result<CertifiedHausdorff, MeasureError> {
-    let [low, high] = reference.bounding_box().map(vector);
-    let reference_diagonal = distance(low, high);
+    let reference_diagonal = reference.diagonal();
     let gap = options.gap.unwrap_or(DEFAULT_GAP * reference_diagonal);
     let (forward, forward_work) =
         Search::run(surface, &target(surface, reference, "reference")?, gap, options);

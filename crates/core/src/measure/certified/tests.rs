@@ -187,6 +187,23 @@ fn nested_spheres() {
 }
 
 #[test]
+fn a_mesh_that_stands_for_another_surface_widens_the_interval() {
+    // Against the unit sphere itself, for which a mesh stands as well as its flattest point is near.
+    let reference = sphere(20, 1.0);
+    let middles = (0..reference.triangles.len()).map(|face| {
+        let [a, b, c] = reference.as_triangles().corners(face).map(vector);
+        let normal = (b - a).cross(c - a);
+        1.0 - (a.dot(normal) / normal.length()).abs()
+    });
+    let error = middles.fold(0.0, f64::max);
+    let found = certify(&sphere(3, 1.1), &reference, &narrow());
+    let wider = found.widened(error);
+    assert!(wider.forward.lower <= 0.1 && 0.1 <= wider.forward.upper && wider.lower() > 0.0, "{wider:?}");
+    assert!((wider.upper() - found.upper() - error).abs() <= 1e-15 && wider.converged());
+    assert_eq!(found.widened(10.0).lower(), 0.0);
+}
+
+#[test]
 fn a_tent_over_a_plane() {
     let tent = Shape {
         positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, 0.7]],

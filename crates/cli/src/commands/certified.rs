@@ -1,0 +1,100 @@
+//! `limitmesh measure --certified`: the distance between two meshes, bounded from both sides.
+
+use limitmesh::Triangles;
+use limitmesh::measure::{Bounds, Bvh, CertifiedHausdorff, CertifiedOptions, certified_hausdorff_between};
+
+use crate::arguments::MeasureArguments;
+use crate::failure::{Outcome, usage};
+use crate::words::{number, point, table};
+
+/// Rounding to six digits changes a number by at most this share of it.
+const SIX_DIGITS: f64 = 5e-6;
+
+/// Finds what makes no sense before any work is done.
+pub(super) fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
+    if arguments.certified {
+        if arguments.limit_of.is_some() {
+            return usage(
+                "--certified bounds the distance between two meshes; against a limit surface (--limit-of) distances \
+                 are sampled",
+            );
+        }
+    } else if arguments.gap.is_some() || arguments.max_work.is_some() {
+        return usage("--gap and --max-work belong to a certified distance; they need --certified");
+    }
+    Ok(())
+}
+
+/// Bounds the distance as the arguments ask for.
+pub(super) fn between(
+    a: Triangles<'_>,
+    b: Triangles<'_>,
+    arguments: &MeasureArguments,
+) -> anyhow::Result<CertifiedHausdorff> {
+    let (surface, reference) = (Bvh::new(a)?, Bvh::new(b)?);
+    let mut options = CertifiedOptions::default();
+    if let Some(gap) = arguments.gap {
+        options = options.gap(Some(gap.length(reference.diagonal()))).relative_gap(0.0);
+    }
+    if let Some(work) = arguments.max_work {
+        options = options.max_work(work);
+    }
+    Ok(certified_hausdorff_between(&surface, &reference, &options)?)
+}
+
+/// How the command ends.
+pub(super) fn outcome(measured: &CertifiedHausdorff) -> Outcome {
+    if measured.converged() {
+        return Outcome::Done;
+    }
+    Outcome::StoppedShort(format!(
+        "the interval, from {} to {}, is as certain but wider than asked for: the work ran out; raise --max-work or --gap",
+        at_least(measured.lower()),
+        at_most(measured.upper())
+    ))
+}
+
+/// A lower bound, never rounded up.
+fn at_least(bound: f64) -> String {
+    number(bound * (1.0 - SIX_DIGITS))
+}
+
+/// An upper bound, never rounded down.
+fn at_most(bound: f64) -> String {
+    number(bound * (1.0 + SIX_DIGITS))
+}
+
+/// All that was found.
+pub(super) fn in_words(measured: &CertifiedHausdorff) -> String {
+    let diagonal = measured.reference_diagonal;
+    let mut text = format!(
+        "symmetric Hausdorff distance  from {} to {}",
+        at_least(measured.lower()),
+        at_most(measured.upper())
+    );
+    if diagonal > 0.0 {
+        text.push_str(&format!(
+            "  ({} % to {} % of the reference's diagonal {})",
+            at_least(100.0 * measured.lower() / diagonal),
+            at_most(100.0 * measured.upper() / diagonal),
+            number(diagonal)
+        ));
+    }
+    text.push_str("\ncertified: the true distance lies in this interval\n\n");
+    let mut rows = vec![["", "at least", "at most", ""].map(str::to_owned).to_vec()];
+    let mut places = String::new();
+    for (name, bounds) in [("forward", &measured.forward), ("backward", &measured.backward)] {
+        rows.push(row(name, bounds));
+        places.push_str(&format!(
+            "{name} maximum near {}, closest point {}\n",
+            point(bounds.at),
+            point(bounds.to)
+        ));
+    }
+    format!("{text}{}\n{places}", table(&rows))
+}
+
+fn row(name: &str, bounds: &Bounds) -> Vec<String> {
+    let remark = if bounds.converged { "" } else { "work ran out" };
+    vec![name.to_owned(), at_least(bounds.lower), at_most(bounds.upper), remark.to_owned()]
+}
