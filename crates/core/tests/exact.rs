@@ -1,5 +1,7 @@
 //! Exact refinement against uniform refinement with limit vertices, dense sampling and exact shapes.
 
+#![allow(clippy::unwrap_used)]
+
 mod support;
 
 use std::collections::HashMap;
