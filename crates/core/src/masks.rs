@@ -3,14 +3,16 @@
 //! Takes a mesh and a scheme; gives points. Refinement and the limits of two-ring schemes build on it.
 
 mod spoke;
+pub(crate) mod views;
 
 use crate::index::{HalfEdgeId, VertexId};
-use crate::mesh::{Mesh, RingShapes, Topology};
+use crate::mesh::{Mesh, RingShapes, Sharpness, Topology};
 use crate::parallel;
 use crate::ring::{EdgeShape, RingShape};
 use crate::scheme::{EdgeMask, Scheme, Support, VertexMask};
 use crate::vector::{DVec3, vector};
 use spoke::Spoke;
+use views::{EdgeView, LabelledRing, View, edge_views, vertex_views};
 
 /// Up to this valence the place of an edge in an open ring is counted each time; beyond it the places of all edges
 /// are kept, because counting would take time with the square of the valence.
@@ -24,6 +26,9 @@ const MOST_WEIGHTS: usize = 1 << 22;
 pub(crate) struct Masks<'a> {
     mesh: &'a Mesh,
     scheme: &'a dyn Scheme,
+    sharpness: Sharpness<'a>,
+    /// Whether nothing but boundaries is sharp.
+    is_untagged: bool,
     /// The shape of each vertex's ring, and the mask of each shape; empty where they are looked up on demand.
     shapes: RingShapes,
     vertex_masks: Vec<VertexMask>,
@@ -60,9 +65,12 @@ impl<'a> Masks<'a> {
     pub(crate) fn on_demand(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Self {
         let regular = || scheme.edge_mask(EdgeShape::between(RingShape::interior(6), RingShape::interior(6)));
         let diamond = (scheme.support() == Support::OneRing).then(|| Diamond::of(&regular())).flatten();
+        let sharpness = Sharpness::of(mesh);
         Self {
             mesh,
             scheme,
+            is_untagged: sharpness.is_empty(),
+            sharpness,
             shapes: RingShapes::default(),
             vertex_masks: Vec::new(),
             is_closed: false,
@@ -81,7 +89,8 @@ impl<'a> Masks<'a> {
         let shapes = parallel::pieces(topology.half_edge_count(), |piece| {
             let mut shapes: Vec<EdgeShape> = piece
                 .map(|h| HalfEdgeId(h as u32))
-                .filter(|&h| topology.twin(h).is_none_or(|twin| h < twin) && !self.has_diamond(h))
+                .filter(|&h| topology.twin(h).is_none_or(|twin| h < twin))
+                .filter(|&h| !self.has_diamond(h) && !self.is_at_tag(h))
                 .map(|h| self.edge_shape(h))
                 .collect();
             shapes.sort_unstable();
@@ -138,12 +147,21 @@ impl<'a> Masks<'a> {
         }
     }
 
+    /// Whether an end of an edge follows other rules than its ring's shape says.
+    #[inline]
+    fn is_at_tag(&self, h: HalfEdgeId) -> bool {
+        !self.is_untagged && self.mesh.topology().ends(h).iter().any(|&end| self.sharpness.is_tagged(end))
+    }
+
     fn at(&self, vertex: VertexId) -> DVec3 {
         vector(self.mesh.positions()[vertex.index()])
     }
 
     /// Where `vertex` moves.
     pub(crate) fn vertex_point(&self, vertex: VertexId) -> DVec3 {
+        if !self.is_untagged && self.sharpness.is_tagged(vertex) {
+            return self.tagged_vertex_point(vertex);
+        }
         match self.shapes.by_vertex.get(vertex.index()) {
             Some(&shape) => self.weigh_vertex(vertex, &self.vertex_masks[shape as usize]),
             None => self.weigh_vertex(vertex, &self.scheme.vertex_mask(self.mesh.ring_shape(vertex))),
@@ -163,6 +181,9 @@ impl<'a> Masks<'a> {
     pub(crate) fn edge_point(&self, h: HalfEdgeId) -> DVec3 {
         let topology = self.mesh.topology();
         let h = topology.twin(h).map_or(h, |twin| h.min(twin));
+        if self.is_at_tag(h) {
+            return self.tagged_edge_point(h);
+        }
         if let (Some(diamond), Some(twin), true) = (self.diamond, topology.twin(h), self.has_diamond(h)) {
             let [origin, target] = topology.ends(h);
             return diamond.ends[0] * self.at(origin)
@@ -175,6 +196,52 @@ impl<'a> Masks<'a> {
             Ok(i) => self.weigh_edge(h, &shape, &self.edge_masks[i].1),
             Err(_) => self.weigh_edge(h, &shape, &self.scheme.edge_mask(shape)),
         }
+    }
+
+    /// The ring of a vertex with the sharpness of its edges.
+    fn labelled_ring(&self, vertex: VertexId) -> LabelledRing<VertexId> {
+        let neighbours = self.mesh.topology().ring(vertex).collect();
+        LabelledRing { centre: vertex, neighbours, sharp: self.sharpness.ring(vertex) }
+    }
+
+    fn tagged_vertex_point(&self, vertex: VertexId) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        for (share, view) in vertex_views(&self.labelled_ring(vertex)) {
+            let mask = self.scheme.vertex_mask(view.shape);
+            sum += share * self.weigh_view(&view, mask.centre, &mask.ring);
+        }
+        sum
+    }
+
+    fn tagged_edge_point(&self, h: HalfEdgeId) -> DVec3 {
+        let topology = self.mesh.topology();
+        let [origin, target] = topology.ends(h).map(|end| self.labelled_ring(end));
+        let slot = |ring: &LabelledRing<VertexId>, h: Option<HalfEdgeId>| {
+            // The last edge of an open ring has no half-edge that leaves.
+            let place = |h| topology.outgoing_ring(ring.centre).position(|other| other == h);
+            h.and_then(place).unwrap_or(ring.neighbours.len() - 1)
+        };
+        let slots = [slot(&origin, Some(h)), slot(&target, topology.twin(h))];
+        let mut sum = DVec3::ZERO;
+        for (share, view) in edge_views((&origin, slots[0]), (&target, slots[1])) {
+            sum += share * self.weigh_edge_view(&view);
+        }
+        sum
+    }
+
+    fn weigh_edge_view(&self, view: &EdgeView<VertexId>) -> DVec3 {
+        let weigh = |mask: &EdgeMask| {
+            self.weigh_view(&view.origin, mask.origin, &mask.origin_ring)
+                + self.weigh_view(&view.target, mask.target, &mask.target_ring)
+        };
+        match self.edge_masks.binary_search_by(|(known, _)| known.cmp(&view.shape)) {
+            Ok(i) => weigh(&self.edge_masks[i].1),
+            Err(_) => weigh(&self.scheme.edge_mask(view.shape)),
+        }
+    }
+
+    fn weigh_view(&self, view: &View<VertexId>, centre: f64, ring: &[f64]) -> DVec3 {
+        view.weighted(centre, ring).fold(DVec3::ZERO, |sum, (v, weight)| sum + weight * self.at(v))
     }
 
     fn weigh_edge(&self, h: HalfEdgeId, shape: &EdgeShape, mask: &EdgeMask) -> DVec3 {

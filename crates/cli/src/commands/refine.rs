@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use limitmesh::Mesh;
 use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal, Sight, View};
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{INFINITELY_SHARP, Tags, Weld};
+use limitmesh::mesh::{Tags, Weld};
 use limitmesh::refine::{Refinement, StepReport, StepwiseOptions, Stop, UniformOptions, stepwise, uniform};
 use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         left_out: input.left_out,
     };
     let Input { mesh: control, diagnosis, reading, building, .. } = input;
-    if let Some(note) = smoothed_tags(control.tags(), format) {
+    if let Some(note) = lost_tags(control.tags(), format) {
         progress.note(note);
     }
 
@@ -87,25 +87,21 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     Ok(outcome(arguments, &mesh, &steps, stop))
 }
 
-/// Tells about tags across which the refinement smooths.
-fn smoothed_tags(tags: &Tags, format: Format) -> Option<String> {
-    let fading = tags.corners.iter().filter(|corner| corner.sharpness < INFINITELY_SHARP).count();
-    if tags.creases.is_empty() && fading == 0 {
+/// Tells about tags of the input that the output's format has no place for.
+fn lost_tags(tags: &Tags, format: Format) -> Option<String> {
+    if tags.is_empty() || format == Format::Obj {
         return None;
     }
-    let creases = (tags.creases.len(), "crease tag", "crease tags");
-    let corners = (fading, "semi-sharp corner tag", "semi-sharp corner tags");
-    let found: Vec<String> = [creases, corners]
+    let kinds = [
+        (tags.creases.len(), "crease tag", "crease tags"),
+        (tags.corners.len(), "corner tag", "corner tags"),
+    ];
+    let found: Vec<String> = kinds
         .into_iter()
         .filter(|&(count, ..)| count > 0)
         .map(|(count, one, many)| counted(count, one, many))
         .collect();
-    let kept = if format == Format::Obj {
-        "kept in the output, one level less sharp for each step"
-    } else {
-        "left out of the output, whose format has none"
-    };
-    Some(format!("{}: smoothed across, {kept}", found.join(" and ")))
+    Some(format!("{}: followed, but left out of the output, whose format has none", found.join(" and ")))
 }
 
 /// Finds what makes no sense before any work is done; gives the format to write.

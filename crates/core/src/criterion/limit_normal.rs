@@ -2,6 +2,7 @@
 
 use super::view::Threshold;
 use super::{Criterion, CriterionError, View, check_angle};
+use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::LimitTable;
 use crate::mesh::Mesh;
 use crate::parallel;
@@ -10,7 +11,8 @@ use crate::vector::{DVec3, vector};
 /// A face is divided where its normal leaves the cone of angle α around the limit normal of one of its vertices:
 /// `min_i N_Vi · N_f < cos α`.
 ///
-/// Faces without area and vertices without a limit normal have no say.
+/// Vertices on sharp edges have a limit normal for each side; each face is judged by that of its own. Faces without
+/// area and vertices without a limit normal have no say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LimitNormal {
@@ -47,7 +49,7 @@ impl Criterion for LimitNormal {
     fn divisible(&self, mesh: &Mesh, limits: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
         check_angle(self.angle)?;
         self.view.map_or(Ok(()), |view| view.check())?;
-        let normals = limits.normals(mesh)?;
+        let normals = limits.sided_normals(mesh)?;
         // Without a view the cosine is the same for all faces.
         let plain_cosine = self.angle.cos();
         Ok(parallel::map(mesh.face_count(), |face| {
@@ -61,8 +63,9 @@ impl Criterion for LimitNormal {
                 Some(Threshold::Always) => return true,
                 Some(Threshold::Angle(angle)) => angle.cos(),
             };
-            mesh.triangles()[face].iter().any(|&v| {
-                let limit_normal = vector(normals[v as usize]);
+            (0..3).any(|corner| {
+                let corner = HalfEdgeId::of(FaceId(face as u32), corner);
+                let limit_normal = vector(normals.at(mesh.topology(), corner));
                 limit_normal.length_squared() > 0.0 && limit_normal.dot(normal) < cosine
             })
         }))

@@ -3,12 +3,12 @@
 use super::{Criterion, CriterionError, check_angle};
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::LimitTable;
-use crate::mesh::Mesh;
+use crate::mesh::{INFINITELY_SHARP, Mesh, Sharpness};
 use crate::parallel;
 
 /// A face is divided where its normal and that of an edge neighbour differ by more than an angle.
 ///
-/// Faces without area have no say.
+/// Faces without area have no say, and neither have neighbours across an edge that stays sharp for ever.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct NeighbourNormal {
@@ -32,6 +32,7 @@ impl Criterion for NeighbourNormal {
         check_angle(self.angle)?;
         let normals = parallel::map(mesh.face_count(), |f| mesh.unit_face_normal(f));
         let cosine = self.angle.cos();
+        let sharpness = Sharpness::of(mesh);
         Ok(parallel::map(mesh.face_count(), |face| {
             let normal = normals[face];
             normal.length_squared() > 0.0
@@ -39,7 +40,9 @@ impl Criterion for NeighbourNormal {
                     let h = HalfEdgeId::of(FaceId(face as u32), corner);
                     mesh.topology().twin(h).is_some_and(|twin| {
                         let other = normals[twin.face().index()];
-                        other.length_squared() > 0.0 && other.dot(normal) < cosine
+                        other.length_squared() > 0.0
+                            && other.dot(normal) < cosine
+                            && sharpness.edge(h) < INFINITELY_SHARP
                     })
                 })
         }))

@@ -88,7 +88,7 @@ where
 }
 
 /// A solution x of `x·matrix = right`, of least length where there are several.
-pub(super) fn solve_left(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+fn solve_left(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let transposed = matrix.transpose();
     let solution = if matrix.nrows() <= SINGULAR_VALUES_UP_TO {
         let singular = transposed.clone().try_svd(true, true, SINGULAR_VALUE_ACCURACY, 1000)?;
@@ -187,4 +187,30 @@ pub(super) fn components(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
 /// The rows `rows` and columns `columns` of a matrix.
 pub(super) fn block(matrix: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), columns.len(), |i, j| matrix[(rows[i], columns[j])])
+}
+
+/// The left eigenvector of a matrix for an eigenvalue of one of its components, continued to all components that
+/// this one depends on.
+pub(super) fn left_vector(
+    matrix: &DMatrix<f64>,
+    components: &[Vec<usize>],
+    component: usize,
+    eigenvalue: f64,
+) -> Option<DVector<f64>> {
+    let own = &components[component];
+    let mut vector = DVector::zeros(matrix.nrows());
+    let start = left_eigenvector(&block(matrix, own, own), eigenvalue)?;
+    own.iter().zip(start.iter()).for_each(|(&row, &weight)| vector[row] = weight);
+    // Components stand after those that they depend on: whatever this one reaches stands before it.
+    for rows in components[..component].iter().rev() {
+        let columns = DMatrix::from_fn(matrix.nrows(), rows.len(), |i, j| matrix[(i, rows[j])]);
+        let right = -columns.tr_mul(&vector);
+        if right.iter().all(|&entry| entry == 0.0) {
+            continue;
+        }
+        let system = block(matrix, rows, rows) - DMatrix::identity(rows.len(), rows.len()) * eigenvalue;
+        let solution = solve_left(&system, &right)?;
+        rows.iter().zip(solution.iter()).for_each(|(&row, &weight)| vector[row] = weight);
+    }
+    Some(vector)
 }

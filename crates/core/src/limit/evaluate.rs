@@ -8,13 +8,14 @@
 use std::sync::Arc;
 
 use super::refined::{Refined, RefinedMesh};
+use super::sharp::SharpStencil;
+use super::sides::SidedNormals;
 use super::stencil::LimitStencil;
 use super::{LimitError, LimitTable};
-use crate::index::VertexId;
+use crate::index::{HalfEdgeId, VertexId};
 use crate::masks::Masks;
-use crate::mesh::{Mesh, RingShapes, Topology};
+use crate::mesh::{Mesh, RingShapes, Sharpness, Topology};
 use crate::parallel;
-use crate::ring::RingShape;
 use crate::scheme::Support;
 use crate::vector::{DVec3, unit_or_zero, vector};
 
@@ -35,12 +36,12 @@ impl LimitTable<'_> {
     /// The scheme has no limit at the shape of some ring.
     pub fn positions(&self, mesh: &Mesh) -> Result<Vec<[f64; 3]>, LimitError> {
         let stencils = Stencils::of(self, mesh)?;
-        let refined = self.refined_for(mesh, stencils.list.iter().any(|stencil| !interpolates(stencil)));
+        let refined = self.refined_for(mesh, stencils.any_moves());
         Ok(parallel::map(mesh.vertex_count(), |v| {
-            let (vertex, stencil) = (VertexId(v as u32), stencils.at(v));
+            let (vertex, weights) = (VertexId(v as u32), stencils.at(v).position());
             match &refined {
-                Some(refined) => two_ring_position(mesh, vertex, stencil, refined),
-                None => one_ring_position(mesh, vertex, stencil),
+                Some(refined) => two_ring_position(mesh, vertex, weights, refined),
+                None => one_ring_position(mesh, vertex, weights),
             }
         }))
     }
@@ -48,18 +49,57 @@ impl LimitTable<'_> {
     /// Unit limit normal of every vertex of `mesh`, pointing outside; where the limit surface has no tangent
     /// plane, the area-weighted average of the face normals, and zero where that vanishes too.
     ///
+    /// A vertex on a sharp edge has one normal on each side of it (see [`Self::sided_normals`]); here it has their
+    /// average, of unit length.
+    ///
     /// # Errors
     /// The scheme has no limit at the shape of some ring.
     pub fn normals(&self, mesh: &Mesh) -> Result<Vec<[f64; 3]>, LimitError> {
+        Ok(self.sided_normals(mesh)?.into_by_vertex())
+    }
+
+    /// Unit limit normals as in [`Self::normals`], and for vertices on sharp edges one for each side.
+    ///
+    /// # Errors
+    /// The scheme has no limit at the shape of some ring.
+    pub fn sided_normals(&self, mesh: &Mesh) -> Result<SidedNormals, LimitError> {
         let stencils = Stencils::of(self, mesh)?;
         let refined = self.refined_for(mesh, true);
-        Ok(parallel::map(mesh.vertex_count(), |v| {
-            let (vertex, stencil) = (VertexId(v as u32), stencils.at(v));
-            match &refined {
-                Some(refined) => two_ring_normal(mesh, vertex, stencil, refined),
-                None => one_ring_normal(mesh, vertex, stencil),
+        let normal = |vertex: VertexId, side: &Side<'_>| match &refined {
+            Some(refined) => two_ring_normal(mesh, vertex, side, refined),
+            None => one_ring_normal(mesh, vertex, side),
+        };
+        let by_vertex = parallel::map(mesh.vertex_count(), |v| {
+            let vertex = VertexId(v as u32);
+            stencils.at(v).average(|side| normal(vertex, side)).to_array()
+        });
+        let mut normals = SidedNormals::new(by_vertex);
+        for &vertex in &stencils.tagged {
+            let stencil = stencils.at(vertex.index());
+            if stencil.side_count() > 1 {
+                let outgoing: Vec<HalfEdgeId> = mesh.topology().outgoing_ring(vertex).collect();
+                for side in stencil.sides() {
+                    let faces = (0..side.faces).map(|face| outgoing[(side.first + face) % outgoing.len()]);
+                    normals.add_side(vertex, faces, normal(vertex, &side).to_array());
+                }
             }
-        }))
+        }
+        Ok(normals.finished())
+    }
+
+    /// Limit normal at the vertex that `corner` leaves, on the side of its face, as [`Self::sided_normals`] gives it.
+    ///
+    /// # Errors
+    /// The scheme has no limit at the shape of its ring.
+    pub fn normal_at(&self, mesh: &Mesh, corner: HalfEdgeId) -> Result<[f64; 3], LimitError> {
+        let vertex = mesh.topology().origin(corner);
+        let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
+        let around = mesh.topology().outgoing_ring(vertex);
+        let slot = around.clone().position(|h| h == corner).unwrap_or(0);
+        let faces = around.count();
+        let is_within = |side: &Side<'_>| (slot + faces - side.first) % faces < side.faces;
+        let normal = stencil.sides().find(is_within).map(|side| self.side_normal(mesh, vertex, &side));
+        Ok(normal.unwrap_or(DVec3::ZERO).to_array())
     }
 
     /// Limit position of one vertex.
@@ -67,12 +107,13 @@ impl LimitTable<'_> {
     /// # Errors
     /// The scheme has no limit at the shape of its ring.
     pub fn position(&self, mesh: &Mesh, vertex: VertexId) -> Result<[f64; 3], LimitError> {
-        let stencil = self.stencil(mesh.ring_shape(vertex))?;
+        let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
         Ok(match self.scheme().support() {
-            Support::TwoRing if !interpolates(&stencil) => {
-                two_ring_position(mesh, vertex, &stencil, &Masks::on_demand(mesh, self.scheme()))
+            Support::TwoRing if !stays(stencil.position()) => {
+                let masks = Masks::on_demand(mesh, self.scheme());
+                two_ring_position(mesh, vertex, stencil.position(), &masks)
             }
-            _ => one_ring_position(mesh, vertex, &stencil),
+            _ => one_ring_position(mesh, vertex, stencil.position()),
         })
     }
 
@@ -81,13 +122,31 @@ impl LimitTable<'_> {
     /// # Errors
     /// The scheme has no limit at the shape of its ring.
     pub fn normal(&self, mesh: &Mesh, vertex: VertexId) -> Result<[f64; 3], LimitError> {
-        let stencil = self.stencil(mesh.ring_shape(vertex))?;
-        Ok(match self.scheme().support() {
-            Support::TwoRing => {
-                two_ring_normal(mesh, vertex, &stencil, &Masks::on_demand(mesh, self.scheme()))
-            }
-            Support::OneRing => one_ring_normal(mesh, vertex, &stencil),
-        })
+        let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
+        Ok(stencil.average(|side| self.side_normal(mesh, vertex, side)).to_array())
+    }
+
+    fn side_normal(&self, mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> DVec3 {
+        match self.scheme().support() {
+            Support::TwoRing => two_ring_normal(mesh, vertex, side, &Masks::on_demand(mesh, self.scheme())),
+            Support::OneRing => one_ring_normal(mesh, vertex, side),
+        }
+    }
+
+    /// The stencil of one vertex.
+    fn stencil_at(
+        &self,
+        mesh: &Mesh,
+        sharpness: &Sharpness<'_>,
+        vertex: VertexId,
+    ) -> Result<Stencil, LimitError> {
+        if !sharpness.is_tagged(vertex) {
+            return Ok(Stencil::Plain(self.stencil(mesh.ring_shape(vertex))?));
+        }
+        let ring = sharpness.ring(vertex);
+        // Two-ring stencils are for the neighbourhood after one refinement.
+        let ring = if self.scheme().support() == Support::TwoRing { ring.refined() } else { ring };
+        Ok(Stencil::Sharp(self.sharp_stencil(&ring)?))
     }
 
     /// The mesh refined once where the scheme's stencils are for that.
@@ -96,28 +155,99 @@ impl LimitTable<'_> {
     }
 }
 
+/// The weights of one vertex.
+enum Stencil {
+    /// By the shape of its ring.
+    Plain(Arc<LimitStencil>),
+    /// By the sharpness of its edges.
+    Sharp(Arc<SharpStencil>),
+}
+
+/// One side of a vertex's ring: its first slot and number of faces, and the tangents' weights.
+struct Side<'s> {
+    first: usize,
+    faces: usize,
+    tangents: &'s [[f64; 2]],
+}
+
+impl Stencil {
+    #[inline]
+    fn position(&self) -> &[f64] {
+        match self {
+            Self::Plain(stencil) => &stencil.position,
+            Self::Sharp(stencil) => &stencil.position,
+        }
+    }
+
+    #[inline]
+    fn side_count(&self) -> usize {
+        if let Self::Sharp(stencil) = self { stencil.sides.len() } else { 1 }
+    }
+
+    #[inline]
+    fn side(&self, i: usize) -> Side<'_> {
+        match self {
+            Self::Plain(stencil) => {
+                Side { first: 0, faces: stencil.shape.faces() as usize, tangents: &stencil.tangents }
+            }
+            Self::Sharp(stencil) => {
+                let side = &stencil.sides[i];
+                Side { first: side.first(), faces: side.faces(), tangents: &side.tangents }
+            }
+        }
+    }
+
+    fn sides(&self) -> impl Iterator<Item = Side<'_>> {
+        (0..self.side_count()).map(|i| self.side(i))
+    }
+
+    /// The normal of the only side, or the average over all, of unit length.
+    #[inline]
+    fn average(&self, normal: impl Fn(&Side<'_>) -> DVec3) -> DVec3 {
+        if self.side_count() == 1 {
+            return normal(&self.side(0));
+        }
+        unit_or_zero(self.sides().map(|side| normal(&side)).sum())
+    }
+}
+
 /// The stencils of a mesh's vertices, looked up once for each shape that occurs.
 struct Stencils {
-    list: Vec<Arc<LimitStencil>>,
+    list: Vec<Stencil>,
     by_vertex: Vec<u32>,
+    /// The vertices that are sharp or have sharp edges inside the mesh.
+    tagged: Vec<VertexId>,
 }
 
 impl Stencils {
     fn of(table: &LimitTable<'_>, mesh: &Mesh) -> Result<Self, LimitError> {
-        let RingShapes { distinct, by_vertex } = RingShapes::of(mesh);
-        let list = distinct.into_iter().map(|shape| table.stencil(shape)).collect::<Result<_, _>>()?;
-        Ok(Self { list, by_vertex })
+        let RingShapes { distinct, mut by_vertex } = RingShapes::of(mesh);
+        let plain = distinct.into_iter().map(|shape| Ok(Stencil::Plain(table.stencil(shape)?)));
+        let mut list = plain.collect::<Result<Vec<_>, LimitError>>()?;
+        let sharpness = Sharpness::of(mesh);
+        let tagged: Vec<VertexId> = sharpness.tagged_vertices().collect();
+        let sharp = parallel::map(tagged.len(), |i| table.stencil_at(mesh, &sharpness, tagged[i]));
+        for (&vertex, stencil) in tagged.iter().zip(sharp) {
+            by_vertex[vertex.index()] = list.len() as u32;
+            list.push(stencil?);
+        }
+        Ok(Self { list, by_vertex, tagged })
     }
 
     #[inline]
-    fn at(&self, vertex: usize) -> &LimitStencil {
+    fn at(&self, vertex: usize) -> &Stencil {
         &self.list[self.by_vertex[vertex] as usize]
+    }
+
+    /// Whether any vertex has another limit position than its own.
+    fn any_moves(&self) -> bool {
+        self.list.iter().any(|stencil| !stays(stencil.position()))
     }
 }
 
 /// Whether the limit position is the vertex itself.
-fn interpolates(stencil: &LimitStencil) -> bool {
-    stencil.position[0] == 1.0 && stencil.position[1..].iter().all(|&weight| weight == 0.0)
+fn stays(weights: &[f64]) -> bool {
+    weights[0] == 1.0 && weights[1..].iter().all(|&weight| weight == 0.0)
 }
 
 /// Sums of two tangents and the size of what entered them.
@@ -131,6 +261,10 @@ struct Tangents {
 impl Tangents {
     #[inline]
     fn add(&mut self, weights: [f64; 2], difference: DVec3) {
+        // Points of another side of a sharp edge.
+        if weights == [0.0; 2] {
+            return;
+        }
         self.first += weights[0] * difference;
         self.second += weights[1] * difference;
         self.greatest = self.greatest.max(difference.abs().max_element());
@@ -168,85 +302,74 @@ fn point(mesh: &Mesh, vertex: VertexId) -> DVec3 {
     vector(mesh.positions()[vertex.index()])
 }
 
-fn one_ring_position(mesh: &Mesh, vertex: VertexId, stencil: &LimitStencil) -> [f64; 3] {
-    let ring = mesh.topology().ring(vertex).zip(&stencil.position[1..]);
-    let start = stencil.position[0] * point(mesh, vertex);
+fn one_ring_position(mesh: &Mesh, vertex: VertexId, weights: &[f64]) -> [f64; 3] {
+    let ring = mesh.topology().ring(vertex).zip(&weights[1..]);
+    let start = weights[0] * point(mesh, vertex);
     ring.fold(start, |sum, (neighbour, &weight)| sum + weight * point(mesh, neighbour)).to_array()
 }
 
-fn one_ring_normal(mesh: &Mesh, vertex: VertexId, stencil: &LimitStencil) -> [f64; 3] {
+fn one_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> DVec3 {
     let centre = point(mesh, vertex);
     let mut tangents = Tangents::default();
-    for (neighbour, &weights) in mesh.topology().ring(vertex).zip(&stencil.tangents) {
+    for (neighbour, &weights) in mesh.topology().ring(vertex).zip(side.tangents) {
         tangents.add(weights, point(mesh, neighbour) - centre);
     }
-    tangents.normal().unwrap_or_else(|| face_average(mesh, vertex)).to_array()
+    tangents.normal().unwrap_or_else(|| face_average(mesh, vertex, side))
 }
 
-fn two_ring_position(
-    mesh: &Mesh,
-    vertex: VertexId,
-    stencil: &LimitStencil,
-    refined: &impl Refined,
-) -> [f64; 3] {
-    let mut sum = stencil.position[0] * refined.moved(vertex);
-    for_each_of_two_ring(mesh.topology(), vertex, stencil.shape, refined, |i, point| {
-        sum += stencil.position[i + 1] * point;
-    });
+fn two_ring_position(mesh: &Mesh, vertex: VertexId, weights: &[f64], refined: &impl Refined) -> [f64; 3] {
+    let mut sum = weights[0] * refined.moved(vertex);
+    for_each_of_two_ring(mesh.topology(), vertex, refined, |i, point| sum += weights[i + 1] * point);
     sum.to_array()
 }
 
-fn two_ring_normal(
-    mesh: &Mesh,
-    vertex: VertexId,
-    stencil: &LimitStencil,
-    refined: &impl Refined,
-) -> [f64; 3] {
+fn two_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>, refined: &impl Refined) -> DVec3 {
     let mut tangents = Tangents::default();
-    if !stencil.tangents.is_empty() {
+    if !side.tangents.is_empty() {
         let centre = refined.moved(vertex);
-        for_each_of_two_ring(mesh.topology(), vertex, stencil.shape, refined, |i, point| {
-            tangents.add(stencil.tangents[i], point - centre);
+        for_each_of_two_ring(mesh.topology(), vertex, refined, |i, point| {
+            tangents.add(side.tangents[i], point - centre);
         });
     }
-    tangents.normal().unwrap_or_else(|| face_average(mesh, vertex)).to_array()
+    tangents.normal().unwrap_or_else(|| face_average(mesh, vertex, side))
 }
 
 /// Calls `visit` for the points around `vertex` after one refinement, numbered as in the stencil's tangents.
 fn for_each_of_two_ring(
     topology: &Topology,
     vertex: VertexId,
-    shape: RingShape,
     refined: &impl Refined,
     mut visit: impl FnMut(usize, DVec3),
 ) {
-    let k = shape.valence as usize;
+    let (valence, open) = topology.valence_and_openness(vertex);
+    let k = valence as usize;
     for (j, h) in topology.outgoing_ring(vertex).enumerate() {
         visit(j, refined.on_edge(h));
         visit(k + j, refined.moved(topology.target(h)));
         visit(2 * k + j, refined.on_edge(h.next()));
-        if shape.open && j + 2 == k {
+        if open && j + 2 == k {
             visit(k - 1, refined.on_edge(h.previous()));
             visit(2 * k - 1, refined.moved(topology.opposite(h)));
         }
     }
 }
 
-/// The area-weighted average of the normals of the faces at `vertex`, of unit length; zero where it vanishes.
-fn face_average(mesh: &Mesh, vertex: VertexId) -> DVec3 {
+/// The area-weighted average of the normals of a side's faces at `vertex`, of unit length; zero where it vanishes.
+fn face_average(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> DVec3 {
     let (topology, centre) = (mesh.topology(), point(mesh, vertex));
-    let sides = || {
-        topology
-            .outgoing_ring(vertex)
-            .map(|h| (point(mesh, topology.target(h)) - centre, point(mesh, topology.opposite(h)) - centre))
+    let faces = || {
+        let twice = topology.outgoing_ring(vertex).chain(topology.outgoing_ring(vertex));
+        let from = |v: VertexId| point(mesh, v) - centre;
+        let ends = move |h: HalfEdgeId| (from(topology.target(h)), from(topology.opposite(h)));
+        twice.skip(side.first).take(side.faces).map(ends)
     };
     // Scaled to the ring's size, so that squares neither vanish nor overflow.
-    let size = sides().fold(0.0, |size: f64, (a, b)| size.max(a.abs().max(b.abs()).max_element()));
+    let size = faces().fold(0.0, |size: f64, (a, b)| size.max(a.abs().max(b.abs()).max_element()));
     if size == 0.0 || !size.is_finite() {
         return DVec3::ZERO;
     }
     let (mut sum, mut areas) = (DVec3::ZERO, 0.0);
-    for (a, b) in sides() {
+    for (a, b) in faces() {
         let normal = (a / size).cross(b / size);
         sum += normal;
         areas += normal.length();

@@ -98,18 +98,22 @@
 //! ```
 
 mod closed;
+mod dart;
 mod eigen;
 mod error;
 mod evaluate;
 mod neighbourhood;
 mod open;
 mod refined;
+mod sharp;
+mod sides;
 mod stencil;
 mod table;
-mod weights;
 
 pub use error::LimitError;
 pub use neighbourhood::{difference_matrix, ring_matrix};
+pub use sharp::{SharpSide, SharpStencil};
+pub use sides::SidedNormals;
 pub use stencil::{LimitStencil, TangentPlane};
 pub use table::LimitTable;
 

@@ -2,7 +2,8 @@
 //! scheme, from its masks alone.
 //!
 //! The central vertex has the ring shape in question; every other vertex is regular, as all vertices around it
-//! are after one refinement. Points are numbered as follows, with k the valence and f the number of faces:
+//! are after one refinement. Where edges at the vertex are sharp, they go on straight beyond their other ends, and
+//! so do the rows. Points are numbered as follows, with k the valence and f the number of faces:
 //!
 //! ```text
 //! 0                 the vertex V
@@ -15,8 +16,8 @@
 //! edge points of the link edges P_j P_{j+1}.
 
 use super::LimitError;
-use super::weights::{Ring, edge_shape, edge_weights, vertex_weights};
-use crate::ring::RingShape;
+use crate::masks::views::{LabelledRing, edge_views, vertex_views};
+use crate::ring::{RingShape, SharpRing};
 use crate::scheme::{Scheme, Support};
 
 /// How far the weights of a mask may sum from 1: rounding of a thousand weights stays well below.
@@ -27,11 +28,13 @@ const SUM_TOLERANCE: f64 = 1e-10;
 const NOISE: f64 = 1e-14;
 
 /// A vertex with regular surroundings, seen by one scheme.
-#[derive(Clone, Copy)]
 pub(super) struct Neighbourhood<'s> {
     pub(super) scheme: &'s dyn Scheme,
+    /// The shape of the ring; where it is cut into sectors, that of all of it.
     pub(super) shape: RingShape,
     pub(super) support: Support,
+    /// The ring with the sharpness of its edges.
+    sharp: SharpRing,
 }
 
 impl<'s> Neighbourhood<'s> {
@@ -48,7 +51,16 @@ impl<'s> Neighbourhood<'s> {
             );
             return Err(LimitError::unsuitable(scheme, shape, what));
         }
-        Ok(Self { scheme, shape, support: scheme.support() })
+        Ok(Self { scheme, shape, support: scheme.support(), sharp: SharpRing::of(shape) })
+    }
+
+    /// The neighbourhood of a vertex whose edges have some sharpness.
+    ///
+    /// # Errors
+    /// As for [`Self::new`].
+    pub(super) fn of_sharp(scheme: &'s dyn Scheme, sharp: SharpRing) -> Result<Self, LimitError> {
+        let shape = RingShape { open: sharp.open, ..RingShape::interior(sharp.spokes.len() as u32) };
+        Ok(Self { sharp, ..Self::new(scheme, shape)? })
     }
 
     pub(super) fn valence(&self) -> usize {
@@ -84,23 +96,24 @@ impl<'s> Neighbourhood<'s> {
     }
 
     /// The ring of the vertex.
-    fn central_ring(&self) -> Ring<usize> {
+    fn central_ring(&self) -> LabelledRing<usize> {
         let neighbours = (0..self.valence()).map(|j| self.ring_point(j)).collect();
-        Ring { centre: 0, shape: self.shape, neighbours }
+        LabelledRing { centre: 0, neighbours, sharp: self.sharp.clone() }
     }
 
     /// The ring of P_j, and in it the slots of V, of P_{j−1} and of P_{j+1}.
-    fn outer_ring(&self, j: usize) -> (Ring<usize>, [usize; 3]) {
+    fn outer_ring(&self, j: usize) -> (LabelledRing<usize>, [usize; 3]) {
         let k = self.valence();
         let (previous, next) = (j + k - 1, j + 1);
         let centre = self.ring_point(j);
+        let on_boundary = SharpRing::of(RingShape::boundary(4));
         if self.shape.open && j == 0 {
             let neighbours = vec![self.beyond(0), self.across(0), self.ring_point(1), 0];
-            return (Ring { centre, shape: RingShape::boundary(4), neighbours }, [3, 3, 2]);
+            return (LabelledRing { centre, neighbours, sharp: on_boundary }, [3, 3, 2]);
         }
         if self.shape.open && j == k - 1 {
             let neighbours = vec![0, self.ring_point(previous), self.across(previous), self.beyond(j)];
-            return (Ring { centre, shape: RingShape::boundary(4), neighbours }, [0, 1, 0]);
+            return (LabelledRing { centre, neighbours, sharp: on_boundary }, [0, 1, 0]);
         }
         let neighbours = vec![
             0,
@@ -110,7 +123,11 @@ impl<'s> Neighbourhood<'s> {
             self.across(j),
             self.ring_point(next),
         ];
-        (Ring { centre, shape: RingShape::interior(6), neighbours }, [0, 1, 5])
+        // A sharp edge goes on beyond its end.
+        let spoke = self.sharp.spokes[j];
+        let spokes = vec![spoke, 0.0, 0.0, spoke, 0.0, 0.0];
+        let sharp = SharpRing { open: false, vertex: 0.0, spokes };
+        (LabelledRing { centre, neighbours, sharp }, [0, 1, 5])
     }
 
     /// Row `point` of S: the weights of that point after refinement, over all points.
@@ -136,36 +153,47 @@ impl<'s> Neighbourhood<'s> {
         }
     }
 
-    fn vertex_row(&self, ring: &Ring<usize>) -> Result<Vec<f64>, LimitError> {
-        let size = self.scheme.vertex_mask(ring.shape).ring.len();
-        if size != ring.neighbours.len() {
-            let (shape, expected) = (ring.shape, ring.neighbours.len());
-            return Err(self.unsuitable(format!(
-                "the vertex mask at {shape:?} has {size} weights, expected {expected}"
-            )));
-        }
+    fn vertex_row(&self, ring: &LabelledRing<usize>) -> Result<Vec<f64>, LimitError> {
         let mut row = vec![0.0; self.len()];
         let mut outside = None;
-        vertex_weights(self.scheme, ring, |point, weight| self.add(&mut row, &mut outside, point, weight));
+        for (share, view) in vertex_views(ring) {
+            let mask = self.scheme.vertex_mask(view.shape);
+            let (size, expected) = (mask.ring.len(), view.neighbours.len());
+            if size != expected {
+                let shape = view.shape;
+                return Err(self.unsuitable(format!(
+                    "the vertex mask at {shape:?} has {size} weights, expected {expected}"
+                )));
+            }
+            for (point, weight) in view.weighted(mask.centre, &mask.ring) {
+                self.add(&mut row, &mut outside, point, share * weight);
+            }
+        }
         self.checked(row, outside)
     }
 
     fn edge_row(
         &self,
-        origin: (&Ring<usize>, usize),
-        target: (&Ring<usize>, usize),
+        origin: (&LabelledRing<usize>, usize),
+        target: (&LabelledRing<usize>, usize),
     ) -> Result<Vec<f64>, LimitError> {
-        let shape = edge_shape(origin, target);
-        let mask = self.scheme.edge_mask(shape);
-        let sizes = [mask.origin_ring.len(), mask.target_ring.len()];
-        let expected = [shape.origin.valence as usize, shape.target.valence as usize];
-        if sizes != expected {
-            return Err(self
-                .unsuitable(format!("the mask of {shape:?} has {sizes:?} weights, expected {expected:?}")));
-        }
         let mut row = vec![0.0; self.len()];
         let mut outside = None;
-        edge_weights(&mask, origin, target, |point, weight| self.add(&mut row, &mut outside, point, weight));
+        for (share, view) in edge_views(origin, target) {
+            let mask = self.scheme.edge_mask(view.shape);
+            let sizes = [mask.origin_ring.len(), mask.target_ring.len()];
+            let expected = [view.origin.neighbours.len(), view.target.neighbours.len()];
+            if sizes != expected {
+                let shape = view.shape;
+                return Err(self.unsuitable(format!(
+                    "the mask of {shape:?} has {sizes:?} weights, expected {expected:?}"
+                )));
+            }
+            let at_origin = view.origin.weighted(mask.origin, &mask.origin_ring);
+            for (point, weight) in at_origin.chain(view.target.weighted(mask.target, &mask.target_ring)) {
+                self.add(&mut row, &mut outside, point, share * weight);
+            }
+        }
         self.checked(row, outside)
     }
 

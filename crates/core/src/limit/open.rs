@@ -16,7 +16,7 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::LimitError;
-use super::eigen::{block, components, eigenvalues, join_jordan_blocks, left_eigenvector, solve_left};
+use super::eigen::{block, components, eigenvalues, join_jordan_blocks, left_vector};
 use super::neighbourhood::Neighbourhood;
 use super::stencil::{LimitStencil, TangentPlane, is_real, same_modulus};
 
@@ -56,7 +56,7 @@ pub(super) fn analyse(neighbourhood: &Neighbourhood<'_>) -> Result<LimitStencil,
         return Err(neighbourhood.unsuitable(what));
     }
     let Some((pair, plane, next)) = choose(neighbourhood, &modes) else { return Ok(bare) };
-    let vector = |mode: Mode| left_vector(&differences, &components, mode);
+    let vector = |mode: Mode| left_vector(&differences, &components, mode.component, mode.value.re);
     let (Some(along), Some(across)) = (vector(pair[0]), vector(pair[1])) else { return Ok(bare) };
     let tangents = scaled(neighbourhood, along, across);
     let eigenvalues = pair.map(|mode| mode.value.norm());
@@ -172,27 +172,6 @@ fn choose(neighbourhood: &Neighbourhood<'_>, modes: &[Mode]) -> Option<([Mode; 2
         TangentPlane::BoundaryRibbon,
         next,
     ))
-}
-
-/// The left eigenvector of D for a mode, continued from its component to all that this one depends on.
-fn left_vector(differences: &DMatrix<f64>, components: &[Vec<usize>], mode: Mode) -> Option<DVector<f64>> {
-    let eigenvalue = mode.value.re;
-    let own = &components[mode.component];
-    let mut vector = DVector::zeros(differences.nrows());
-    let start = left_eigenvector(&block(differences, own, own), eigenvalue)?;
-    own.iter().zip(start.iter()).for_each(|(&row, &weight)| vector[row] = weight);
-    // Components stand after those that they depend on: whatever this one reaches stands before it.
-    for rows in components[..mode.component].iter().rev() {
-        let columns = DMatrix::from_fn(differences.nrows(), rows.len(), |i, j| differences[(i, rows[j])]);
-        let right = -columns.tr_mul(&vector);
-        if right.iter().all(|&entry| entry == 0.0) {
-            continue;
-        }
-        let system = block(differences, rows, rows) - DMatrix::identity(rows.len(), rows.len()) * eigenvalue;
-        let solution = solve_left(&system, &right)?;
-        rows.iter().zip(solution.iter()).for_each(|(&row, &weight)| vector[row] = weight);
-    }
-    Some(vector)
 }
 
 /// Both eigenvectors in the scale that [`LimitStencil::tangent_weights`] promises.

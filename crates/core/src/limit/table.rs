@@ -1,19 +1,25 @@
 //! The table of a scheme's limit stencils by ring shape, built when first asked for.
 
 use core::fmt;
+use core::hash::Hash;
 use std::collections::HashMap;
 use std::sync::{Arc, PoisonError, RwLock};
 
 use super::neighbourhood::Neighbourhood;
+use super::sharp::{SharpKey, SharpStencil};
 use super::stencil::LimitStencil;
-use super::{LimitError, closed, open};
+use super::{LimitError, closed, dart, open};
 use crate::ring::RingShape;
 use crate::scheme::Scheme;
+
+/// What is known of each ring.
+type Known<K, S> = RwLock<HashMap<K, Result<Arc<S>, LimitError>>>;
 
 /// Limit stencils of one scheme, by the shape of the ring; may be shared between threads.
 pub struct LimitTable<'s> {
     scheme: &'s dyn Scheme,
-    stencils: RwLock<HashMap<RingShape, Result<Arc<LimitStencil>, LimitError>>>,
+    stencils: Known<RingShape, LimitStencil>,
+    sharp: Known<SharpKey, SharpStencil>,
 }
 
 impl fmt::Debug for LimitTable<'_> {
@@ -25,7 +31,7 @@ impl fmt::Debug for LimitTable<'_> {
 impl<'s> LimitTable<'s> {
     /// An empty table for `scheme`; stencils are built when first asked for.
     pub fn new(scheme: &'s dyn Scheme) -> Self {
-        Self { scheme, stencils: RwLock::default() }
+        Self { scheme, stencils: RwLock::default(), sharp: RwLock::default() }
     }
 
     /// The scheme.
@@ -38,16 +44,37 @@ impl<'s> LimitTable<'s> {
     /// # Errors
     /// The ring has fewer than two edges, or the scheme's masks break its contract there.
     pub fn stencil(&self, shape: RingShape) -> Result<Arc<LimitStencil>, LimitError> {
-        if let Some(known) = self.stencils.read().unwrap_or_else(PoisonError::into_inner).get(&shape) {
-            return known.clone();
-        }
-        let built = analyse(self.scheme, shape).map(Arc::new);
-        let mut stencils = self.stencils.write().unwrap_or_else(PoisonError::into_inner);
-        stencils.entry(shape).or_insert(built).clone()
+        known(&self.stencils, shape, || analyse(self.scheme, shape).map(Arc::new))
     }
+
+    /// The stencil of a ring with sharp edges, built unless it is known.
+    pub(super) fn known_sharp(
+        &self,
+        key: SharpKey,
+        build: impl FnOnce() -> Result<Arc<SharpStencil>, LimitError>,
+    ) -> Result<Arc<SharpStencil>, LimitError> {
+        known(&self.sharp, key, build)
+    }
+}
+
+/// What is known for a key, built if nothing is.
+fn known<K: Eq + Hash, S>(
+    all: &Known<K, S>,
+    key: K,
+    build: impl FnOnce() -> Result<Arc<S>, LimitError>,
+) -> Result<Arc<S>, LimitError> {
+    if let Some(known) = all.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
+        return known.clone();
+    }
+    let built = build();
+    all.write().unwrap_or_else(PoisonError::into_inner).entry(key).or_insert(built).clone()
 }
 
 fn analyse(scheme: &dyn Scheme, shape: RingShape) -> Result<LimitStencil, LimitError> {
     let neighbourhood = Neighbourhood::new(scheme, shape)?;
-    if shape.open { open::analyse(&neighbourhood) } else { closed::analyse(&neighbourhood) }
+    match shape {
+        RingShape { open: true, .. } => open::analyse(&neighbourhood),
+        RingShape { dart: true, .. } => dart::analyse(&neighbourhood),
+        _ => closed::analyse(&neighbourhood),
+    }
 }

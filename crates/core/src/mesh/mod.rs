@@ -12,13 +12,14 @@ mod soup;
 mod tags;
 mod topology;
 
+pub use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule};
 pub use build::{BuildOptions, Weld};
 pub use diagnosis::{Diagnosis, Finding};
 pub use junctions::{Groups, Junctions};
 pub(crate) use ring_shapes::RingShapes;
-pub use sharpness::{Sector, Sharpness, VertexRule};
+pub use sharpness::{Sector, Sharpness};
 pub use soup::{PolygonFaces, PolygonSoup};
-pub use tags::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
+pub use tags::{CornerTag, CreaseTag, Tags};
 pub(crate) use topology::{MAX_FACES, NONE, outgoing_half_edges};
 pub use topology::{RingNeighbours, Topology};
 
@@ -233,13 +234,17 @@ impl Mesh {
         &self.tags
     }
 
-    /// Replaces the tags.
+    /// Replaces the tags. Where sheets were cut apart, copies of one vertex become equally sharp, and those that
+    /// must be corners for the sheets to stay together remain so.
     ///
     /// # Errors
     /// A tag names a vertex that does not exist or an edge that no face has.
-    pub fn with_tags(mut self, tags: Tags) -> Result<Self, MeshError> {
+    pub fn with_tags(mut self, mut tags: Tags) -> Result<Self, MeshError> {
         tags.check(&self.topology)?;
-        self.tags = tags;
+        let cut = self.junctions.vertices.iter().flatten().copied();
+        let fixed: Vec<u32> = cut.filter(|&v| self.tags.is_corner(VertexId(v))).collect();
+        tags.add_corners(fixed.into_iter().map(|vertex| CornerTag { vertex, sharpness: f64::INFINITY }));
+        self.tags = tags.joined(&self.topology, &self.junctions);
         Ok(self)
     }
 

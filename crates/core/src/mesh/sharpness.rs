@@ -2,29 +2,11 @@
 //! edges cut its ring.
 //!
 //! Takes a mesh with its tags; answers for single half-edges and vertices. The classification is OpenSubdiv's: it
-//! goes by the number of sharp edges at a vertex, those of a boundary included.
-//!
-//! At a vertex with two sharp edges or more, each part of the ring between two of them refines as a boundary's open
-//! ring would: the rules on sharp edges use points on sharp edges only, and all others points of their own side.
-//! Masks and limits of such a [`Sector`] are therefore those of its [`RingShape`].
+//! goes by the number of sharp edges at a vertex, those of a boundary included (see [`SharpRing`]).
 
-use super::{INFINITELY_SHARP, Mesh, Topology};
+use super::{Mesh, Topology};
 use crate::index::{HalfEdgeId, VertexId};
-use crate::ring::RingShape;
-
-/// Which rule a vertex follows.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-#[non_exhaustive]
-pub enum VertexRule {
-    /// No sharp edge.
-    Smooth,
-    /// One sharp edge, which ends here: the vertex itself moves as if it were smooth.
-    Dart,
-    /// Two sharp edges: the vertex stays on the curve that they form. Boundary vertices among them.
-    Crease,
-    /// Three sharp edges or more, or a tag of its own: the vertex keeps its place.
-    Corner,
-}
+use crate::ring::{INFINITELY_SHARP, RingSector, RingShape, SharpRing, VertexRule};
 
 /// One side of the sharp edges at a vertex; all of the ring where there are fewer than two of them.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -123,6 +105,13 @@ impl<'m> Sharpness<'m> {
         self.tagged.get(vertex.index() / 64).is_some_and(|word| word >> (vertex.index() % 64) & 1 != 0)
     }
 
+    /// The vertices for which [`Self::is_tagged`] holds, ascending.
+    pub fn tagged_vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
+        let vertices = (0..self.topology.vertex_count() as u32).map(VertexId);
+        let none = self.is_empty();
+        vertices.take_while(move |_| !none).filter(|&v| self.is_tagged(v))
+    }
+
     /// The sharpness of the edge of `h`: infinite on a boundary, 0 where it is smooth.
     #[inline]
     pub fn edge(&self, h: HalfEdgeId) -> f64 {
@@ -151,53 +140,30 @@ impl<'m> Sharpness<'m> {
         self.topology.outgoing_ring(vertex).map(|h| self.edge(h)).chain(boundary)
     }
 
-    /// The number of sharp edges at `vertex`, those of a boundary included.
-    pub fn sharp_edges(&self, vertex: VertexId) -> usize {
-        if !self.is_tagged(vertex) {
-            return 2 * usize::from(self.topology.is_boundary(vertex));
-        }
-        self.spokes(vertex).filter(|&sharpness| sharpness > 0.0).count()
+    /// The ring of `vertex` with the sharpness of its edges.
+    pub fn ring(&self, vertex: VertexId) -> SharpRing {
+        let open = self.topology.is_boundary(vertex);
+        SharpRing { open, vertex: self.vertex(vertex), spokes: self.spokes(vertex).collect() }
     }
 
     /// The rule that `vertex` follows, as sharp as everything is now.
     pub fn rule(&self, vertex: VertexId) -> VertexRule {
-        rule(self.vertex(vertex), self.sharp_edges(vertex))
+        match self.is_tagged(vertex) {
+            true => self.ring(vertex).rule(),
+            false if self.topology.is_boundary(vertex) => VertexRule::Crease,
+            false => VertexRule::Smooth,
+        }
     }
 
     /// The sectors of the ring of `vertex`, counter-clockwise, as sharp as everything is now.
     pub fn sectors(&self, vertex: VertexId) -> Vec<Sector> {
-        let topology = self.topology;
-        let corner = self.rule(vertex) == VertexRule::Corner;
-        let is_sharp = |h: HalfEdgeId| match self.is_tagged(vertex) {
-            true => self.edge(h) > 0.0,
-            false => topology.twin(h).is_none(),
+        let sectors = self.ring(vertex).sectors();
+        let mut outgoing = self.topology.outgoing_ring(vertex).enumerate();
+        let place = |sector: &RingSector| {
+            let (_, first) = outgoing.find(|&(slot, _)| slot == sector.first)?;
+            Some(Sector { first, shape: sector.shape })
         };
-        let ring = (0..).zip(topology.outgoing_ring(vertex));
-        let sharp: Vec<(u32, HalfEdgeId)> = ring.filter(|&(_, h)| is_sharp(h)).collect();
-        let (valence, open) = topology.valence_and_openness(vertex);
-        if !open && sharp.len() < 2 {
-            let first = sharp.first().map_or(topology.outgoing(vertex), |&(_, h)| h);
-            let shape = RingShape { corner, dart: sharp.len() == 1, ..RingShape::interior(valence) };
-            return vec![Sector { first, shape }];
-        }
-        let end = if open { valence - 1 } else { valence + sharp.first().map_or(0, |&(slot, _)| slot) };
-        let ends = sharp.iter().skip(1).map(|&(slot, _)| slot).chain([end]);
-        let sector = |(&(slot, first), end): (&(u32, HalfEdgeId), u32)| {
-            let shape = RingShape { corner, ..RingShape::boundary(end - slot + 1) };
-            Sector { first, shape }
-        };
-        sharp.iter().zip(ends).map(sector).collect()
-    }
-}
-
-/// The rule of a vertex of the given sharpness with so many sharp edges.
-pub(crate) fn rule(sharpness: f64, sharp_edges: usize) -> VertexRule {
-    match sharp_edges {
-        _ if sharpness > 0.0 => VertexRule::Corner,
-        0 => VertexRule::Smooth,
-        1 => VertexRule::Dart,
-        2 => VertexRule::Crease,
-        _ => VertexRule::Corner,
+        sectors.iter().filter_map(place).collect()
     }
 }
 

@@ -1,10 +1,10 @@
 //! Crease and corner tags with their sharpness.
 
-use super::{MeshError, Topology};
-use crate::index::VertexId;
+use std::collections::BTreeMap;
 
-/// Sharpness from which a tag never fades: OpenSubdiv's convention for files.
-pub const INFINITELY_SHARP: f64 = 10.0;
+use super::{Junctions, MeshError, Topology};
+use crate::index::VertexId;
+use crate::ring::INFINITELY_SHARP;
 
 /// An edge that is to stay sharp.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -24,10 +24,10 @@ pub struct CornerTag {
     pub sharpness: f64,
 }
 
-/// The tags of a mesh.
+/// The tags of a mesh: what is to stay sharp where its surface would be smooth.
 ///
-/// Refinement honours corners of infinite sharpness. It hands creases and semi-sharp corners on to the pieces of
-/// what they name, but smooths across them.
+/// The rules are OpenSubdiv's (see [`crate::ring::SharpRing`]). Refinement hands the tags on to the pieces of what
+/// they name, less sharp by one; several tags on one edge count as the sharpest of them.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Tags {
     /// Sharp edges.
@@ -51,6 +51,44 @@ impl Tags {
         self.corners
             .binary_search_by_key(&vertex.0, |tag| tag.vertex)
             .is_ok_and(|i| self.corners[i].sharpness >= INFINITELY_SHARP)
+    }
+
+    /// Adds corners; where a vertex has one already, the sharper counts.
+    pub(crate) fn add_corners(&mut self, corners: impl IntoIterator<Item = CornerTag>) {
+        self.corners.extend(corners);
+        self.corners
+            .sort_unstable_by(|a, b| a.vertex.cmp(&b.vertex).then(b.sharpness.total_cmp(&a.sharpness)));
+        self.corners.dedup_by_key(|tag| tag.vertex);
+    }
+
+    /// The tags with the same outcome for all copies of a vertex that was cut: each is as sharp as the sharpest, and
+    /// where an edge inside one of the sheets is sharp, which makes its copy a corner, all are corners for a level
+    /// longer than that lasts.
+    pub(crate) fn joined(mut self, topology: &Topology, junctions: &Junctions) -> Self {
+        if self.is_empty() || junctions.vertices.is_empty() {
+            return self;
+        }
+        let mut sharpest: BTreeMap<u32, f64> = BTreeMap::new();
+        let mut sharpen = |vertex: u32, sharpness: f64| {
+            let most = sharpest.entry(vertex).or_insert(0.0);
+            *most = most.max(sharpness);
+        };
+        self.corners.iter().for_each(|tag| sharpen(tag.vertex, tag.sharpness));
+        for tag in self.creases.iter().filter(|tag| tag.sharpness > 0.0) {
+            let [a, b] = tag.vertices.map(VertexId);
+            let is_inside = topology.edge_between(a, b).is_some_and(|h| topology.twin(h).is_some());
+            if is_inside {
+                // By then the last fraction of the edge has faded, whose share differs from sheet to sheet.
+                tag.vertices.iter().for_each(|&v| sharpen(v, tag.sharpness.ceil() + 1.0));
+            }
+        }
+        let most = |group: &[u32]| group.iter().filter_map(|v| sharpest.get(v)).copied().fold(0.0, f64::max);
+        let corners = junctions.vertices.iter().map(|group| (group, most(group))).filter(|&(_, s)| s > 0.0);
+        let corners: Vec<CornerTag> = corners
+            .flat_map(|(group, sharpness)| group.iter().map(move |&vertex| CornerTag { vertex, sharpness }))
+            .collect();
+        self.add_corners(corners);
+        self
     }
 
     /// Checks that every tag names something that exists, with a sharpness that is a number ≥ 0.

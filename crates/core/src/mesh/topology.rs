@@ -139,7 +139,7 @@ impl Topology {
 
     /// The outgoing half-edges of `vertex`, counter-clockwise: one for each face.
     #[inline]
-    pub fn outgoing_ring(&self, vertex: VertexId) -> impl Iterator<Item = HalfEdgeId> + use<'_> {
+    pub fn outgoing_ring(&self, vertex: VertexId) -> impl Iterator<Item = HalfEdgeId> + Clone + use<'_> {
         let first = self.outgoing(vertex);
         core::iter::successors(Some(first), move |h| self.twin(h.previous()).filter(|&next| next != first))
     }

@@ -26,7 +26,8 @@ pub(super) fn advance(
     split.choose_diagonals(mesh, &numbered, &positions);
     let junctions = Junctions { vertices, edges: edge_groups(mesh, &split, &numbered) };
     let topology = numbered.connect(mesh, &split);
-    Ok(Mesh::from_parts(topology, positions, refined_tags(mesh, &split, &numbered), junctions))
+    let tags = refined_tags(mesh, &split, &numbered, moves);
+    Ok(Mesh::from_parts(topology, positions, tags, junctions))
 }
 
 /// Old vertices, moved or not, and then the new ones.

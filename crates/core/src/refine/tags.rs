@@ -2,13 +2,23 @@
 
 use super::split::{SplitEdges, SplitTopology};
 use crate::index::VertexId;
-use crate::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Mesh, Tags};
+use crate::mesh::{CornerTag, CreaseTag, Mesh, Tags};
+use crate::ring::faded;
 
 /// The tags after a step: both halves of a split edge take over its crease, and sharpness falls by one where a tag
-/// does not last for ever. Old vertices keep their numbers.
-pub(super) fn refined_tags(mesh: &Mesh, split: &SplitEdges, numbered: &SplitTopology) -> Tags {
+/// does not last for ever. `moves` says which old vertices take their new position; those that wait for it stay as
+/// sharp as they are. Old vertices keep their numbers.
+pub(super) fn refined_tags(
+    mesh: &Mesh,
+    split: &SplitEdges,
+    numbered: &SplitTopology,
+    moves: Option<&[bool]>,
+) -> Tags {
     let tags = mesh.tags();
-    let corner = |tag: &CornerTag| Some(CornerTag { sharpness: less_sharp(tag.sharpness)?, ..*tag });
+    let corner = |tag: &CornerTag| match moves {
+        Some(moves) if !moves[tag.vertex as usize] => Some(*tag),
+        _ => Some(CornerTag { sharpness: less_sharp(tag.sharpness)?, ..*tag }),
+    };
     let creases = tags.creases.iter().flat_map(|crease| {
         let [a, b] = crease.vertices;
         let middle = mesh
@@ -27,8 +37,5 @@ pub(super) fn refined_tags(mesh: &Mesh, split: &SplitEdges, numbered: &SplitTopo
 
 /// The sharpness one level on; `None` once the tag has faded.
 fn less_sharp(sharpness: f64) -> Option<f64> {
-    if sharpness >= INFINITELY_SHARP {
-        return Some(sharpness);
-    }
-    Some(sharpness - 1.0).filter(|&left| left > 0.0)
+    Some(faded(sharpness)).filter(|&left| left > 0.0)
 }

@@ -153,7 +153,7 @@ fn assemble(soup: &PolygonSoup, mut faces: Faces, mut kept: Vec<u32>, diagnosis:
         positions.extend(position);
     }
     let maps = VertexMaps { from_input: &kept, vertex_count, copied: &copied, middles: &middles };
-    let tags = retag::retag(soup, &topology, &maps, &corners, diagnosis);
+    let tags = retag::retag(soup, &topology, &maps, &corners, diagnosis).joined(&topology, &junctions);
     Mesh::from_parts(topology, positions, tags, junctions)
 }
 

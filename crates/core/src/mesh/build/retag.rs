@@ -54,9 +54,9 @@ pub(super) fn retag(
             }
         }
     }
-    corners.sort_unstable_by(|a, b| a.vertex.cmp(&b.vertex).then(b.sharpness.total_cmp(&a.sharpness)));
-    corners.dedup_by_key(|tag| tag.vertex);
-    Tags { creases, corners }
+    let mut tags = Tags { creases, corners: Vec::new() };
+    tags.add_corners(corners);
+    tags
 }
 
 /// A crease between two vertices before cutting (the lower first), its sharpness and its place in the input.

@@ -3,6 +3,11 @@
 //! Rings are listed counter-clockwise. The ring of a boundary vertex starts and ends at its two boundary
 //! neighbours; the ring of an interior vertex starts anywhere, and for an edge at that edge.
 
+mod sharp;
+
+pub(crate) use sharp::faded;
+pub use sharp::{INFINITELY_SHARP, RingSector, SharpRing, VertexRule};
+
 /// Which rules a vertex follows.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 #[non_exhaustive]

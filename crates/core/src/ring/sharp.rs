@@ -1,0 +1,125 @@
+//! A one-ring with the sharpness of its edges: which rule its vertex follows, the sectors that sharp edges cut it
+//! into, and how it is after refinements.
+//!
+//! The rules are OpenSubdiv's: a vertex goes by the number of its sharp edges, those of a boundary included.
+//! Sharpness falls by one with each refinement and is gone at 0; where it falls from 1 or less, the points of that
+//! refinement lie between those of the sharp and of the faded rules.
+//!
+//! At a vertex with two sharp edges or more, each part of the ring between two of them refines as a boundary's open
+//! ring would: the rules on sharp edges use points on sharp edges only, and all others points of their own side.
+//! Masks and limits of such a sector are therefore those of its [`RingShape`].
+
+use super::RingShape;
+
+/// Sharpness from which nothing ever fades: OpenSubdiv's convention for files.
+pub const INFINITELY_SHARP: f64 = 10.0;
+
+/// Which rule a vertex follows.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[non_exhaustive]
+pub enum VertexRule {
+    /// No sharp edge.
+    Smooth,
+    /// One sharp edge, which ends here: the vertex itself moves as if it were smooth.
+    Dart,
+    /// Two sharp edges: the vertex stays on the curve that they form. Boundary vertices among them.
+    Crease,
+    /// Three sharp edges or more, or sharp itself: the vertex keeps its place.
+    Corner,
+}
+
+/// A part of a ring between two sharp edges; all of a closed ring with fewer than two.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct RingSector {
+    /// The slot of its first edge, which is sharp but in a ring without sharp edges.
+    pub first: usize,
+    /// Its shape from there on: open between two sharp edges.
+    pub shape: RingShape,
+}
+
+/// The one-ring of a vertex with the sharpness of its edges.
+#[derive(Clone, PartialEq, Debug)]
+pub struct SharpRing {
+    /// Whether the ring ends at two boundary edges.
+    pub open: bool,
+    /// The sharpness of the vertex itself.
+    pub vertex: f64,
+    /// The sharpness of each edge, in ring order; infinite for boundary edges.
+    pub spokes: Vec<f64>,
+}
+
+/// What is left of a sharpness after one refinement.
+#[inline]
+pub(crate) fn faded(sharpness: f64) -> f64 {
+    if sharpness >= INFINITELY_SHARP { sharpness } else { (sharpness - 1.0).max(0.0) }
+}
+
+impl SharpRing {
+    /// A ring as sharp as its shape says and no sharper.
+    pub fn of(shape: RingShape) -> Self {
+        let mut spokes = vec![0.0; shape.valence as usize];
+        if shape.open {
+            spokes.first_mut().into_iter().for_each(|first| *first = f64::INFINITY);
+            spokes.last_mut().into_iter().for_each(|last| *last = f64::INFINITY);
+        } else if shape.dart {
+            spokes.first_mut().into_iter().for_each(|first| *first = f64::INFINITY);
+        }
+        Self { open: shape.open, vertex: if shape.corner { f64::INFINITY } else { 0.0 }, spokes }
+    }
+
+    /// The ring after one refinement.
+    pub fn refined(&self) -> Self {
+        let spokes = self.spokes.iter().map(|&s| faded(s)).collect();
+        Self { open: self.open, vertex: faded(self.vertex), spokes }
+    }
+
+    /// The greatest sharpness that fades; 0 where nothing does.
+    pub fn fading(&self) -> f64 {
+        let all = self.spokes.iter().chain([&self.vertex]);
+        all.copied().filter(|&s| s < INFINITELY_SHARP).fold(0.0, f64::max)
+    }
+
+    /// How much of the next refinement follows the rules of the ring as sharp as it is now; the rest follows those
+    /// of the ring after it. Less than 1 where something is about to fade: the mean sharpness of all that is.
+    pub fn present_weight(&self) -> f64 {
+        let about = self.spokes.iter().chain([&self.vertex]).copied().filter(|&s| s > 0.0 && s <= 1.0);
+        let (sum, count) = about.fold((0.0, 0), |(sum, count), s| (sum + s, count + 1));
+        if count == 0 { 1.0 } else { sum / f64::from(count) }
+    }
+
+    /// Whether the edge at `slot` is sharp; boundary edges always are.
+    pub fn is_sharp(&self, slot: usize) -> bool {
+        self.spokes.get(slot).is_some_and(|&s| s > 0.0)
+            || self.open && (slot == 0 || slot + 1 == self.spokes.len())
+    }
+
+    /// The rule that the vertex follows.
+    pub fn rule(&self) -> VertexRule {
+        match (0..self.spokes.len()).filter(|&slot| self.is_sharp(slot)).count() {
+            _ if self.vertex > 0.0 => VertexRule::Corner,
+            0 => VertexRule::Smooth,
+            1 => VertexRule::Dart,
+            2 => VertexRule::Crease,
+            _ => VertexRule::Corner,
+        }
+    }
+
+    /// The sectors, counter-clockwise.
+    pub fn sectors(&self) -> Vec<RingSector> {
+        let corner = self.rule() == VertexRule::Corner;
+        let sharp: Vec<usize> = (0..self.spokes.len()).filter(|&slot| self.is_sharp(slot)).collect();
+        if !self.open && sharp.len() < 2 {
+            let interior = RingShape::interior(self.spokes.len() as u32);
+            let shape = RingShape { corner, dart: sharp.len() == 1, ..interior };
+            return vec![RingSector { first: sharp.first().copied().unwrap_or(0), shape }];
+        }
+        // A closed ring goes on to its first sharp edge; an open one ends with its last, a boundary edge.
+        let closing = sharp.first().filter(|_| !self.open).map(|&first| first + self.spokes.len());
+        let ends = sharp.iter().skip(1).copied().chain(closing);
+        let between = |(&first, end): (&usize, usize)| {
+            let shape = RingShape { corner, ..RingShape::boundary((end - first + 1) as u32) };
+            RingSector { first, shape }
+        };
+        sharp.iter().zip(ends).map(between).collect()
+    }
+}
