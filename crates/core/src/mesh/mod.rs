@@ -5,6 +5,7 @@
 
 mod build;
 mod diagnosis;
+mod features;
 mod junctions;
 mod ring_shapes;
 mod sharpness;
@@ -15,6 +16,7 @@ mod topology;
 pub use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule};
 pub use build::{BuildOptions, Weld};
 pub use diagnosis::{Diagnosis, Finding};
+pub use features::BoundaryRule;
 pub use junctions::{Groups, Junctions};
 pub(crate) use ring_shapes::RingShapes;
 pub use sharpness::{Sector, Sharpness};

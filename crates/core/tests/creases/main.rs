@@ -7,6 +7,8 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod features;
 mod limits;
 mod plain;
+mod random;
 mod refinement;
