@@ -78,6 +78,72 @@ fn the_certified_bound_holds_and_is_tight() {
 }
 
 #[test]
+fn budgets_are_kept_and_spent_on_the_worst() {
+    for name in ["head", "cup", "sphere"] {
+        let control = model(name);
+        let mut last = f64::INFINITY;
+        for budget in [1500, 3000, 6000] {
+            let result = exact(&control, &Loop, &ExactOptions::default().triangles(budget)).unwrap();
+            result.mesh.validate().unwrap();
+            let count = result.mesh.face_count();
+            assert_eq!(result.stop, ExactStop::Triangles);
+            assert!(count <= budget && count + budget / 50 + 50 >= budget, "{name}: {count} of {budget}");
+            // Evenly curved models get no better before all of their faces are divided.
+            assert!(result.error.lower <= 1.01 * last, "{name}: {:?}", result.error);
+            assert!(result.error.lower <= result.error.upper);
+            last = result.error.lower;
+        }
+    }
+}
+
+#[test]
+fn caps_end_in_a_conforming_mesh_that_says_so() {
+    let control = model("cup");
+    let fine = ExactOptions::default().tolerance(1e-9 * control.diagonal());
+    let capped = exact(&control, &Loop, &fine.max_triangles(Some(5000))).unwrap();
+    assert_eq!(capped.stop, ExactStop::TriangleCap);
+    assert!(capped.mesh.face_count() <= 5000);
+    capped.mesh.validate().unwrap();
+    let shallow = exact(&control, &Loop, &fine.max_levels(2)).unwrap();
+    assert_eq!((shallow.stop, shallow.levels), (ExactStop::LevelCap, 2));
+    assert!(shallow.error.upper > 1e-9 * control.diagonal());
+    shallow.mesh.validate().unwrap();
+}
+
+#[test]
+fn flat_faces_between_creases_stay_as_they_are() {
+    let control = model("cube").with_creases_above(30f64.to_radians()).unwrap();
+    let result = exact(&control, &Loop, &ExactOptions::default().tolerance(1e-6)).unwrap();
+    assert_eq!(result.mesh.triangles(), control.triangles());
+    assert!(result.error.upper <= 1e-6, "{:?}", result.error);
+}
+
+/// Copies of a cut edge get the same vertices, at equal bits.
+#[test]
+fn cut_sheets_stay_together() {
+    // Three fans of different shape along one edge.
+    let positions = vec![
+        [0.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, 0.0, 0.3],
+        [-1.0, 0.7, 0.5],
+        [-0.5, -1.0, 0.9],
+        [2.0, 0.5, 0.5],
+    ];
+    let mut soup = limitmesh::PolygonSoup { positions, ..Default::default() };
+    for face in [[0, 1, 2], [1, 0, 3], [0, 1, 4], [2, 1, 5]] {
+        soup.faces.push(&face);
+    }
+    let (control, _) = Mesh::from_soup(&soup, &Default::default()).unwrap();
+    assert!(!control.junctions().edges.is_empty());
+    let result = exact(&control, &Loop, &ExactOptions::default().tolerance(1e-3)).unwrap();
+    result.mesh.validate().unwrap();
+    let edges = &result.mesh.junctions().edges;
+    assert!(edges.len() >= 4, "the edge was divided {} times", edges.len());
+    assert!(edges.iter().all(|copies| copies.len() == 3));
+}
+
+#[test]
 fn schemes_of_other_families_are_refused() {
     let control = model("cube");
     let error = exact(&control, &ModifiedButterfly, &ExactOptions::default().tolerance(0.1)).unwrap_err();

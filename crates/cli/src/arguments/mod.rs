@@ -1,7 +1,6 @@
 //! The command line: one file a command, help texts that say each option's unit, default and effect.
 
 mod compare;
-mod features;
 mod info;
 mod measure;
 mod models;
@@ -12,7 +11,6 @@ mod shared;
 mod values;
 
 pub(crate) use compare::CompareArguments;
-pub(crate) use features::{Boundary, FeatureArguments};
 pub(crate) use info::InfoArguments;
 pub(crate) use measure::MeasureArguments;
 pub(crate) use models::ModelsArguments;

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use super::values;
-use super::{BuildArguments, FeatureArguments, SchemeName, Seam};
+use super::{BuildArguments, SchemeName, Seam};
 
 /// What decides which faces are divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
@@ -25,7 +25,6 @@ Examples:
   limitmesh refine builtin:cup -o cup.ply --angle 5 --levels 4 --report cup.json
   limitmesh refine scan.stl -o smooth.obj --weld 1e-6
   limitmesh refine builtin:sphere -o seen.ply --view 0,0,-1 --levels 5
-  limitmesh refine part.stl -o part.ply --crease-angle 30
   limitmesh refine big.ply -o fine.ply --method uniform --max-triangles 20000000
 
 Exit code 3 means that --max-triangles was reached before the levels asked for; the file is written.";
@@ -97,9 +96,6 @@ pub(crate) struct RefineArguments {
     /// 10 gigabytes.
     #[arg(long, value_name = "N", default_value_t = 50_000_000, value_parser = values::positive)]
     pub(crate) max_triangles: usize,
-
-    #[command(flatten)]
-    pub(crate) features: FeatureArguments,
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,

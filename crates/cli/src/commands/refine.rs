@@ -46,7 +46,6 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     if let Some(note) = lost_tags(control.tags(), format) {
         progress.note(note);
     }
-    let control = arguments.features.apply(control)?;
 
     let start = Instant::now();
     let Refinement { mesh, steps, stop, .. } = refine(&control, arguments, progress)?;
@@ -242,8 +241,6 @@ fn parameters(arguments: &RefineArguments) -> ParametersReport {
             dilatation: view.dilatation,
         }),
         limit: arguments.limit,
-        boundary: arguments.features.boundary.unwrap_or_default(),
-        crease_angle_degrees: arguments.features.crease_angle,
         max_triangles: arguments.max_triangles,
         weld: match arguments.build.options().weld {
             Weld::Never => None,

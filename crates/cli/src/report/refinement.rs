@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::InputReport;
 use super::diagnosis::DiagnosisReport;
-use crate::arguments::{Boundary, Method, SchemeName, Seam};
+use crate::arguments::{Method, SchemeName, Seam};
 
 /// All of it.
 #[derive(Debug, Serialize)]
@@ -46,8 +46,6 @@ pub(crate) struct ParametersReport {
     pub(crate) seam: Option<Seam>,
     pub(crate) view: Option<ViewReport>,
     pub(crate) limit: bool,
-    pub(crate) boundary: Boundary,
-    pub(crate) crease_angle_degrees: Option<f64>,
     pub(crate) max_triangles: usize,
     /// Distance within which vertices were merged: 0 at equal positions, null for none.
     pub(crate) weld: Option<f64>,

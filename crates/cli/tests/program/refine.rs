@@ -13,7 +13,7 @@ const CONTRACT: &str = "version input.path input.format input.vertices input.fac
     diagnosis.isolated_vertices.count diagnosis.flipped_faces.count diagnosis.non_orientable_faces.count
     diagnosis.non_manifold_edges.count diagnosis.bow_tie_vertices.count diagnosis.dropped_tags.count
     parameters.method parameters.angle_degrees parameters.levels parameters.scheme parameters.seam
-    parameters.view parameters.limit parameters.boundary parameters.crease_angle_degrees parameters.max_triangles parameters.weld parameters.strict
+    parameters.view parameters.limit parameters.max_triangles parameters.weld parameters.strict
     steps stop output.path output.vertices output.triangles output.boundary_edges
     output.non_manifold_edges output.watertight output.euler_characteristic output.components
     output.t_junctions output.min_angle_degrees output.mean_min_angle_degrees output.angle_histogram
@@ -82,8 +82,7 @@ fn defaults_are_limit_normal_ten_degrees_three_levels_loop_all() {
     let parameters = refine("builtin:shoe", &folder.path().join("out.ply"), "")["parameters"].clone();
     let expected = serde_json::json!({
         "method": "limit-normal", "angle_degrees": 10.0, "levels": 3, "scheme": "loop", "seam": "all",
-        "view": null, "limit": false, "boundary": "smooth", "crease_angle_degrees": null,
-        "max_triangles": 50_000_000, "weld": 0.0, "strict": false
+        "view": null, "limit": false, "max_triangles": 50_000_000, "weld": 0.0, "strict": false
     });
     assert_eq!(parameters, expected);
 }
@@ -293,38 +292,6 @@ fn tags_are_kept_or_the_loss_is_told() {
         let soup = soup(&output);
         assert_eq!((soup.creases.len(), soup.corners.len()), if kept { (4, 1) } else { (0, 0) });
     }
-}
-
-#[test]
-fn a_cube_with_creases_stays_a_cube_and_the_limit_surface_is_the_same_one() {
-    let folder = folder();
-    let output = folder.path().join("cube.ply");
-    let report = refine("builtin:cube", &output, "--method uniform --levels 3 --crease-angle 30");
-    assert_eq!(report["parameters"]["crease_angle_degrees"], 30.0);
-    let on_cube = |p: &[f64; 3]| (p.iter().fold(0.0, |far: f64, x| far.max(x.abs())) - 0.5).abs() < 1e-7;
-    assert!(soup(&output).positions.iter().all(on_cube));
-    let off = |options: &str| {
-        let words = format!("measure {{}} --limit-of builtin:cube --json --samples 2000 {options}");
-        run(&words, &[&output]).expect(0).json()["hausdorff"]["symmetric"].as_f64().expect("a number")
-    };
-    assert!(off("--crease-angle 30") < 1e-7 && off("") > 0.1);
-}
-
-#[test]
-fn boundaries_are_smooth_or_keep_their_corners_or_stay() {
-    let folder = folder();
-    let square = file(&folder, "square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n");
-    let output = folder.path().join("out.obj");
-    let kept = |rule: &str| {
-        let words = format!("refine {{}} -o {{}} --method uniform --levels 2 --limit {rule}");
-        run(&words, &[&square, &output]).expect(0);
-        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-        corners.iter().filter(|corner| soup(&output).positions.contains(corner)).count()
-    };
-    assert_eq!(kept(""), 0);
-    assert_eq!(kept("--boundary smooth"), 0);
-    assert_eq!(kept("--boundary corners"), 2);
-    assert_eq!(kept("--boundary fixed"), 4);
 }
 
 /// A tetrahedron whose faces name their own vertices, one of them a rounding away from the others at its place.

@@ -68,7 +68,6 @@ fn measuring_needs_exactly_one_reference() {
         .expect(2)
         .saying("cannot be used with");
     run("measure builtin:head builtin:cup --reference-levels 3", &[]).expect(2).saying("--limit-of");
-    run("measure builtin:head builtin:cup --crease-angle 30", &[]).expect(2).saying("--limit-of");
     run("measure builtin:head builtin:cup --samples 0", &[]).expect(2).saying("at least 1");
     run("measure builtin:head --limit-of builtin:head --reference-levels 12", &[])
         .expect(2)

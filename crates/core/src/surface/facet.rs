@@ -18,12 +18,17 @@ pub(crate) struct Facet {
     normal: DVec3,
     /// In the plane, at right angles to the edges, pointing outwards.
     outward: [DVec3; 3],
+    /// What is no farther outside an edge than this stands on it, but for rounding.
+    on_edge: f64,
 }
+
+/// Distances below this part of a triangle's size are what rounding leaves of zero where points coincide.
+const ROUNDING: f64 = 1e-12;
 
 /// Where a point stands to an edge, within the triangle's plane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Beside {
-    /// How far outside the edge's line; negative inside.
+    /// How far outside the edge's line; 0 inside.
     pub(crate) outside: f64,
     /// How far along the edge from its start.
     pub(crate) along: f64,
@@ -43,6 +48,8 @@ impl Facet {
             lengths: [0, 1, 2].map(|edge| edges[edge].dot(along[edge])),
             normal,
             outward: along.map(|edge| edge.cross(normal)),
+            on_edge: ROUNDING
+                * edges.iter().chain(&corners).map(|v| v.abs().max_element()).fold(0.0, f64::max),
         }
     }
 
@@ -71,7 +78,11 @@ impl Facet {
     #[inline]
     pub(crate) fn beside(&self, edge: usize, point: DVec3) -> Beside {
         let offset = point - self.corners[edge];
-        Beside { outside: self.outward[edge].dot(offset), along: self.along[edge].dot(offset) }
+        let outside = self.outward[edge].dot(offset);
+        Beside {
+            outside: if outside > self.on_edge { outside } else { 0.0 },
+            along: self.along[edge].dot(offset),
+        }
     }
 
     /// Squared distance of a point to the edge from corner `edge`.

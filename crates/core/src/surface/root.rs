@@ -2,29 +2,46 @@
 
 use super::fan::{Centre, Fan, Fans};
 use super::patch::Patch;
-use crate::index::{FaceId, HalfEdgeId};
-use crate::mesh::Mesh;
-use crate::vector::vector;
+use crate::index::{FaceId, HalfEdgeId, VertexId};
+use crate::mesh::{Mesh, Sector, Sharpness, Topology};
+use crate::ring::RingShape;
+use crate::vector::{DVec3, vector};
 
-/// The limit surface over a control face.
-pub(crate) fn root_patch(mesh: &Mesh, face: FaceId) -> Patch {
-    Patch::of(Fans([0, 1, 2].map(|corner| fan(mesh, HalfEdgeId::of(face, corner)))))
+/// The limit surface over a control face. Tags that fade must have been dealt with before.
+pub(crate) fn root_patch(mesh: &Mesh, sharpness: &Sharpness<'_>, face: FaceId) -> Patch {
+    Patch::of(Fans([0, 1, 2].map(|corner| fan(mesh, sharpness, HalfEdgeId::of(face, corner)))))
 }
 
 /// The fan of the origin of `h`, on the side of the face of `h`.
-fn fan(mesh: &Mesh, h: HalfEdgeId) -> Fan {
+fn fan(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> Fan {
     let topology = mesh.topology();
+    let at = |v: VertexId| vector(mesh.positions()[v.index()]);
+    let sector = sector_of(topology, sharpness, h);
+    let neighbours: Vec<DVec3> = sector.neighbours(topology).map(at).collect();
+    let slot = sector.outgoing(topology).position(|other| other == h).unwrap_or(0);
+    Fan { at: at(topology.origin(h)), neighbours, centre: centre(sector.shape), slot }
+}
+
+/// The sector of the ring of the origin of `h` that the face of `h` is in.
+pub(crate) fn sector_of(topology: &Topology, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> Sector {
     let vertex = topology.origin(h);
-    let open = topology.is_boundary(vertex);
-    let corner = mesh.tags().is_corner(vertex);
-    let target = topology.target(h);
-    let at = |v: crate::index::VertexId| vector(mesh.positions()[v.index()]);
-    let ring: Vec<_> = topology.ring(vertex).collect();
-    let slot = ring.iter().position(|&u| u == target).unwrap_or(0);
-    let centre = match (corner, open) {
+    let (valence, open) = topology.valence_and_openness(vertex);
+    if !sharpness.is_tagged(vertex) {
+        // A closed ring has no beginning of its own.
+        let first = if open { topology.outgoing(vertex) } else { h };
+        let shape = RingShape { open, ..RingShape::interior(valence) };
+        return Sector { first, shape };
+    }
+    let sectors = sharpness.sectors(vertex);
+    let own = sectors.iter().find(|sector| sector.outgoing(topology).any(|other| other == h));
+    own.copied().unwrap_or(Sector { first: h, shape: RingShape::interior(valence) })
+}
+
+fn centre(shape: RingShape) -> Centre {
+    match (shape.corner, shape.open) {
         (true, open) => Centre::Corner { open },
         (false, true) => Centre::Crease,
-        (false, false) => Centre::Smooth { sharp: None },
-    };
-    Fan { at: at(vertex), neighbours: ring.into_iter().map(at).collect(), centre, slot }
+        // The sector of a dart starts at its sharp edge.
+        (false, false) => Centre::Smooth { sharp: shape.dart.then_some(0) },
+    }
 }

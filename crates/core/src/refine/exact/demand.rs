@@ -1,6 +1,7 @@
 //! What is asked of the triangles, as one number: how many times over a triangle fails.
 
-use crate::surface::{Facet, LimitPoint, Patch};
+use crate::surface::{Facet, LimitPoint};
+use crate::vector::DVec3;
 
 /// The demands; without any, values are plain distances.
 #[derive(Clone, Debug, Default)]
@@ -12,17 +13,21 @@ pub(super) struct Demand {
 }
 
 impl Demand {
+    /// Whether anything is demanded.
+    pub(super) fn is_some(&self) -> bool {
+        self.tolerance.is_some() || self.angle.is_some()
+    }
+
     /// Whether limit normals matter.
     pub(super) fn needs_normals(&self) -> bool {
         self.angle.is_some()
     }
 
-    /// What distances are multiplied by, for a piece of the surface.
-    pub(super) fn scale(&self, _patch: &Patch) -> f64 {
+    /// What distances are multiplied by; `None` where they do not matter.
+    pub(super) fn distance_scale(&self) -> Option<f64> {
         match self.tolerance {
-            Some(tolerance) => 1.0 / tolerance,
-            None if self.angle.is_some() => 0.0,
-            None => 1.0,
+            Some(tolerance) => Some(1.0 / tolerance),
+            None => self.angle.is_none().then_some(1.0),
         }
     }
 
@@ -30,12 +35,12 @@ impl Demand {
     pub(super) fn cone(&self, facet: &Facet, corners: &[LimitPoint; 3]) -> f64 {
         let Some(angle) = self.angle else { return 0.0 };
         let normal = facet.normal();
-        if normal == crate::vector::DVec3::ZERO {
+        if normal == DVec3::ZERO {
             return 0.0;
         }
         let cosine = corners
             .iter()
-            .filter(|corner| corner.normal != crate::vector::DVec3::ZERO)
+            .filter(|corner| corner.normal != DVec3::ZERO)
             .map(|corner| corner.normal.dot(normal))
             .fold(1.0, f64::min);
         cosine.clamp(-1.0, 1.0).acos() / angle

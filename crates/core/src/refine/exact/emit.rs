@@ -4,8 +4,10 @@ use super::forest::Forest;
 use super::grow::Growth;
 use super::options::{Exact, ExactStop, Origin};
 use crate::emit::{Diagonal, Pattern, closure};
+use crate::index::HalfEdgeId;
 use crate::mesh::{Groups, Junctions, Mesh, NONE, Tags, Topology, check_finite, outgoing_half_edges};
 use crate::refine::RefineError;
+use crate::refine::junctions::join_copies;
 
 /// The emitted triangles.
 pub(super) struct Emission {
@@ -29,20 +31,23 @@ pub(super) struct Leaves {
     pub(super) order: Vec<u32>,
     /// By node: its first triangle.
     pub(super) starts: Vec<u32>,
-    roots: Vec<u32>,
+    /// The control face of each leaf in `order`.
+    pub(super) roots: Vec<u32>,
 }
 
 impl Growth<'_> {
     /// The mesh as it stands.
-    pub(super) fn finish(self, stop: ExactStop, emission: Emission) -> Result<Exact, RefineError> {
+    pub(super) fn finish(mut self, stop: ExactStop, emission: Emission) -> Result<Exact, RefineError> {
+        let junctions = self.junctions(&emission);
+        let mut positions: Vec<[f64; 3]> =
+            self.points.iter().map(|point| point.position.to_array()).collect();
+        join_copies(&mut positions, &junctions.vertices);
+        check_finite(&positions)?;
         let error = self.probe(&emission);
         let Emission { triangles, twins, leaves } = emission;
         let parents = leaves.parents(&self.forest, |leaf| self.pattern(leaf));
         let origins = self.origins();
         let outgoing = outgoing_half_edges(&triangles, &twins, self.forest.vertex_count());
-        let junctions = Junctions { vertices: Groups::default(), edges: Groups::default() };
-        let positions: Vec<[f64; 3]> = self.points.iter().map(|point| point.position.to_array()).collect();
-        check_finite(&positions)?;
         let topology = Topology::from_parts(triangles, twins, outgoing);
         Ok(Exact {
             mesh: Mesh::from_parts(topology, positions, Tags::default(), junctions),
@@ -122,8 +127,56 @@ impl Growth<'_> {
     }
 
     /// The half-edge of the emitted triangles along an edge of a leaf that is not split.
-    fn border(&self, leaves: &Leaves, leaf: u32, edge: usize) -> u32 {
+    pub(super) fn border(&self, leaves: &Leaves, leaf: u32, edge: usize) -> u32 {
         3 * leaves.starts[leaf as usize] + self.pattern(leaf).border(edge)[0] as u32
+    }
+
+    /// The copies of vertices and edges of cut sheets, whose trees are split alike.
+    fn junctions(&self, emission: &Emission) -> Junctions {
+        let control = self.control.junctions();
+        let mut junctions = Junctions { vertices: control.vertices.clone(), edges: Groups::default() };
+        let start = |h: u32| self.control.positions()[self.control.topology().origin(HalfEdgeId(h)).index()];
+        for group in control.edges.iter() {
+            let along: Vec<(Vec<u32>, Vec<u32>)> = group
+                .iter()
+                .map(|&h| {
+                    let (mut vertices, mut half_edges) = (Vec::new(), Vec::new());
+                    self.along(&emission.leaves, h / 3, h as usize % 3, &mut vertices, &mut half_edges);
+                    if start(h) != start(group[0]) {
+                        vertices.reverse();
+                        half_edges.reverse();
+                    }
+                    (vertices, half_edges)
+                })
+                .collect();
+            let least = |list: fn(&(Vec<u32>, Vec<u32>)) -> usize| along.iter().map(list).min().unwrap_or(0);
+            for place in 0..least(|(vertices, _)| vertices.len()) {
+                junctions.vertices.push(along.iter().map(|(vertices, _)| vertices[place]));
+            }
+            for place in 0..least(|(_, half_edges)| half_edges.len()) {
+                junctions.edges.push(along.iter().map(|(_, half_edges)| half_edges[place]));
+            }
+        }
+        junctions
+    }
+
+    /// The vertices inside a boundary edge of a node and the emitted half-edges along it, from its start to its end.
+    fn along(
+        &self,
+        leaves: &Leaves,
+        node: u32,
+        edge: usize,
+        vertices: &mut Vec<u32>,
+        half_edges: &mut Vec<u32>,
+    ) {
+        let Some(first) = self.forest.children(node) else {
+            half_edges.push(self.border(leaves, node, edge));
+            return;
+        };
+        let next = (edge + 1) % 3;
+        self.along(leaves, first + edge as u32, edge, vertices, half_edges);
+        vertices.push(self.forest.corners(first + edge as u32)[next]);
+        self.along(leaves, first + next as u32, edge, vertices, half_edges);
     }
 
     /// Where the vertices came from.

@@ -6,10 +6,12 @@
 use super::demand::Demand;
 use super::forest::Forest;
 use super::leaf::{LeafTriangle, leaf_triangles};
-use crate::index::FaceId;
-use crate::mesh::Mesh;
+use crate::index::{FaceId, HalfEdgeId};
+use crate::limit::SidedNormals;
+use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
 use crate::surface::{Deviation, Effort, Facet, LimitPoint, Patch, Rules, deviation, root_patch};
+use crate::vector::{DVec3, vector};
 
 /// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
 const BLOCK: usize = 64;
@@ -40,6 +42,9 @@ pub(super) struct Leaf {
 /// What an evaluation looks at.
 pub(super) struct Evaluation<'a> {
     pub(super) control: &'a Mesh,
+    pub(super) sharpness: &'a Sharpness<'a>,
+    /// Limit normals of the control vertices.
+    pub(super) sided: &'a SidedNormals,
     pub(super) rules: &'a Rules<'a>,
     pub(super) forest: &'a Forest,
     /// Limits of the vertices; positions that are not a number are not known yet.
@@ -58,8 +63,12 @@ impl Evaluation<'_> {
         parallel::blocks(roots.len(), BLOCK, |block| {
             let mut found = Found::default();
             for &root in &roots[block] {
-                let patch = root_patch(self.control, FaceId(root));
-                let corners = self.forest.corners(root).map(|vertex| self.points[vertex as usize]);
+                let patch = root_patch(self.control, self.sharpness, FaceId(root));
+                let corners = [0, 1, 2].map(|corner| {
+                    let h = HalfEdgeId::of(FaceId(root), corner);
+                    let known = self.points[self.forest.corners(root)[corner] as usize];
+                    LimitPoint { normal: vector(self.sided.at(self.control.topology(), h)), ..known }
+                });
                 self.visit(root, &patch, corners, &mut found);
             }
             found
@@ -100,7 +109,7 @@ impl Evaluation<'_> {
             let computed = compute();
             found.points.push((vertex, computed));
             computed
-        } else if self.demand.needs_normals() {
+        } else if self.demand.needs_normals() || !self.sharpness.is_empty() {
             LimitPoint { normal: compute().normal, ..known }
         } else {
             known
@@ -118,7 +127,7 @@ impl Evaluation<'_> {
                 }
             }
         }
-        let scale = self.demand.scale(patch);
+        let scale = self.demand.distance_scale().unwrap_or(0.0);
         let open = self.forest.open_edges(node);
         let mut best: Option<Leaf> = None;
         for diagonal_from_end in [false, true] {
@@ -143,6 +152,33 @@ impl Evaluation<'_> {
             }
         }
         found.leaves.extend(best);
+    }
+}
+
+/// Points of the limit surface over leaves, for a lower bound: those at the given depth below each, corners left out.
+impl Evaluation<'_> {
+    pub(super) fn samples(&self, leaf: u32, depth: usize) -> Vec<DVec3> {
+        let mut path = Vec::new();
+        let mut node = leaf;
+        while let Some((parent, place)) = self.forest.parent(node) {
+            path.push(place);
+            node = parent;
+        }
+        let mut patch = root_patch(self.control, self.sharpness, FaceId(node));
+        for place in path.into_iter().rev() {
+            patch = patch.refined(self.rules).part(place);
+        }
+        let mut points = Vec::new();
+        self.sample(&patch, depth, &mut points);
+        points
+    }
+
+    fn sample(&self, patch: &Patch, depth: usize, points: &mut Vec<DVec3>) {
+        let refined = patch.refined(self.rules);
+        points.extend((0..3).map(|edge| refined.middle(edge).position));
+        if depth > 1 {
+            (0..4).for_each(|part| self.sample(&refined.part(part), depth - 1, points));
+        }
     }
 }
 

@@ -6,7 +6,7 @@
 //! vertex opposite corner `i`.
 
 use crate::index::HalfEdgeId;
-use crate::mesh::{Mesh, MeshError, NONE};
+use crate::mesh::{Mesh, MeshError, NONE, Sharpness};
 
 /// Nodes that half-edge indices can number.
 const MAX_NODES: usize = crate::mesh::MAX_FACES;
@@ -25,6 +25,8 @@ pub(super) struct Forest {
     /// The parent of each four children.
     parents: Vec<u32>,
     levels: Vec<u8>,
+    /// Bits of the edges on the boundary of the mesh or on a sharp edge.
+    open: Vec<u8>,
     /// Triangles that the leaves would be emitted as.
     triangles: usize,
     copies: Copies,
@@ -41,9 +43,10 @@ pub(super) struct Changes {
 
 impl Forest {
     /// The control faces as leaves.
-    pub(super) fn new(mesh: &Mesh) -> Self {
+    pub(super) fn new(mesh: &Mesh, sharpness: &Sharpness<'_>) -> Self {
         let topology = mesh.topology();
         let roots = mesh.face_count();
+        let open = |h: usize| u8::from(sharpness.edge(HalfEdgeId(h as u32)) > 0.0);
         let twin = |h: usize| topology.twin(HalfEdgeId(h as u32)).map_or(NONE, |twin| twin.0);
         Self {
             roots,
@@ -53,6 +56,9 @@ impl Forest {
             children: vec![NONE; roots],
             parents: Vec::new(),
             levels: vec![0; roots],
+            open: (0..roots)
+                .map(|node| (0..3).fold(0, |bits, edge| bits | open(3 * node + edge) << edge))
+                .collect(),
             triangles: roots,
             copies: Copies::of(mesh),
         }
@@ -120,19 +126,9 @@ impl Forest {
         (0..3).fold(0, |bits, edge| bits | u8::from(self.middle(node, edge).is_some()) << edge)
     }
 
-    /// Which edges of a node lie on the boundary of the mesh.
+    /// Which edges of a node lie on the boundary of the mesh or on a sharp edge.
     pub(super) fn open_edges(&self, node: u32) -> [bool; 3] {
-        [0, 1, 2].map(|edge| {
-            let mut at = node;
-            // An edge without a neighbour of its level may have a greater one.
-            while self.twin(at, edge).is_none() {
-                match self.parent(at) {
-                    None => return true,
-                    Some((parent, _)) => at = parent,
-                }
-            }
-            false
-        })
+        [0, 1, 2].map(|edge| self.open[node as usize] & 1 << edge != 0)
     }
 
     /// The nodes that splitting `node` splits: those that must be split before, first.
@@ -250,6 +246,10 @@ impl Forest {
         self.twins.extend([[NONE; 3]; 4]);
         self.children.extend([NONE; 4]);
         self.levels.extend([level; 4]);
+        // A part lies along both edges at its corner.
+        let open = self.open[node as usize];
+        self.open.extend([0, 1, 2].map(|part| open & (1 << part | 1 << ((part + 2) % 3))));
+        self.open.push(0);
         self.parents.push(node);
         self.children[node as usize] = first;
         let mut grown = 3 - shared;

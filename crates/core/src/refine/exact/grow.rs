@@ -2,18 +2,29 @@
 
 use super::demand::Demand;
 use super::emit::Emission;
-use super::evaluate::{ABOVE_WANTED, Evaluation, WANTED};
+use super::evaluate::{ABOVE_WANTED, Evaluation, Found, WANTED};
 use super::forest::{Changes, Forest};
 use super::options::{ExactOptions, ExactProgress, ExactStop};
-use crate::limit::LimitTable;
-use crate::mesh::Mesh;
+use crate::limit::{LimitTable, SidedNormals};
+use crate::mesh::{Mesh, Sharpness};
 use crate::refine::RefineError;
+use crate::refine::junctions::join_copies;
 use crate::scheme::Scheme;
 use crate::surface::{Deviation, LimitPoint, Rules};
-use crate::vector::{DVec3, vector};
+use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// Halvings of a net before a leaf is called too bad: the bound is within some per cent of the truth then.
-const HALVINGS: usize = 2;
+pub(super) const HALVINGS: usize = 2;
+
+/// Under a budget, a round splits what is worse than this part of the worst value: the nearer to 1, the closer to splitting one
+/// by one.
+const WORST_SHARE: f64 = 0.8;
+
+/// The part of a budget kept for leaves whose bounds come out greater than expected among their neighbours.
+const RESERVE: usize = 100;
+
+/// Triangles that one split adds at most: three, and one at each neighbour.
+const MOST_ADDED: usize = 6;
 
 /// A position that is not known yet.
 const UNKNOWN: LimitPoint = LimitPoint { position: DVec3::NAN, normal: DVec3::ZERO };
@@ -21,6 +32,9 @@ const UNKNOWN: LimitPoint = LimitPoint { position: DVec3::NAN, normal: DVec3::ZE
 /// The state of a refinement.
 pub(super) struct Growth<'a> {
     pub(super) control: &'a Mesh,
+    pub(super) sharpness: Sharpness<'a>,
+    /// Limit normals of the control vertices.
+    sided: SidedNormals,
     pub(super) rules: &'a Rules<'a>,
     pub(super) options: &'a ExactOptions<'a>,
     pub(super) demand: Demand,
@@ -33,9 +47,13 @@ pub(super) struct Growth<'a> {
     pub(super) deviations: Vec<Deviation>,
     /// By node: whether a leaf's diagonal starts at the unsplit edge's end.
     pub(super) diagonals: Vec<bool>,
+    /// By node: whether the value was not tightened, being below the target of its time.
+    loose: Vec<bool>,
     marks: Vec<u8>,
     /// Leaves to be evaluated.
     wanted: Vec<u32>,
+    /// Triangles that must not be exceeded.
+    budget: usize,
     round: usize,
 }
 
@@ -47,110 +65,150 @@ impl<'a> Growth<'a> {
         options: &'a ExactOptions<'a>,
     ) -> Result<Self, RefineError> {
         let table = LimitTable::new(scheme);
-        let (positions, normals) = (table.positions(control)?, table.normals(control)?);
-        let points = positions.into_iter().zip(normals);
-        let forest = Forest::new(control);
+        let (mut positions, sided) = (table.positions(control)?, table.sided_normals(control)?);
+        join_copies(&mut positions, &control.junctions().vertices);
+        let points = positions.into_iter().zip(sided.by_vertex());
+        let sharpness = Sharpness::of(control);
+        let forest = Forest::new(control, &sharpness);
         let nodes = forest.node_count();
         Ok(Self {
             control,
+            sharpness,
             rules,
             options,
             demand: Demand { tolerance: options.tolerance, angle: options.angle },
             forest,
             points: points
-                .map(|(position, normal)| LimitPoint { position: vector(position), normal: vector(normal) })
+                .map(|(position, normal)| LimitPoint { position: vector(position), normal: vector(*normal) })
                 .collect(),
+            sided,
             values: vec![f64::INFINITY; nodes],
             deviations: vec![Deviation::default(); nodes],
             diagonals: vec![false; nodes],
+            loose: vec![false; nodes],
             marks: vec![0; nodes],
             wanted: (0..nodes as u32).collect(),
+            budget: options.budget(),
             round: 0,
         })
     }
 
     /// Splits until the goals are met or nothing more is allowed.
     pub(super) fn run(&mut self) -> Result<(ExactStop, Emission), RefineError> {
-        let has_demand = self.demand.tolerance.is_some() || self.demand.angle.is_some();
-        let mut target = if has_demand { 1.0 } else { 0.0 };
+        // Values above it fail; without a demand on quality all do.
+        let floor = if self.demand.is_some() { 1.0 } else { 0.0 };
+        let full = self.budget;
+        self.budget = full - full / RESERVE;
+        let mut stop = self.grow(floor)?;
+        self.budget = full;
+        let limit = if floor > 0.0 { floor } else { self.worst() };
         loop {
-            let stop = self.grow(&mut target)?;
             // With the neighbours as they are emitted, some bounds come out greater than was expected.
             let emission = Emission::of(self);
-            self.settle(&emission);
-            let failing = self.failing(target);
-            if stop != ExactStop::Met || failing.is_empty() {
+            if !self.settle(&emission, limit) {
                 return Ok((stop, emission));
             }
-            if !self.split_worst(failing)? {
-                return Ok((ExactStop::LevelCap, emission));
+            if let Some(reason) = self.split_worst(limit)? {
+                return Ok((reason, Emission::of(self)));
+            }
+            if stop == ExactStop::Met {
+                stop = self.grow(floor)?;
+            } else {
+                self.evaluate(limit)?;
             }
         }
     }
 
     /// Evaluates and splits until no leaf is known to fail.
-    fn grow(&mut self, target: &mut f64) -> Result<ExactStop, RefineError> {
+    fn grow(&mut self, floor: f64) -> Result<ExactStop, RefineError> {
+        // With a budget the worst come first: the target falls from round to round.
+        let mut target = if self.options.triangles.is_some() { f64::INFINITY } else { floor };
         loop {
-            let worst = self.evaluate(*target);
-            self.round += 1;
-            let progress =
-                ExactProgress { round: self.round, triangles: self.forest.triangle_count(), worst };
-            if self.options.observer.is_some_and(|observer| observer(&progress).is_break()) {
-                return Err(RefineError::Cancelled { steps: self.round });
+            self.evaluate(target)?;
+            let worst = self.worst();
+            if worst <= floor {
+                let met = self.leaf_nodes().all(|node| self.values[node as usize] <= floor);
+                return Ok(if met { ExactStop::Met } else { ExactStop::LevelCap });
             }
-            let failing = self.failing(*target);
-            if failing.is_empty() {
-                return Ok(ExactStop::Met);
+            if target > floor {
+                target = floor.max((WORST_SHARE * worst).min(target));
+                if self.want_loose(target) {
+                    continue;
+                }
             }
-            if !self.split_worst(failing)? {
-                return Ok(ExactStop::LevelCap);
+            if let Some(stop) = self.split_worst(target)? {
+                return Ok(stop);
             }
         }
     }
 
-    /// Splits the leaves that fail, as far as allowed; whether any was.
-    fn split_worst(&mut self, failing: Vec<(u32, f64)>) -> Result<bool, RefineError> {
+    /// The greatest value of a leaf that may be split.
+    fn worst(&self) -> f64 {
+        let splittable = self.leaf_nodes().filter(|&node| self.forest.level(node) < self.options.max_levels);
+        splittable.map(|node| self.values[node as usize]).fold(0.0, f64::max)
+    }
+
+    fn leaf_nodes(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.forest.node_count() as u32).filter(|&node| self.forest.children(node).is_none())
+    }
+
+    /// Wants the leaves above the target whose values are not tight; whether there are any.
+    fn want_loose(&mut self, target: f64) -> bool {
+        let above = |&node: &u32| self.loose[node as usize] && self.values[node as usize] > target;
+        self.wanted = self.leaf_nodes().filter(above).collect();
+        !self.wanted.is_empty()
+    }
+
+    /// Splits the leaves above the target, worst first, as far as allowed. Says why if none could be.
+    fn split_worst(&mut self, target: f64) -> Result<Option<ExactStop>, RefineError> {
+        let mut failing: Vec<u32> =
+            self.leaf_nodes().filter(|&node| self.values[node as usize] > target).collect();
+        let value = |node: u32| self.values[node as usize];
+        failing.sort_by(|&a, &b| value(b).total_cmp(&value(a)).then(a.cmp(&b)));
         let mut changes = Changes::default();
-        for (node, _) in failing {
-            if self.forest.children(node).is_none() && self.forest.level(node) < self.options.max_levels {
-                self.forest.split(node, &mut changes)?;
+        let mut stop = ExactStop::LevelCap;
+        for node in failing {
+            if self.forest.children(node).is_some() || self.forest.level(node) >= self.options.max_levels {
+                continue;
             }
+            if !self.fits(node) {
+                stop = self.options.budget_stop();
+                break;
+            }
+            self.forest.split(node, &mut changes)?;
         }
         self.grown(&changes);
-        Ok(!changes.split.is_empty())
+        Ok(changes.split.is_empty().then_some(stop))
     }
 
-    /// The leaves above the target, worst first.
-    fn failing(&self, target: f64) -> Vec<(u32, f64)> {
-        let mut failing: Vec<(u32, f64)> = (0..self.forest.node_count() as u32)
-            .filter(|&node| self.forest.children(node).is_none() && self.values[node as usize] > target)
-            .map(|node| (node, self.values[node as usize]))
-            .collect();
-        failing.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        failing
+    /// Whether splitting a leaf keeps the triangles within the budget.
+    fn fits(&self, node: u32) -> bool {
+        let room = self.budget.saturating_sub(self.forest.triangle_count());
+        // Working out what a split needs takes time; mostly there is plenty of room.
+        room >= MOST_ADDED * 64 || room >= MOST_ADDED * self.forest.needed(node).len()
     }
 
-    /// Evaluates what is wanted; gives the greatest value found.
-    fn evaluate(&mut self, target: f64) -> f64 {
-        let mut roots: Vec<u32> = Vec::new();
-        for &leaf in &self.wanted {
-            self.marks[leaf as usize] |= WANTED;
-            let mut node = leaf;
-            while let Some((parent, _)) = self.forest.parent(node) {
-                if self.marks[parent as usize] & ABOVE_WANTED != 0 {
-                    break;
-                }
-                self.marks[parent as usize] |= ABOVE_WANTED;
-                node = parent;
+    /// Evaluates what is wanted, and reports the round.
+    fn evaluate(&mut self, target: f64) -> Result<(), RefineError> {
+        let roots = self.mark_wanted();
+        let found = self.evaluation(target).run(&roots);
+        let worst = self.take(found, target);
+        self.unmark_wanted();
+        self.round += 1;
+        let progress = ExactProgress { round: self.round, triangles: self.forest.triangle_count(), worst };
+        match self.options.observer {
+            Some(observer) if observer(&progress).is_break() => {
+                Err(RefineError::Cancelled { steps: self.round })
             }
-            if (node as usize) < self.forest.roots() {
-                roots.push(node);
-            }
+            _ => Ok(()),
         }
-        roots.sort_unstable();
-        roots.dedup();
-        let evaluation = Evaluation {
+    }
+
+    pub(super) fn evaluation(&self, target: f64) -> Evaluation<'_> {
+        Evaluation {
             control: self.control,
+            sharpness: &self.sharpness,
+            sided: &self.sided,
             rules: self.rules,
             forest: &self.forest,
             points: &self.points,
@@ -158,23 +216,63 @@ impl<'a> Growth<'a> {
             demand: &self.demand,
             target,
             halvings: HALVINGS,
-        };
-        let found = evaluation.run(&roots);
+        }
+    }
+
+    /// Keeps what an evaluation found; gives the greatest value.
+    fn take(&mut self, found: Vec<Found>, target: f64) -> f64 {
         let mut worst = 0.0f64;
+        let mut fresh = Vec::new();
         for block in found {
             for leaf in block.leaves {
-                self.values[leaf.node as usize] = leaf.value;
-                self.deviations[leaf.node as usize] = leaf.deviation;
-                self.diagonals[leaf.node as usize] = leaf.diagonal_from_end;
+                let node = leaf.node as usize;
+                self.values[node] = leaf.value;
+                self.deviations[node] = leaf.deviation;
+                self.diagonals[node] = leaf.diagonal_from_end;
+                self.loose[node] = leaf.value <= target;
                 worst = worst.max(leaf.value);
             }
             for (vertex, point) in block.points {
                 let known = &mut self.points[vertex as usize];
                 if known.position.is_nan() {
                     *known = point;
+                } else {
+                    // The other side's, which differs at creases.
+                    known.normal += point.normal;
+                    fresh.push(vertex);
                 }
             }
         }
+        for vertex in fresh {
+            let normal = &mut self.points[vertex as usize].normal;
+            *normal = unit_or_zero(*normal);
+        }
+        worst
+    }
+
+    /// Marks the wanted leaves and all above them; gives the control faces that have any.
+    fn mark_wanted(&mut self) -> Vec<u32> {
+        let mut roots: Vec<u32> = Vec::new();
+        for &leaf in &self.wanted {
+            self.marks[leaf as usize] |= WANTED;
+            let mut node = leaf;
+            let reached_root = loop {
+                let Some((parent, _)) = self.forest.parent(node) else { break true };
+                if self.marks[parent as usize] & ABOVE_WANTED != 0 {
+                    break false;
+                }
+                self.marks[parent as usize] |= ABOVE_WANTED;
+                node = parent;
+            };
+            if reached_root {
+                roots.push(node);
+            }
+        }
+        roots.sort_unstable();
+        roots
+    }
+
+    fn unmark_wanted(&mut self) {
         for leaf in core::mem::take(&mut self.wanted) {
             self.marks[leaf as usize] = 0;
             let mut node = leaf;
@@ -186,7 +284,6 @@ impl<'a> Growth<'a> {
                 node = parent;
             }
         }
-        worst
     }
 
     /// Makes room for new nodes and vertices and says what must be looked at again.
@@ -195,6 +292,7 @@ impl<'a> Growth<'a> {
         self.values.resize(nodes, f64::INFINITY);
         self.deviations.resize(nodes, Deviation::default());
         self.diagonals.resize(nodes, false);
+        self.loose.resize(nodes, false);
         self.marks.resize(nodes, 0);
         self.points.resize(self.forest.vertex_count(), UNKNOWN);
         for &node in &changes.split {

@@ -79,6 +79,19 @@ impl<'a> ExactOptions<'a> {
         self
     }
 
+    /// Triangles that must not be exceeded.
+    pub(super) fn budget(&self) -> usize {
+        [self.triangles, self.max_triangles].into_iter().flatten().min().unwrap_or(usize::MAX)
+    }
+
+    /// What it means that the budget is used up.
+    pub(super) fn budget_stop(&self) -> ExactStop {
+        match (self.triangles, self.max_triangles) {
+            (Some(goal), cap) if cap.is_none_or(|cap| goal <= cap) => ExactStop::Triangles,
+            _ => ExactStop::TriangleCap,
+        }
+    }
+
     /// Refuses goals that are no positive numbers, and having none.
     pub(super) fn check(&self) -> Result<(), MeshError> {
         let bad = |name, value, expected| Err(MeshError::BadOption { name, value, expected });

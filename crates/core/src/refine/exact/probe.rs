@@ -1,21 +1,37 @@
 //! The bounds of the leaves among their neighbours as they are emitted, and the interval for the whole mesh.
 
+use super::blocks::Blocks;
 use super::emit::Emission;
 use super::grow::Growth;
+use super::leaf::leaf_triangles;
 use super::options::ErrorBounds;
 use crate::mesh::NONE;
+use crate::surface::Facet;
 use crate::vector::{DVec3, unit_or_zero};
+
+/// Leaves with the greatest bounds that are looked at for a lower bound.
+const PROBED: usize = 64;
+
+/// Levels below a leaf whose vertices are sampled: the greatest distance is met within some per cent.
+const SAMPLED_LEVELS: usize = 3;
+
+/// A lower bound beyond this part of the upper one is good enough.
+const NARROW: f64 = 0.99;
 
 impl Growth<'_> {
     /// Takes the bounds of all leaves with the angles between the emitted triangles; sets the values of those that
-    /// come out greater than they were expected.
-    pub(super) fn settle(&mut self, emission: &Emission) {
-        let Some(scale) = self.demand.tolerance.map(|tolerance| 1.0 / tolerance) else { return };
+    /// come out above `limit`, which they were not expected to. Whether there are any.
+    pub(super) fn settle(&mut self, emission: &Emission, limit: f64) -> bool {
+        let Some(scale) = self.demand.distance_scale() else { return false };
+        let mut fails = false;
         for &leaf in &emission.leaves.order {
-            let bound = self.settled(emission, leaf) * scale;
-            let value = &mut self.values[leaf as usize];
-            *value = value.max(bound);
+            let value = self.settled(emission, leaf) * scale;
+            if value > limit {
+                self.values[leaf as usize] = value.max(self.values[leaf as usize]);
+                fails = true;
+            }
         }
+        fails
     }
 
     /// The bound of a leaf.
@@ -27,11 +43,15 @@ impl Growth<'_> {
         let first = emission.leaves.starts[leaf as usize];
         let count = 1 + self.forest.split_edges(leaf).count_ones();
         let (mut chord, mut slope) = (0.0f64, f64::INFINITY);
+        // Edges on sharp curves count on their own.
+        let open = self.forest.open_edges(leaf);
+        let alone =
+            [0, 1, 2].map(|edge| if open[edge] { self.border(&emission.leaves, leaf, edge) } else { NONE });
         for triangle in first..first + count {
-            for edge in 0..3 {
-                let twin = emission.twins[(3 * triangle + edge) as usize];
-                if twin != NONE {
-                    let (turn, room) = self.across(emission, 3 * triangle + edge, twin);
+            for h in 3 * triangle..3 * triangle + 3 {
+                let twin = emission.twins[h as usize];
+                if twin != NONE && !alone.contains(&h) {
+                    let (turn, room) = self.across(emission, h, twin);
                     chord = chord.max(turn);
                     slope = slope.min(room);
                 }
@@ -65,9 +85,61 @@ impl Growth<'_> {
     }
 
     /// The certified interval.
-    pub(super) fn probe(&self, emission: &Emission) -> ErrorBounds {
-        let upper =
-            emission.leaves.order.iter().map(|&leaf| self.settled(emission, leaf)).fold(0.0, f64::max);
-        ErrorBounds { lower: 0.0, upper, at: [0.0; 3] }
+    pub(super) fn probe(&mut self, emission: &Emission) -> ErrorBounds {
+        let mut bounds: Vec<(f64, u32)> =
+            emission.leaves.order.iter().map(|&leaf| (self.settled(emission, leaf), leaf)).collect();
+        bounds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let upper = bounds.first().map_or(0.0, |worst| worst.0) + self.rounding();
+        let blocks = Blocks::of(self, emission);
+        let mut best = ErrorBounds { lower: 0.0, upper, at: [0.0; 3] };
+        // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
+        let mut worst: Vec<u32> = bounds.iter().take(PROBED).map(|&(_, leaf)| leaf).collect();
+        let height = |leaf: u32| self.deviations[leaf as usize].height;
+        bounds.sort_unstable_by(|a, b| height(b.1).total_cmp(&height(a.1)).then(a.1.cmp(&b.1)));
+        worst.extend(bounds.iter().take(PROBED).map(|&(_, leaf)| leaf));
+        worst.sort_unstable();
+        worst.dedup();
+        for (place, point) in self.samples(&worst).into_iter().enumerate() {
+            // Once the interval is narrow more samples add little.
+            if place > 0 && best.lower > NARROW * upper {
+                break;
+            }
+            let distance = blocks.distance(self, emission, point);
+            if distance > best.lower {
+                (best.lower, best.at) = (distance, point.to_array());
+            }
+        }
+        best.lower = (best.lower - self.rounding()).max(0.0);
+        best
+    }
+
+    /// Points of the surface over leaves, those farthest from their own triangles first.
+    fn samples(&self, leaves: &[u32]) -> Vec<DVec3> {
+        let evaluation = self.evaluation(0.0);
+        let mut samples: Vec<(f64, DVec3)> = Vec::new();
+        for &leaf in leaves {
+            let corners = self.forest.corners(leaf).map(|vertex| self.points[vertex as usize].position);
+            let middles = [0, 1, 2].map(|edge| {
+                self.forest.middle(leaf, edge).map(|vertex| self.points[vertex as usize].position)
+            });
+            let facets: Vec<Facet> = leaf_triangles(corners, middles, self.diagonals[leaf as usize])
+                .map(|triangle| Facet::new(triangle.corners))
+                .collect();
+            let own =
+                |point: DVec3| facets.iter().map(|facet| facet.squared(point)).fold(f64::INFINITY, f64::min);
+            let points = evaluation.samples(leaf, SAMPLED_LEVELS).into_iter();
+            samples.extend(points.map(|point| (own(point), point)).max_by(|a, b| a.0.total_cmp(&b.0)));
+        }
+        samples.sort_by(|a, b| b.0.total_cmp(&a.0));
+        samples.into_iter().map(|(_, point)| point).collect()
+    }
+
+    /// What rounding can have done to a distance: positions are convex combinations of convex combinations, one for
+    /// each level, and each adds a few units in the last place of the coordinates' size.
+    fn rounding(&self) -> f64 {
+        let size = self.control.positions().iter().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
+        let levels =
+            (0..self.forest.node_count() as u32).map(|node| self.forest.level(node)).max().unwrap_or(0);
+        (32 + 8 * levels) as f64 * f64::EPSILON * size
     }
 }
