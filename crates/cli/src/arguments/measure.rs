@@ -67,9 +67,9 @@ pub(crate) struct MeasureArguments {
     #[arg(long, value_name = "G", value_parser = values::extent, allow_hyphen_values = true)]
     pub(crate) gap: Option<Extent>,
 
-    /// Work after which the interval is given as it is, in each direction [default: 1000000000, about a minute]
+    /// Work after which the interval is given as it is, in each direction [default: 1000000000, about half a minute]
     ///
-    /// A unit is a piece of a triangle bounded, or a triangle looked at for that. With --certified only.
+    /// A unit is a piece of a triangle bounded, or a triangle or box looked at for that. With --certified only.
     #[arg(long, value_name = "N")]
     pub(crate) max_work: Option<u64>,
 

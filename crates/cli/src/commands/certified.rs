@@ -48,7 +48,7 @@ pub(super) fn outcome(measured: &CertifiedHausdorff) -> Outcome {
         return Outcome::Done;
     }
     Outcome::StoppedShort(format!(
-        "the interval, from {} to {}, is as certain but wider than asked for: the work ran out; raise --max-work or --gap",
+        "the interval, from {} to {}, is as certain but wider than asked for: the search was cut short; raise --max-work or --gap",
         at_least(measured.lower()),
         at_most(measured.upper())
     ))
@@ -95,6 +95,6 @@ pub(super) fn in_words(measured: &CertifiedHausdorff) -> String {
 }
 
 fn row(name: &str, bounds: &Bounds) -> Vec<String> {
-    let remark = if bounds.converged { "" } else { "work ran out" };
+    let remark = if bounds.converged { "" } else { "cut short" };
     vec![name.to_owned(), at_least(bounds.lower), at_most(bounds.upper), remark.to_owned()]
 }

@@ -106,7 +106,7 @@ impl Bvh<'_> {
     /// The triangle nearest to a point of the group, starting from a guess.
     #[inline]
     fn search_frontier(&self, frontier: &Frontier, at: &Located, guess: u32) -> Nearest {
-        let mut nearest = Nearest { squared: self.foot(guess, at).squared, face: guess };
+        let mut nearest = Nearest { squared: self.foot(guess, at).squared, face: guess, visited: 0 };
         let mut bound = nearest.bound();
         let point = splat(at.local);
         let mut stack = [0; STACK];

@@ -69,18 +69,20 @@ pub(super) struct Nearest {
     pub(super) squared: f64,
     /// The triangle.
     pub(super) face: u32,
+    /// Nodes visited for it.
+    pub(super) visited: u32,
 }
 
 impl Nearest {
     /// Nothing found yet.
-    const NONE: Self = Self { squared: f64::INFINITY, face: u32::MAX };
+    const NONE: Self = Self { squared: f64::INFINITY, face: u32::MAX, visited: 0 };
 
     /// Takes the candidate if it is nearer, or as near with a lesser index.
     #[inline]
     fn offer(&mut self, squared: f64, face: u32) -> bool {
         let better = squared < self.squared || (squared == self.squared && face < self.face);
         if better {
-            *self = Self { squared, face };
+            *self = Self { squared, face, ..*self };
         }
         better
     }
@@ -187,8 +189,13 @@ impl<'a> Bvh<'a> {
     }
 
     fn closest_with_guess(&self, point: [f64; 3], guess: Option<u32>) -> ClosestPoint {
+        self.closest_counted(point, guess).0
+    }
+
+    /// The same, and how many nodes were visited for it.
+    pub(super) fn closest_counted(&self, point: [f64; 3], guess: Option<u32>) -> (ClosestPoint, u32) {
         if !point.iter().all(|x| x.is_finite()) {
-            return ClosestPoint { point: [f64::NAN; 3], distance: f64::NAN, face: 0 };
+            return (ClosestPoint { point: [f64::NAN; 3], distance: f64::NAN, face: 0 }, 0);
         }
         let from = vector(point);
         let at = self.frame.locate(from);
@@ -198,7 +205,7 @@ impl<'a> Bvh<'a> {
         let on_surface = a * foot.weights[0] + b * foot.weights[1] + c * foot.weights[2];
         let distance =
             if at.pulled_in { distance(from, on_surface) } else { self.frame.length(nearest.squared.sqrt()) };
-        ClosestPoint { point: on_surface.to_array(), distance, face: nearest.face }
+        (ClosestPoint { point: on_surface.to_array(), distance, face: nearest.face }, nearest.visited)
     }
 
     /// Vertices of the triangle at place `slot` of the tree's order, in which neighbours are near in space.
@@ -279,6 +286,7 @@ impl<'a> Bvh<'a> {
             if squared > *bound {
                 continue;
             }
+            nearest.visited = nearest.visited.saturating_add(1);
             let (lanes, count) = self.node(entry).sorted_within(point, *bound);
             if entry.level + 1 == self.levels() {
                 for &lane in &lanes[..count] {

@@ -54,7 +54,7 @@ struct View {
     rows: [DVec3; 3],
     /// How far the vertices that computed coordinates stand for may be from the true ones.
     slack: f64,
-    /// Sine of the angle between the direction and the triangle's normal.
+    /// Sine of the angle between the direction and the triangle's normal, or a little more.
     tilt: f64,
 }
 
@@ -94,7 +94,9 @@ impl View {
         let rows =
             [e2.cross(direction) / determinant, direction.cross(e1) / determinant, normal / determinant];
         let usable = slack.is_finite() && cosine.is_finite() && rows.iter().all(|row| row.is_finite());
-        usable.then(|| Self { base: a, rows, slack, tilt: (1.0 - cosine * cosine).max(0.0).sqrt() })
+        // The cosine is known to some roundings times the condition, of which the root makes far more near 1.
+        let squared = (1.0 - cosine * cosine).max(0.0) + 64.0 * condition * ROUNDOFF;
+        usable.then(|| Self { base: a, rows, slack, tilt: squared.sqrt() })
     }
 
     #[inline]
@@ -251,8 +253,8 @@ fn weights(p: DVec3) -> [f64; 3] {
 fn turn(a: DVec3, b: DVec3, x: f64, y: f64) -> i32 {
     let (left, right) = ((a.x - x) * (b.y - y), (a.y - y) * (b.x - x));
     let difference = left - right;
-    // 3 roundings and a little; 4 are allowed.
-    let error = 4.0 * ROUNDOFF * (left.abs() + right.abs());
+    // 3 roundings and a little, where nothing vanishes; 4 are allowed.
+    let error = 4.0 * ROUNDOFF * (left.abs() + right.abs()) + f64::MIN_POSITIVE;
     if difference > error {
         1
     } else if difference < -error {

@@ -7,8 +7,8 @@
 //!
 //! *Rounding.* Lower ends are distances of points as the hierarchy finds them, less what the search and the points may
 //! be off; upper ends never rest on a search, only on points that lie on the other surface, and are increased by what
-//! those may be off. [`scale`] says by how much: about 4e-12 of the surface's size below, 4e-14 of the greatest
-//! coordinate above.
+//! those may be off. [`scale`] says by how much: about 1.5e-11 of the surface's size below, 4e-14 of
+//! the greatest coordinate above.
 //!
 //! *Rejected.* Steps and single triangles alone (Tang, Lee and Kim 2009; CGAL): where surfaces nearly coincide a triangle
 //! must be split until its pieces are as small as the distance. Clipping each triangle along the triangles of the other
@@ -38,13 +38,14 @@ use target::Target;
 pub struct CertifiedOptions {
     /// An interval no wider than this is narrow enough, in the surfaces' unit. `None`, the default: a millionth of
     /// the diagonal of the reference's bounding box. Negative numbers and NaN count as 0, and less than rounding
-    /// allows (about 1e-11 of the surfaces' size) as that.
+    /// allows (about 1e-10 of the surfaces' size) as that.
     pub gap: Option<f64>,
     /// So is one no wider than this share of the lower bound; 0.01 by default. Negative numbers and NaN count as 0.
     pub relative_gap: f64,
     /// Work after which the search ends in each direction, with the interval that it has reached by then, which is
-    /// wider than asked for but as certain. A unit is a piece bounded or a triangle looked at for that; the default, 10⁹,
-    /// is about a minute on one thread. A first bound of every triangle is always made.
+    /// wider than asked for but as certain. A unit is a piece bounded, or a triangle or box of triangles looked at for
+    /// that; the default, 10⁹, is about half a minute on one thread. A first bound of every triangle is always made, and
+    /// the search also ends where more than four million pieces wait to be split.
     pub max_work: u64,
 }
 

@@ -58,31 +58,32 @@ pub(super) struct Worker<'t, 's, 'a> {
     middle_first: bool,
     /// The farthest point met.
     pub(super) farthest: Sample,
-    /// Pieces bounded.
-    bounded: u64,
+    /// Pieces bounded, and nodes visited in searches.
+    steps: u64,
 }
 
 impl<'t, 's, 'a> Worker<'t, 's, 'a> {
     pub(super) fn new(target: &'t Target<'s, 'a>, limit: usize, middle_first: bool) -> Self {
         let farthest = Sample { point: DVec3::ZERO, distance: f64::NEG_INFINITY };
-        Self { target, cover: Cover::new(), limit, middle_first, farthest, bounded: 0 }
+        Self { target, cover: Cover::new(), limit, middle_first, farthest, steps: 0 }
     }
 
-    /// Pieces bounded and triangles looked at for that.
+    /// Pieces bounded, and triangles and boxes looked at for that.
     pub(super) fn work(&self) -> u64 {
-        self.bounded + self.cover.visited
+        self.steps + self.cover.visited
     }
 
     /// The nearest triangle to a point of a piece, which counts as a sample.
     fn sample(&mut self, point: DVec3, guess: u32) -> Near {
         let near = self.target.nearest(point, guess);
+        self.steps += u64::from(near.visited);
         self.farthest = self.farthest.farther(Sample { point, distance: near.distance });
         near
     }
 
     /// An upper bound of the distance of a piece; better ones are tried until one is at most `goal`.
     pub(super) fn bound(&mut self, t: [DVec3; 3], faces: [u32; 3], goal: f64) -> f64 {
-        self.bounded += 1;
+        self.steps += 1;
         let slack = self.target.scale.slack;
         let best = self.by_corners(t, faces) + slack;
         if best <= goal {

@@ -20,9 +20,11 @@ pub(super) const DEEPEST: u32 = 64;
 const POINT_ROUNDINGS: f64 = 320.0;
 
 /// Relative to the size of the surface searched, how far the distance that a search returns may be from the truth.
-/// The worst are points above the inside of a sliver, whose normal is known to 2^-52 divided by the least sine that
-/// [`closest_to_origin`](crate::measure::triangle::closest_to_origin) trusts, 3e-4: below 2^-40; 2^-38 leaves room.
-const SEARCH: f64 = 1.0 / (1u64 << 38) as f64;
+/// The worst are points above the inside of a sliver: with the least sine that
+/// [`closest_to_origin`](crate::measure::triangle::closest_to_origin) trusts, 3e-4, the direction of its normal is known
+/// to 8 / 3e-4 roundings, and its plane at the foot of the point to that share of its size, 3e-12; 2^-36 is five times
+/// that.
+const SEARCH: f64 = 1.0 / (1u64 << 36) as f64;
 
 /// The common scale.
 #[derive(Clone, Copy, Debug)]

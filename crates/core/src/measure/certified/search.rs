@@ -28,7 +28,7 @@ const RUN: usize = 1024;
 const BATCH: usize = 4096;
 const PIECES: usize = 32;
 
-/// Pieces waiting at most; each takes about 100 bytes.
+/// Pieces waiting at most, beside the triangles themselves; each takes about 100 bytes.
 const WAITING: usize = 1 << 22;
 
 /// A sheet has at most this many triangles, and this many times as many as the surface searched has for one of the
@@ -193,7 +193,8 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
     /// Splits pieces until all are within the goal or the work is used up.
     fn refine(&mut self) {
         let mut batch = Vec::with_capacity(BATCH);
-        while self.work < self.most_work && self.waiting.len() < WAITING {
+        let most_waiting = self.waiting.len() + WAITING;
+        while self.work < self.most_work && self.waiting.len() < most_waiting {
             let goal = self.goal();
             batch.clear();
             while batch.len() < BATCH && self.waiting.peek().is_some_and(|worst| worst.piece.upper > goal) {

@@ -18,6 +18,8 @@ pub(super) struct Target<'s, 'a> {
 pub(super) struct Near {
     pub(super) distance: f64,
     pub(super) face: u32,
+    /// Nodes of the hierarchy visited for it.
+    pub(super) visited: u32,
 }
 
 impl Target<'_, '_> {
@@ -39,8 +41,8 @@ impl Target<'_, '_> {
     /// The nearest triangle and its distance, within [`Scale::search_slack`] of the truth.
     #[inline]
     pub(super) fn nearest(&self, p: DVec3, guess: u32) -> Near {
-        let found = self.bvh.closest_from(self.scale.back(p).to_array(), guess);
-        Near { distance: self.scale.length(found.distance), face: found.face }
+        let (found, visited) = self.bvh.closest_counted(self.scale.back(p).to_array(), Some(guess));
+        Near { distance: self.scale.length(found.distance), face: found.face, visited }
     }
 
     /// The distance of a point to some point of a triangle, the nearest but for rounding: within [`Scale::slack`] never
