@@ -50,7 +50,7 @@ impl View {
     }
 
     /// Refuses a dilatation below 0, a direction without length, and what is no number.
-    pub(super) fn check(&self) -> Result<(), CriterionError> {
+    pub(crate) fn check(&self) -> Result<(), CriterionError> {
         let bad = |name, value, expected| Err(CriterionError::BadParameter { name, value, expected });
         if !(self.dilatation >= 0.0 && self.dilatation.is_finite()) {
             return bad("dilatation", self.dilatation, "a finite number of at least 0");
@@ -69,7 +69,7 @@ impl View {
     }
 
     /// The unit direction of sight towards a face with that centroid.
-    pub(super) fn direction(&self, centroid: DVec3) -> DVec3 {
+    pub(crate) fn direction(&self, centroid: DVec3) -> DVec3 {
         match self.sight {
             Sight::Direction(direction) => unit_or_zero(vector(direction)),
             Sight::Eye(eye) => unit_or_zero(centroid - vector(eye)),

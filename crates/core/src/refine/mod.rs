@@ -11,7 +11,10 @@ mod stepwise;
 mod tags;
 mod uniform;
 
-pub use exact::{ErrorBounds, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin, exact};
+pub use exact::{
+    Camera, ErrorBounds, Estimate, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin,
+    exact, exact_estimate,
+};
 pub use stepwise::{SeamRule, StepwiseOptions, stepwise};
 pub use uniform::{UniformOptions, uniform};
 

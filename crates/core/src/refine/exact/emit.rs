@@ -55,6 +55,7 @@ impl Growth<'_> {
             origins,
             parents,
             error,
+            worst: if self.demand.is_some() { self.worst_value() } else { 0.0 },
             stop,
             levels: (0..self.forest.node_count() as u32)
                 .map(|node| self.forest.level(node))

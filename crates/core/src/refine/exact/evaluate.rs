@@ -34,6 +34,8 @@ pub(super) struct Found {
 pub(super) struct Leaf {
     pub(super) node: u32,
     pub(super) value: f64,
+    /// What distances were multiplied by.
+    pub(super) scale: f64,
     pub(super) deviation: Deviation,
     /// The diagonal by which a leaf with two split edges is cut starts at the unsplit edge's end.
     pub(super) diagonal_from_end: bool,
@@ -127,21 +129,23 @@ impl Evaluation<'_> {
                 }
             }
         }
-        let scale = self.demand.distance_scale().unwrap_or(0.0);
         let open = self.forest.open_edges(node);
         let mut best: Option<Leaf> = None;
         for diagonal_from_end in [false, true] {
-            let mut leaf = Leaf { node, value: 0.0, deviation: Deviation::default(), diagonal_from_end };
+            let mut leaf =
+                Leaf { node, value: 0.0, scale: 0.0, deviation: Deviation::default(), diagonal_from_end };
             for triangle in leaf_triangles(corners, middles, diagonal_from_end) {
                 let LeafTriangle { part, corners: triangle, borders } = triangle;
                 let facet = Facet::new(triangle.map(|point| point.position));
                 let (chord, slope) = expected(&facet, &triangle);
+                let scale = self.demand.distance_scale(&facet, &triangle);
                 let open = borders.map(|border| border.is_some_and(|edge| open[edge]));
                 let effort =
                     Effort { target: self.target / scale, halvings: self.halvings, open, chord, slope };
                 let found = deviation(patch, part, &facet, self.rules, effort);
                 let value = (found.bound(chord, slope) * scale).max(self.demand.cone(&facet, &triangle));
                 leaf.value = leaf.value.max(value);
+                leaf.scale = leaf.scale.max(scale);
                 leaf.deviation = leaf.deviation.max(found);
             }
             if best.is_none_or(|best| leaf.value < best.value) {

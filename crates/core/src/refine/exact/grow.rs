@@ -45,6 +45,8 @@ pub(super) struct Growth<'a> {
     pub(super) values: Vec<f64>,
     /// By node: the deviations as a leaf.
     pub(super) deviations: Vec<Deviation>,
+    /// By node: what distances are multiplied by for the value.
+    pub(super) scales: Vec<f32>,
     /// By node: whether a leaf's diagonal starts at the unsplit edge's end.
     pub(super) diagonals: Vec<bool>,
     /// By node: whether the value was not tightened, being below the target of its time.
@@ -76,7 +78,7 @@ impl<'a> Growth<'a> {
             sharpness,
             rules,
             options,
-            demand: Demand { tolerance: options.tolerance, angle: options.angle },
+            demand: Demand::of(options)?,
             forest,
             points: points
                 .map(|(position, normal)| LimitPoint { position: vector(position), normal: vector(*normal) })
@@ -88,7 +90,8 @@ impl<'a> Growth<'a> {
             loose: vec![false; nodes],
             marks: vec![0; nodes],
             wanted: (0..nodes as u32).collect(),
-            budget: options.budget(),
+            scales: vec![0.0; nodes],
+            budget: options.budget().0,
             round: 0,
         })
     }
@@ -120,7 +123,7 @@ impl<'a> Growth<'a> {
     }
 
     /// Evaluates and splits until no leaf is known to fail.
-    fn grow(&mut self, floor: f64) -> Result<ExactStop, RefineError> {
+    pub(super) fn grow(&mut self, floor: f64) -> Result<ExactStop, RefineError> {
         // With a budget the worst come first: the target falls from round to round.
         let mut target = if self.options.triangles.is_some() { f64::INFINITY } else { floor };
         loop {
@@ -148,6 +151,11 @@ impl<'a> Growth<'a> {
         splittable.map(|node| self.values[node as usize]).fold(0.0, f64::max)
     }
 
+    /// The greatest value of any leaf.
+    pub(super) fn worst_value(&self) -> f64 {
+        self.leaf_nodes().map(|node| self.values[node as usize]).fold(0.0, f64::max)
+    }
+
     fn leaf_nodes(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.forest.node_count() as u32).filter(|&node| self.forest.children(node).is_none())
     }
@@ -172,7 +180,7 @@ impl<'a> Growth<'a> {
                 continue;
             }
             if !self.fits(node) {
-                stop = self.options.budget_stop();
+                stop = self.options.budget().1;
                 break;
             }
             self.forest.split(node, &mut changes)?;
@@ -228,6 +236,7 @@ impl<'a> Growth<'a> {
                 let node = leaf.node as usize;
                 self.values[node] = leaf.value;
                 self.deviations[node] = leaf.deviation;
+                self.scales[node] = (leaf.scale as f32).next_up();
                 self.diagonals[node] = leaf.diagonal_from_end;
                 self.loose[node] = leaf.value <= target;
                 worst = worst.max(leaf.value);
@@ -291,6 +300,7 @@ impl<'a> Growth<'a> {
         let nodes = self.forest.node_count();
         self.values.resize(nodes, f64::INFINITY);
         self.deviations.resize(nodes, Deviation::default());
+        self.scales.resize(nodes, 0.0);
         self.diagonals.resize(nodes, false);
         self.loose.resize(nodes, false);
         self.marks.resize(nodes, 0);

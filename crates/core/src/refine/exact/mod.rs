@@ -9,8 +9,10 @@
 //! Rounds of "evaluate what changed, split what fails, worst first" go on until the goals are met.
 
 mod blocks;
+mod camera;
 mod demand;
 mod emit;
+mod estimate;
 mod evaluate;
 mod forest;
 mod grow;
@@ -18,7 +20,11 @@ mod leaf;
 mod options;
 mod probe;
 
-pub use options::{ErrorBounds, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin};
+pub use camera::Camera;
+pub use estimate::exact_estimate;
+pub use options::{
+    ErrorBounds, Estimate, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin,
+};
 
 use super::RefineError;
 use crate::mesh::Mesh;

@@ -2,13 +2,16 @@
 
 use core::ops::ControlFlow;
 
+use super::camera::Camera;
+use crate::criterion::View;
 use crate::mesh::{Mesh, MeshError};
+use crate::refine::RefineError;
 
 /// What exact refinement is to reach, and what it must not exceed.
 ///
 /// Of the goals on quality (tolerance, angle) each that is given is to be met everywhere; a number of triangles ends
 /// the refinement early, with the worst places refined first.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 #[non_exhaustive]
 pub struct ExactOptions<'a> {
     /// Greatest distance between mesh and limit surface, either way, as a length. Default: none.
@@ -16,12 +19,20 @@ pub struct ExactOptions<'a> {
     /// Greatest angle between a triangle's normal and the limit normals of its corners (the paper's equation 2), in
     /// radians. Default: none.
     pub angle: Option<f64>,
+    /// Makes the angle depend on where the viewer stands, as in the paper's equation 11. Default: none.
+    pub view: Option<View>,
+    /// Greatest distance between mesh and limit surface as the cameras see it, in pixels. Default: none.
+    pub pixels: Option<f64>,
+    /// The cameras that the distance in pixels is for; one mesh serves them all. Default: none.
+    pub cameras: Vec<Camera>,
     /// The best mesh with at most so many triangles. Default: none.
     pub triangles: Option<usize>,
     /// Levels at most below the control faces. Default: 24.
     pub max_levels: usize,
     /// Triangles at most, as a cap rather than a goal: reaching it is a failure to meet the others. Default: none.
     pub max_triangles: Option<usize>,
+    /// Bytes that the refinement and its result may take, about. Default: no limit.
+    pub max_memory: Option<usize>,
     /// Called after each round; may cancel. Default: none.
     pub observer: Option<ExactObserver<'a>>,
 }
@@ -29,14 +40,21 @@ pub struct ExactOptions<'a> {
 /// Levels that are tried where none are given: edges are divided by more than ten million then.
 const USUAL_LEVELS: usize = 24;
 
+/// Memory for a triangle and what belongs to it while the mesh grows, the result included: measured, with a margin.
+pub(super) const BYTES_PER_TRIANGLE: usize = 320;
+
 impl Default for ExactOptions<'_> {
     fn default() -> Self {
         Self {
             tolerance: None,
             angle: None,
+            view: None,
+            pixels: None,
+            cameras: Vec::new(),
             triangles: None,
             max_levels: USUAL_LEVELS,
             max_triangles: None,
+            max_memory: None,
             observer: None,
         }
     }
@@ -52,6 +70,18 @@ impl<'a> ExactOptions<'a> {
     /// Sets [`Self::angle`].
     pub fn angle(mut self, radians: f64) -> Self {
         self.angle = Some(radians);
+        self
+    }
+
+    /// Sets [`Self::view`].
+    pub fn view(mut self, view: View) -> Self {
+        self.view = Some(view);
+        self
+    }
+
+    /// Sets [`Self::pixels`] and [`Self::cameras`].
+    pub fn pixels(mut self, pixels: f64, cameras: Vec<Camera>) -> Self {
+        (self.pixels, self.cameras) = (Some(pixels), cameras);
         self
     }
 
@@ -73,28 +103,33 @@ impl<'a> ExactOptions<'a> {
         self
     }
 
+    /// Sets [`Self::max_memory`].
+    pub fn max_memory(mut self, bytes: Option<usize>) -> Self {
+        self.max_memory = bytes;
+        self
+    }
+
     /// Sets [`Self::observer`].
     pub fn observer(mut self, observer: ExactObserver<'a>) -> Self {
         self.observer = Some(observer);
         self
     }
 
-    /// Triangles that must not be exceeded.
-    pub(super) fn budget(&self) -> usize {
-        [self.triangles, self.max_triangles].into_iter().flatten().min().unwrap_or(usize::MAX)
-    }
-
-    /// What it means that the budget is used up.
-    pub(super) fn budget_stop(&self) -> ExactStop {
-        match (self.triangles, self.max_triangles) {
-            (Some(goal), cap) if cap.is_none_or(|cap| goal <= cap) => ExactStop::Triangles,
-            _ => ExactStop::TriangleCap,
-        }
+    /// Triangles that must not be exceeded, and why.
+    pub(super) fn budget(&self) -> (usize, ExactStop) {
+        let by_memory = self.max_memory.map(|bytes| bytes / BYTES_PER_TRIANGLE);
+        let limits = [
+            (self.triangles, ExactStop::Triangles),
+            (self.max_triangles, ExactStop::TriangleCap),
+            (by_memory, ExactStop::MemoryCap),
+        ];
+        let given = limits.into_iter().filter_map(|(limit, stop)| Some((limit?, stop)));
+        given.min_by_key(|&(limit, _)| limit).unwrap_or((usize::MAX, ExactStop::TriangleCap))
     }
 
     /// Refuses goals that are no positive numbers, and having none.
-    pub(super) fn check(&self) -> Result<(), MeshError> {
-        let bad = |name, value, expected| Err(MeshError::BadOption { name, value, expected });
+    pub(super) fn check(&self) -> Result<(), RefineError> {
+        let bad = |name, value, expected| Err(MeshError::BadOption { name, value, expected }.into());
         if let Some(tolerance) = self.tolerance
             && !(tolerance > 0.0 && tolerance.is_finite())
         {
@@ -105,8 +140,23 @@ impl<'a> ExactOptions<'a> {
         {
             return bad("angle", angle, "radians above 0, at most π");
         }
-        if self.tolerance.is_none() && self.angle.is_none() && self.triangles.is_none() {
-            return bad("number of goals", 0.0, "a tolerance, an angle or a number of triangles");
+        if let Some(pixels) = self.pixels
+            && !(pixels > 0.0 && pixels.is_finite())
+        {
+            return bad("distance in pixels", pixels, "a number above 0");
+        }
+        if self.pixels.is_some() && self.cameras.is_empty() {
+            return bad("number of cameras", 0.0, "at least one, for a distance in pixels");
+        }
+        if let Some(view) = self.view {
+            view.check().map_err(|why| MeshError::Broken {
+                place: why.to_string(),
+                what: "a view must show something",
+            })?;
+        }
+        let quality = self.tolerance.is_some() || self.angle.is_some() || self.pixels.is_some();
+        if !quality && self.triangles.is_none() {
+            return bad("number of goals", 0.0, "a tolerance, an angle, pixels or a number of triangles");
         }
         Ok(())
     }
@@ -137,6 +187,8 @@ pub enum ExactStop {
     Triangles,
     /// The next split would have passed the cap on triangles.
     TriangleCap,
+    /// The next split would have taken more memory than allowed.
+    MemoryCap,
     /// What still fails has been divided as often as allowed.
     LevelCap,
 }
@@ -176,8 +228,22 @@ pub struct Exact {
     pub parents: Vec<u32>,
     /// How far mesh and limit surface can be from each other.
     pub error: ErrorBounds,
+    /// How many times over the worst triangle fails the goals on quality: at most 1 where all are met; 0 without any.
+    pub worst: f64,
     /// Why the refinement ended.
     pub stop: ExactStop,
     /// Levels of the deepest part of the hierarchy.
     pub levels: usize,
+}
+
+/// What an exact refinement would give.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Estimate {
+    /// Triangles, exactly where there are few, extrapolated where there are many.
+    pub triangles: usize,
+    /// Bytes that the refinement and its result would take at most, about.
+    pub memory_bytes: usize,
+    /// Whether the triangles were counted rather than extrapolated.
+    pub is_counted: bool,
 }

@@ -22,10 +22,9 @@ impl Growth<'_> {
     /// Takes the bounds of all leaves with the angles between the emitted triangles; sets the values of those that
     /// come out above `limit`, which they were not expected to. Whether there are any.
     pub(super) fn settle(&mut self, emission: &Emission, limit: f64) -> bool {
-        let Some(scale) = self.demand.distance_scale() else { return false };
         let mut fails = false;
         for &leaf in &emission.leaves.order {
-            let value = self.settled(emission, leaf) * scale;
+            let value = self.settled(emission, leaf) * f64::from(self.scales[leaf as usize]);
             if value > limit {
                 self.values[leaf as usize] = value.max(self.values[leaf as usize]);
                 fails = true;

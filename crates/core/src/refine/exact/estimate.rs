@@ -1,0 +1,56 @@
+//! Predicts what an exact refinement would give, from how a coarser one grows.
+
+use super::grow::Growth;
+use super::options::{BYTES_PER_TRIANGLE, Estimate, ExactOptions, ExactStop};
+use crate::mesh::Mesh;
+use crate::refine::RefineError;
+use crate::scheme::Scheme;
+use crate::surface::Rules;
+
+/// Goals are approached by halves from this many times too coarse.
+const COARSEST: f64 = 64.0;
+
+/// Triangles that are counted before the rest is extrapolated.
+const COUNTED: usize = 60_000;
+
+/// Halving a distance at most doubles the triangles in the long run, halving an angle makes them four times as many.
+const MOST_GROWTH: f64 = 4.0;
+
+/// The triangles and the memory that [`super::exact`] would come to with the same options.
+///
+/// Numbers of triangles follow a power of the tolerance once the triangles are small against the surface's features; they
+/// are extrapolated from the last two halvings that could be counted quickly.
+///
+/// # Errors
+/// As for [`super::exact`].
+pub fn exact_estimate(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    options: &ExactOptions<'_>,
+) -> Result<Estimate, RefineError> {
+    options.check()?;
+    let Some(rules) = Rules::of(scheme) else {
+        return Err(RefineError::NotExact { scheme: scheme.name().to_owned() });
+    };
+    let of = |triangles: usize, is_counted| {
+        let triangles = triangles.min(options.budget().0).max(control.face_count());
+        Estimate { triangles, memory_bytes: triangles.saturating_mul(BYTES_PER_TRIANGLE), is_counted }
+    };
+    let mut growth = Growth::new(control, scheme, &rules, options)?;
+    if !growth.demand.is_some() {
+        return Ok(of(options.budget().0, false));
+    }
+    let (mut floor, mut before) = (COARSEST, control.face_count());
+    loop {
+        let stop = growth.grow(floor)?;
+        let count = growth.forest.triangle_count();
+        if stop != ExactStop::Met || floor == 1.0 {
+            return Ok(of(count, true));
+        }
+        if count > COUNTED && count > before {
+            let growth = (count as f64 / before as f64).min(MOST_GROWTH);
+            return Ok(of((count as f64 * growth.powf(floor.log2())) as usize, false));
+        }
+        (floor, before) = (floor / 2.0, count);
+    }
+}
