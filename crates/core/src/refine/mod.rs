@@ -5,6 +5,7 @@
 mod driver;
 mod exact;
 mod junctions;
+pub mod optimize;
 mod split;
 mod step;
 mod stepwise;
@@ -23,6 +24,7 @@ use core::time::Duration;
 
 use crate::criterion::CriterionError;
 use crate::limit::LimitError;
+use crate::measure::MeasureError;
 use crate::mesh::{Mesh, MeshError};
 
 /// Why a refinement gave no mesh.
@@ -44,6 +46,9 @@ pub enum RefineError {
         /// The scheme's name.
         scheme: String,
     },
+    /// A distance could not be measured.
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
     /// The observer asked to stop.
     #[error("cancelled after {steps} steps")]
     Cancelled {

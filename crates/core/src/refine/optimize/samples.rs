@@ -1,0 +1,78 @@
+//! Points of the fine surface, each in the care of the face of the coarse one that it is measured against.
+//!
+//! The first samples are the fine mesh's vertices, so that a vertex that goes becomes the sample of its number; the
+//! lists of the faces are chained through one array.
+
+use crate::mesh::NONE;
+use crate::vector::DVec3;
+
+/// Sample positions and which face cares for which.
+#[derive(Clone)]
+pub(super) struct Samples {
+    positions: Vec<DVec3>,
+    following: Vec<u32>,
+    first: Vec<u32>,
+    /// Greatest distance of a face's samples from it.
+    errors: Vec<f64>,
+    /// What the error around each fine vertex is known to exceed its estimate by; empty while nothing is known.
+    reserves: Vec<f64>,
+}
+
+impl Samples {
+    /// No face has samples yet.
+    pub(super) fn new(positions: Vec<DVec3>, faces: usize) -> Self {
+        Self {
+            following: vec![NONE; positions.len()],
+            positions,
+            first: vec![NONE; faces],
+            errors: vec![0.0; faces],
+            reserves: Vec::new(),
+        }
+    }
+
+    /// Where a sample, or the vertex of that number, is.
+    #[inline]
+    pub(super) fn position(&self, sample: u32) -> DVec3 {
+        self.positions[sample as usize]
+    }
+
+    /// Sets the reserves.
+    pub(super) fn reserve(&mut self, reserves: Vec<f64>) {
+        self.reserves = reserves;
+    }
+
+    /// What is to be added to the estimate of an error around a fine vertex.
+    #[inline]
+    pub(super) fn reserve_at(&self, vertex: u32) -> f64 {
+        self.reserves.get(vertex as usize).copied().unwrap_or(0.0)
+    }
+
+    /// Greatest distance of the samples of `face`.
+    #[inline]
+    pub(super) fn error(&self, face: u32) -> f64 {
+        self.errors[face as usize]
+    }
+
+    /// Puts a sample at `distance` into the care of `face`.
+    #[inline]
+    pub(super) fn give(&mut self, face: u32, sample: u32, distance: f64) {
+        let face = face as usize;
+        self.following[sample as usize] = self.first[face];
+        self.first[face] = sample;
+        self.errors[face] = self.errors[face].max(distance);
+    }
+
+    /// Takes all its samples from `face`, or none if it has none.
+    #[inline]
+    pub(super) fn clear(&mut self, face: u32) {
+        self.first[face as usize] = NONE;
+        self.errors[face as usize] = 0.0;
+    }
+
+    /// The samples of `face`.
+    #[inline]
+    pub(super) fn of(&self, face: u32) -> impl Iterator<Item = u32> + use<'_> {
+        let some = |sample: u32| (sample != NONE).then_some(sample);
+        core::iter::successors(some(self.first[face as usize]), move |&s| some(self.following[s as usize]))
+    }
+}
