@@ -112,18 +112,14 @@ pub(super) fn join_jordan_blocks(
 ) -> Vec<(Complex<f64>, bool)> {
     /// Eigenvalues of a block of size two differ by less than this fraction of the matrix.
     const CLOSE: f64 = 1e-6;
-    let (n, size) = (matrix.nrows(), matrix.norm());
+    let size = matrix.norm();
     let mut joined = Vec::with_capacity(values.len());
     while let Some(value) = values.pop() {
         let (near, far): (Vec<_>, Vec<_>) =
             values.iter().partition(|other| (*other - value).norm() <= CLOSE * size);
         let mean = (near.iter().sum::<Complex<f64>>() + value) / (near.len() + 1) as f64;
         let is_real = mean.im.abs() <= 1e-12 * size;
-        let defective = !near.is_empty() && is_real && n <= SINGULAR_VALUES_UP_TO && {
-            let shifted = matrix - DMatrix::identity(n, n) * mean.re;
-            let singular = shifted.try_svd(false, false, SINGULAR_VALUE_ACCURACY, 1000);
-            singular.is_some_and(|s| s.singular_values.iter().filter(|&&s| s <= 1e-9 * size).count() == 1)
-        };
+        let defective = !near.is_empty() && is_real && eigenspace_dimension(matrix, mean.re) == Some(1);
         if defective {
             joined.push((Complex::new(mean.re, 0.0), true));
             values = far;
@@ -132,6 +128,18 @@ pub(super) fn join_jordan_blocks(
         }
     }
     joined
+}
+
+/// How many independent eigenvectors a matrix has for an eigenvalue; `None` for matrices larger than
+/// [`SINGULAR_VALUES_UP_TO`].
+pub(super) fn eigenspace_dimension(matrix: &DMatrix<f64>, eigenvalue: f64) -> Option<usize> {
+    let (n, size) = (matrix.nrows(), matrix.norm());
+    if n > SINGULAR_VALUES_UP_TO {
+        return None;
+    }
+    let shifted = matrix - DMatrix::identity(n, n) * eigenvalue;
+    let singular = shifted.try_svd(false, false, SINGULAR_VALUE_ACCURACY, 1000)?;
+    Some(singular.singular_values.iter().filter(|&&s| s <= 1e-9 * size).count())
 }
 
 /// The strongly connected components of the pattern of a square matrix, where row i depends on the columns that

@@ -11,12 +11,13 @@
 //!   at the boundary neighbours and −2x − σ at the vertex. (The masks in common use belong to other boundary
 //!   rules than 3/4, 1/8, 1/8; with these rules they are off by degrees from five edges on, see the tests.)
 //!   With two edges there is no interior neighbour and both tangents come from B.
-//! * **Corner**: the two dominant left eigenvectors of B, that is both boundary edges, where they dominate A.
+//! * **Corner**: the two dominant left eigenvectors of B, that is both boundary edges, where they dominate A or draw
+//!   it along.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::LimitError;
-use super::eigen::{block, components, eigenvalues, join_jordan_blocks, left_vector};
+use super::eigen::{block, components, eigenspace_dimension, eigenvalues, join_jordan_blocks, left_vector};
 use super::neighbourhood::Neighbourhood;
 use super::stencil::{LimitStencil, TangentPlane, is_real, same_modulus};
 
@@ -55,7 +56,7 @@ pub(super) fn analyse(neighbourhood: &Neighbourhood<'_>) -> Result<LimitStencil,
         );
         return Err(neighbourhood.unsuitable(what));
     }
-    let Some((pair, plane, next)) = choose(neighbourhood, &modes) else { return Ok(bare) };
+    let Some((pair, plane, next)) = choose(neighbourhood, &differences, &modes) else { return Ok(bare) };
     let vector = |mode: Mode| left_vector(&differences, &components, mode.component, mode.value.re);
     let (Some(along), Some(across)) = (vector(pair[0]), vector(pair[1])) else { return Ok(bare) };
     let tangents = scaled(neighbourhood, along, across);
@@ -136,7 +137,11 @@ fn modes(
 }
 
 /// The modes of both tangents, what they span, and the greatest modulus among the others.
-fn choose(neighbourhood: &Neighbourhood<'_>, modes: &[Mode]) -> Option<([Mode; 2], TangentPlane, f64)> {
+fn choose(
+    neighbourhood: &Neighbourhood<'_>,
+    differences: &DMatrix<f64>,
+    modes: &[Mode],
+) -> Option<([Mode; 2], TangentPlane, f64)> {
     let place =
         |from: usize, on_boundary: bool| (from..modes.len()).find(|&i| modes[i].on_boundary == on_boundary);
     let modulus = |i: Option<usize>| i.map_or(0.0, |i| modes[i].value.norm());
@@ -160,6 +165,9 @@ fn choose(neighbourhood: &Neighbourhood<'_>, modes: &[Mode]) -> Option<([Mode; 2
         && same_modulus(fast, greatest_other)
         && !(0..modes.len())
             .any(|i| i != across && modes[i].defective && same_modulus(modes[i].value.norm(), fast));
+    if from_boundary && draws_others_along(differences, modes, pair) {
+        return Some((pair, TangentPlane::Surface, fast));
+    }
     if strict(slow.min(fast), greatest_other) || outlasts {
         return Some((pair, TangentPlane::Surface, next));
     }
@@ -172,6 +180,22 @@ fn choose(neighbourhood: &Neighbourhood<'_>, modes: &[Mode]) -> Option<([Mode; 2
         TangentPlane::BoundaryRibbon,
         next,
     ))
+}
+
+/// Whether patterns inside that shrink exactly as both boundary edges do are drawn along by these, and so outgrown by
+/// the boundary's plane (like the number of steps): D has no other left eigenvectors for that eigenvalue.
+///
+/// So it is at corners of three faces with Loop's scheme.
+fn draws_others_along(differences: &DMatrix<f64>, modes: &[Mode], pair: [Mode; 2]) -> bool {
+    let value = pair[0].value;
+    let is_same = |mode: &Mode| (mode.value - value).norm() <= 1e-12;
+    let no_slower =
+        |mode: &&Mode| mode.value.norm() > value.norm() || same_modulus(mode.value.norm(), value.norm());
+    let count = modes.iter().filter(no_slower).count();
+    is_same(&pair[1])
+        && count > 2
+        && modes.iter().filter(no_slower).all(is_same)
+        && eigenspace_dimension(differences, value.re) == Some(2)
 }
 
 /// Both eigenvectors in the scale that [`LimitStencil::tangent_weights`] promises.

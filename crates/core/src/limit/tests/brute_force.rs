@@ -188,6 +188,24 @@ fn jordan_block_at_a_tip() {
     assert!(error < TOLERANCE, "off by {error:e}");
 }
 
+/// A corner of three faces: the boundary edges draw the neighbours inside into their plane, all three faces' normals
+/// tend to its normal like 1/steps.
+#[test]
+fn boundary_edges_draw_along_the_inside_of_a_corner() {
+    let shape = RingShape { corner: true, ..RingShape::boundary(4) };
+    for scheme in [&Loop as &dyn Scheme, &LoopWarren] {
+        let stencil = stencil(scheme, shape);
+        let start = random_points(stencil.position_weights().len() - 1, 3);
+        let expected = predicted(&stencil, &start);
+        let off = |steps: usize| {
+            let met = iterated_normals(scheme, shape, &start, steps);
+            met.into_iter().map(|normal| distance(normal, expected)).fold(0.0, f64::max)
+        };
+        let (early, late) = (off(2000), off(8000));
+        assert!(early < 0.01 && (late / early - 0.25).abs() < 0.01, "{}: {early} {late}", scheme.name());
+    }
+}
+
 /// Patterns that do not single out a plane: Warren's weight without its exception makes all three eigenvalues of
 /// a ring of three 1/4, and every step keeps the shape of the ring.
 #[test]
