@@ -31,6 +31,30 @@ pub(crate) fn number(x: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
+/// Digits of a bound, of which more would not be looked at.
+const BOUND_DIGITS: i32 = 4;
+
+/// An upper bound in four digits, rounded up: what is printed bounds as well.
+pub(crate) fn upper_bound(x: f64) -> String {
+    bound(x, f64::ceil)
+}
+
+/// A lower bound in four digits, rounded down.
+pub(crate) fn lower_bound(x: f64) -> String {
+    bound(x, f64::floor)
+}
+
+fn bound(x: f64, round: impl Fn(f64) -> f64) -> String {
+    if !(x > 0.0 && x.is_finite()) {
+        return number(x);
+    }
+    let exponent = x.log10().floor() as i32 - BOUND_DIGITS + 1;
+    let power = 10f64.powi(exponent.abs());
+    let digits = round(if exponent < 0 { x * power } else { x / power });
+    // The digits and the power as text: no rounding by a multiplication.
+    format!("{digits:.0}e{exponent}").parse().map_or_else(|_| number(x), number)
+}
+
 /// `(x, y, z)`.
 pub(crate) fn point(p: [f64; 3]) -> String {
     format!("({}, {}, {})", number(p[0]), number(p[1]), number(p[2]))
@@ -94,6 +118,21 @@ mod tests {
         ];
         for (x, text) in pairs {
             assert_eq!(number(x), text);
+        }
+    }
+
+    #[test]
+    fn bounds_are_rounded_outwards() {
+        let pairs = [
+            (0.099_999_9, "0.1", "0.09999"),
+            (0.012_345_6, "0.01235", "0.01234"),
+            (1234.5, "1235", "1234"),
+            (98_765.4, "98770", "98760"),
+            (0.5, "0.5", "0.5"),
+            (0.0, "0", "0"),
+        ];
+        for (x, above, below) in pairs {
+            assert_eq!((upper_bound(x).as_str(), lower_bound(x).as_str()), (above, below), "{x}");
         }
     }
 

@@ -162,6 +162,38 @@ pub enum WriteError {
         /// Number of vertices.
         vertices: usize,
     },
+    /// A property's name is empty, has other than visible ASCII characters, or is there twice.
+    #[error("property '{name}': expected a name of visible ASCII characters that nothing else has")]
+    PropertyName {
+        /// The name.
+        name: String,
+    },
+    /// A property does not have one number for each element.
+    #[error("property '{name}' has {count} numbers for {elements} {what}, expected one for each")]
+    PropertyCount {
+        /// The property's name.
+        name: String,
+        /// How many numbers there are.
+        count: usize,
+        /// Number of vertices or triangles.
+        elements: usize,
+        /// `vertices` or `triangles`.
+        what: &'static str,
+    },
+    /// A property is NaN or infinite somewhere.
+    #[error(
+        "property '{name}' of element {element} is {value}, which {format} files cannot hold, expected a finite number"
+    )]
+    PropertyNotFinite {
+        /// The property's name.
+        name: String,
+        /// The vertex or triangle.
+        element: usize,
+        /// The value.
+        value: f64,
+        /// The format.
+        format: Format,
+    },
     /// A triangle or a tag names a vertex that does not exist.
     #[error("{what} {index} names vertex {vertex}, but there are {vertices} vertices")]
     VertexOutOfRange {

@@ -8,7 +8,7 @@
 //! | | read | written |
 //! |---|---|---|
 //! | OBJ | polygons, relative indices, `t crease` and `t corner` tags | `f64` digits, normals, colours, tags |
-//! | PLY | ASCII and binary of both byte orders, triangle strips | `f64`, binary (or ASCII), normals, colours, quality |
+//! | PLY | ASCII and binary of both byte orders, triangle strips | `f64`, binary (or ASCII), normals, colours, quality, named properties |
 //! | STL | ASCII and binary, several solids; three vertices a facet, not merged | `f32` binary (or ASCII with `f64` digits) |
 //! | OFF | polygons; extra columns are skipped | `f64` digits, normals, colours |
 //!
@@ -34,4 +34,4 @@ mod write;
 pub use error::{Flaw, Place, ReadError, WriteError};
 pub use format::{Format, UnknownFormat};
 pub use read::{read, read_bytes};
-pub use write::{Output, WriteOptions, write, write_to, write_whole};
+pub use write::{Output, Property, PropertyValues, WriteOptions, write, write_to, write_whole};

@@ -4,7 +4,9 @@
 #![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
 
 use limitmesh::mesh::{CornerTag, CreaseTag, PolygonSoup, Triangles};
-use limitmesh_io::{Format, Output, WriteError, WriteOptions, read_bytes, write, write_to, write_whole};
+use limitmesh_io::{
+    Format, Output, Property, WriteError, WriteOptions, read_bytes, write, write_to, write_whole,
+};
 use proptest::prelude::*;
 use std::fs;
 use std::io;
@@ -297,6 +299,64 @@ impl io::Write for Full {
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }
+}
+
+#[test]
+fn properties_are_columns_of_ply_files_and_skipped_when_read() {
+    let surface = Triangles { positions: &POSITIONS, triangles: &TRIANGLES };
+    let vertices = POSITIONS.len();
+    let small: Vec<u32> = (0..vertices as u32).collect();
+    let large: Vec<u32> = small.iter().map(|v| v + i32::MAX as u32).collect();
+    let numbers: Vec<f64> = small.iter().map(|&v| -0.1 * f64::from(v)).collect();
+    let faces = vec![7; TRIANGLES.len()];
+    let columns = [
+        Property::integers("small", &small),
+        Property::integers("large", &large),
+        Property::numbers("number", &numbers),
+    ];
+    let of_faces = [Property::integers("origin", &faces)];
+    let output = Output::new(surface).vertex_properties(&columns).face_properties(&of_faces);
+    let text = String::from_utf8(written(Format::Ply, &output, true)).unwrap();
+    let (header, body) = text.split_once("end_header\n").unwrap();
+    for line in ["property int small", "property uint large", "property double number", "property int origin"]
+    {
+        assert!(header.lines().any(|l| l == line), "{line} in\n{header}");
+    }
+    for (v, line) in body.lines().take(vertices).enumerate() {
+        let cells: Vec<&str> = line.split(' ').skip(3).collect();
+        assert_eq!(cells[0].parse(), Ok(small[v]));
+        assert_eq!(cells[1].parse(), Ok(large[v]));
+        assert_eq!(cells[2].parse(), Ok(numbers[v]));
+    }
+    assert!(body.lines().skip(vertices).all(|line| line.ends_with(" 7")));
+    for &format in Format::ALL {
+        for ascii in [false, true] {
+            let mut read = read_back(format, &output, ascii);
+            // Reading tells what it leaves out; formats other than PLY have nothing of it.
+            assert_eq!(!read.left_out.is_empty(), format == Format::Ply, "{:?}", read.left_out);
+            read.left_out.clear();
+            assert_eq!(read, read_back(format, &Output::new(surface), ascii));
+        }
+    }
+}
+
+#[test]
+fn properties_that_do_not_fit_are_refused() {
+    let surface = Triangles { positions: &POSITIONS, triangles: &TRIANGLES };
+    let zeros = vec![0.0; POSITIONS.len()];
+    let refused = |property: Property<'_>, twice: bool| {
+        let columns = vec![property; if twice { 2 } else { 1 }];
+        let output = Output::new(surface).vertex_properties(&columns);
+        write_to(&mut Vec::new(), Format::Ply, &output, &WriteOptions::default()).unwrap_err().to_string()
+    };
+    for name in ["", "two words", "x", "quality", "größe", "line\n"] {
+        assert!(refused(Property::numbers(name, &zeros), false).contains("name"), "{name}");
+    }
+    assert!(refused(Property::numbers("again", &zeros), true).contains("again"));
+    assert!(refused(Property::numbers("few", &zeros[1..]), false).contains("expected one for each"));
+    let mut infinite = zeros.clone();
+    infinite[1] = f64::INFINITY;
+    assert!(refused(Property::numbers("far", &infinite), false).contains("element 1 is inf"));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::values;
-use super::{BuildArguments, SchemeName};
+use super::{BuildArguments, FeatureArguments, SchemeName};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -36,6 +36,9 @@ pub(crate) struct CompareArguments {
     /// Samples on each surface; all its vertices are among them, however many they are
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::samples)]
     pub(crate) samples: usize,
+
+    #[command(flatten)]
+    pub(crate) features: FeatureArguments,
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,

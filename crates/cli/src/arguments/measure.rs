@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::values::{self, Extent};
-use super::{BuildArguments, SchemeName};
+use super::{BuildArguments, FeatureArguments, SchemeName};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -72,6 +72,10 @@ pub(crate) struct MeasureArguments {
     /// A unit is a piece of a triangle bounded, or a triangle or box looked at for that. With --certified only.
     #[arg(long, value_name = "N")]
     pub(crate) max_work: Option<u64>,
+
+    // Of the limit surface: with --limit-of only.
+    #[command(flatten)]
+    pub(crate) features: FeatureArguments,
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,

@@ -1,6 +1,8 @@
 //! The command line: one file a command, help texts that say each option's unit, default and effect.
 
 mod compare;
+mod exact;
+mod features;
 mod info;
 mod measure;
 mod models;
@@ -11,6 +13,8 @@ mod shared;
 mod values;
 
 pub(crate) use compare::CompareArguments;
+pub(crate) use exact::ExactArguments;
+pub(crate) use features::{Boundary, FeatureArguments};
 pub(crate) use info::InfoArguments;
 pub(crate) use measure::MeasureArguments;
 pub(crate) use models::ModelsArguments;
@@ -18,14 +22,14 @@ pub(crate) use refine::{Method, RefineArguments};
 pub(crate) use render::RenderArguments;
 pub(crate) use reproduce::ReproduceArguments;
 pub(crate) use shared::{BuildArguments, SchemeName, Seam};
-pub(crate) use values::{MAX_LEVELS, Size};
+pub(crate) use values::{Extent, MAX_LEVELS, Size};
 
 use clap::{Args, Parser, Subcommand};
 
 const EXAMPLES: &str = "\
 Examples:
   limitmesh refine builtin:head -o head.ply --picture head.png
-        refines a built-in model where 10° are not kept, and draws the result
+        a mesh within 0.1 % of the smooth surface of a built-in model, and a picture of it
   limitmesh info scan.stl
         says what is in a file and what would be repaired
   limitmesh measure head.ply --limit-of builtin:head
@@ -37,9 +41,9 @@ Exit codes: 0 done, 1 bad input or output, 2 usage, 3 stopped short of what was 
 
 /// Smooths triangle meshes by adaptive subdivision, measures them, shows them.
 ///
-/// A control mesh is refined only where its faces stand badly for the smooth limit surface: where a face's
-/// normal leaves a cone around the limit normals of its vertices. INPUT is a file (OBJ, PLY, STL, OFF) or
-/// builtin:NAME; `limitmesh models` lists the names.
+/// A control mesh is refined only where its faces stand badly for the smooth limit surface: until the mesh is
+/// certainly within a tolerance of it, has as many triangles as it may, or keeps an angle. INPUT is a file (OBJ,
+/// PLY, STL, OFF) or builtin:NAME; `limitmesh models` lists the names.
 #[derive(Parser, Debug)]
 #[command(name = "limitmesh", version, propagate_version = true, after_help = EXAMPLES)]
 pub(crate) struct Arguments {

@@ -6,15 +6,17 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use super::values;
-use super::{BuildArguments, SchemeName, Seam};
+use super::{BuildArguments, ExactArguments, FeatureArguments, SchemeName, Seam};
 
 /// What decides which faces are divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Method {
-    /// Faces whose normal leaves the cone around a limit normal of their vertices
+    /// What is too far from the limit surface, or fails another goal; vertices lie on the limit surface
+    Exact,
+    /// Faces whose normal leaves the cone around a limit normal of their vertices, step by step
     LimitNormal,
-    /// Faces whose normal differs too much from an edge neighbour's (Amresh, Farin and Razdan)
+    /// Faces whose normal differs too much from an edge neighbour's, step by step (Amresh, Farin and Razdan)
     Amresh,
     /// All faces
     Uniform,
@@ -22,17 +24,24 @@ pub(crate) enum Method {
 
 const EXAMPLES: &str = "\
 Examples:
-  limitmesh refine builtin:cup -o cup.ply --angle 5 --levels 4 --report cup.json
-  limitmesh refine scan.stl -o smooth.obj --weld 1e-6
-  limitmesh refine builtin:sphere -o seen.ply --view 0,0,-1 --levels 5
+  limitmesh refine builtin:cup -o cup.ply
+  limitmesh refine scan.stl -o smooth.obj --tolerance 0.05 --report smooth.json
+  limitmesh refine builtin:head -o head.ply --triangles 20000
+  limitmesh refine builtin:cup -o cup.ply --method limit-normal --angle 5 --levels 4
+  limitmesh refine builtin:sphere -o seen.ply --method limit-normal --view 0,0,-1 --levels 5
+  limitmesh refine part.stl -o part.ply --crease-angle 30
   limitmesh refine big.ply -o fine.ply --method uniform --max-triangles 20000000
 
-Exit code 3 means that --max-triangles was reached before the levels asked for; the file is written.";
+Exit code 3 means that a cap was reached before what was asked for; the mesh is written, and free of cracks.";
+
+/// The heading of the options of the stepwise methods.
+const STEPWISE: &str = "Options of the other methods";
 
 /// Refine a mesh where it stands badly for its smooth limit surface
 ///
-/// Each step marks the faces that the method calls divisible, splits them in four, and closes the gaps to
-/// their neighbours, so that the mesh is free of cracks after every step.
+/// By default the result is within a tolerance of the limit surface, certainly and in both directions, with all
+/// vertices on it. The other methods refine step by step: each step marks faces, splits them in four, and closes
+/// the gaps to their neighbours. No method leaves cracks.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct RefineArguments {
@@ -44,58 +53,30 @@ pub(crate) struct RefineArguments {
     pub(crate) output: PathBuf,
 
     /// What decides which faces are divided
-    #[arg(long, value_enum, default_value = "limit-normal")]
+    #[arg(long, value_enum, default_value = "exact")]
     pub(crate) method: Method,
 
-    /// The angle that a face's normal may differ by [degrees, above 0 to 180; default: 10]
+    /// The angle that a face's normal may differ by [degrees, above 0 to 180]
     ///
-    /// Smaller angles divide more faces. For limit-normal it is the cone around the limit normals of the
-    /// face's vertices; for amresh the angle between neighbouring faces. Not with --method uniform.
+    /// Smaller angles divide more faces. For exact and limit-normal it is the cone around the limit normals of the
+    /// face's vertices; for amresh the angle between neighbouring faces. Not with --method uniform. Default: 10 for
+    /// limit-normal and amresh; for exact it is one of the goals, and there is none.
     #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
     pub(crate) angle: Option<f64>,
-
-    /// Greatest number of steps; each splits an edge at most once
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = values::levels)]
-    pub(crate) levels: usize,
 
     /// Subdivision scheme
     #[arg(long, value_enum, default_value = "loop")]
     pub(crate) scheme: SchemeName,
 
-    /// Which vertices move where divided and undivided faces meet [default: all]
-    #[arg(long, value_enum)]
-    pub(crate) seam: Option<Seam>,
-
-    /// Direction of sight, from the viewer into the scene: parallel projection
+    /// Give no more triangles
     ///
-    /// Faces that look away are never divided, those on the silhouette always, those that look at the viewer
-    /// where their normal leaves a cone of --dilatation times --angle.
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true, conflicts_with = "eye")]
-    pub(crate) view: Option<[f64; 3]>,
-
-    /// Eye point: as --view, with a direction of its own for each face
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true)]
-    pub(crate) eye: Option<[f64; 3]>,
-
-    /// Factor on the angle of faces that look straight at the viewer [at least 0; default: 1]
-    ///
-    /// Larger values divide fewer of them; with --view or --eye only.
-    #[arg(long, value_name = "K", value_parser = values::factor, allow_hyphen_values = true)]
-    pub(crate) dilatation: Option<f64>,
-
-    /// Move the vertices to the limit surface of the last mesh at the end
-    ///
-    /// With --method uniform that is the limit surface of the input. The adaptive methods have drifted from it by
-    /// then, and may come out farther from it than without this option.
-    #[arg(long)]
-    pub(crate) limit: bool,
-
-    /// Stop before the step that would give more triangles
-    ///
-    /// What was reached by then is written, and the exit code is 3. The default keeps memory below about
-    /// 10 gigabytes.
+    /// What was reached by then is written, and the exit code is 3; the stepwise methods stop before the step that
+    /// would give more. The default keeps memory below about 10 gigabytes.
     #[arg(long, value_name = "N", default_value_t = 50_000_000, value_parser = values::positive)]
     pub(crate) max_triangles: usize,
+
+    #[command(flatten)]
+    pub(crate) features: FeatureArguments,
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,
@@ -104,11 +85,49 @@ pub(crate) struct RefineArguments {
     #[arg(long)]
     pub(crate) ascii: bool,
 
-    /// Write a JSON report: input, repairs, parameters, steps, output, seconds ('-': standard output)
+    /// Write a JSON report: input, repairs, parameters, result, seconds ('-': standard output)
     #[arg(long, value_name = "FILE.json")]
     pub(crate) report: Option<PathBuf>,
 
     /// Draw the refined mesh with its edges
     #[arg(long, value_name = "FILE.png")]
     pub(crate) picture: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) exact: ExactArguments,
+
+    /// Greatest number of steps; each splits an edge at most once [default: 3]
+    #[arg(long, value_name = "N", value_parser = values::levels, help_heading = STEPWISE)]
+    pub(crate) levels: Option<usize>,
+
+    /// Which vertices move where divided and undivided faces meet [default: all]
+    #[arg(long, value_enum, help_heading = STEPWISE)]
+    pub(crate) seam: Option<Seam>,
+
+    /// Direction of sight, from the viewer into the scene: parallel projection
+    ///
+    /// Faces that look away are never divided, those on the silhouette always, those that look at the viewer
+    /// where their normal leaves a cone of --dilatation times --angle.
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    #[arg(conflicts_with = "eye", help_heading = STEPWISE)]
+    pub(crate) view: Option<[f64; 3]>,
+
+    /// Eye point: as --view, with a direction of its own for each face
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true)]
+    #[arg(help_heading = STEPWISE)]
+    pub(crate) eye: Option<[f64; 3]>,
+
+    /// Factor on the angle of faces that look straight at the viewer [at least 0; default: 1]
+    ///
+    /// Larger values divide fewer of them; with --view or --eye only.
+    #[arg(long, value_name = "K", value_parser = values::factor, allow_hyphen_values = true)]
+    #[arg(help_heading = STEPWISE)]
+    pub(crate) dilatation: Option<f64>,
+
+    /// Move the vertices to the limit surface of the last mesh at the end
+    ///
+    /// With --method uniform that is the limit surface of the input. The adaptive methods have drifted from it by
+    /// then, and may come out farther from it than without this option.
+    #[arg(long, help_heading = STEPWISE)]
+    pub(crate) limit: bool,
 }

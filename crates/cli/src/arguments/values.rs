@@ -8,6 +8,9 @@ use limitmesh::mesh::Weld;
 /// Levels beyond this would need more than 4^12 (16 million) triangles for a single input triangle.
 pub(crate) const MAX_LEVELS: usize = 12;
 
+/// Levels of exact refinement beyond this would divide an edge by more than ten million.
+const MAX_EXACT_LEVELS: usize = 24;
+
 /// More threads than any machine we know of has processors.
 const MAX_THREADS: usize = 4096;
 
@@ -80,6 +83,19 @@ pub(super) fn extent(text: &str) -> Result<Extent, String> {
     Ok(if percent.is_some() { Extent::Percent(value) } else { Extent::Length(value) })
 }
 
+/// A length above 0, or per cent of a diagonal above 0 and at most 100.
+pub(super) fn tolerance(text: &str) -> Result<Extent, String> {
+    match extent(text)? {
+        Extent::Length(0.0) | Extent::Percent(0.0) => {
+            Err(format!("{text} is out of range: a tolerance is above 0"))
+        }
+        Extent::Percent(percent) if percent > 100.0 => {
+            Err(format!("{text} is out of range: 100% is the size of the whole mesh"))
+        }
+        tolerance => Ok(tolerance),
+    }
+}
+
 /// Three numbers with commas between them.
 pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
     let numbers = text.split(',').map(finite).collect::<Result<Vec<_>, _>>()?;
@@ -99,6 +115,11 @@ pub(super) fn direction(text: &str) -> Result<[f64; 3], String> {
 /// A count from 0 to [`MAX_LEVELS`].
 pub(super) fn levels(text: &str) -> Result<usize, String> {
     bounded(text, 0, MAX_LEVELS, "levels")
+}
+
+/// A count from 1 to [`MAX_EXACT_LEVELS`].
+pub(super) fn exact_levels(text: &str) -> Result<usize, String> {
+    bounded(text, 1, MAX_EXACT_LEVELS, "levels")
 }
 
 /// A count of at least 1.
@@ -180,6 +201,16 @@ mod tests {
         assert_eq!(Extent::Percent(2.0).length(50.0), 1.0);
         for bad in ["", "%", "-1", "-1%", "1 mm", "NaN", "inf%"] {
             assert!(extent(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn tolerances_are_above_0_and_at_most_the_whole() {
+        assert_eq!(tolerance("1e-300"), Ok(Extent::Length(1e-300)));
+        assert_eq!(tolerance("100%"), Ok(Extent::Percent(100.0)));
+        for bad in ["0", "-0", "0%", "-1", "-0.1%", "NaN", "inf", "1e999", "1000%", "%", "", "0.1%%", "fine"]
+        {
+            assert!(tolerance(bad).is_err(), "{bad}");
         }
     }
 

@@ -19,6 +19,7 @@ use crate::words::{counted, number, seconds, table, thousands};
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     let control = input::load(&arguments.input, &arguments.build.options(), progress)?.mesh;
+    let control = arguments.features.apply(control)?;
     let scheme = arguments.scheme.scheme();
     // Finer than what is measured against it by two levels, where that can be afforded.
     let wanted = USUAL_LEVELS.max(arguments.levels + 2);
@@ -82,7 +83,13 @@ struct Judge<'a> {
 
 impl Judge<'_> {
     fn limit(&self) -> LimitReport {
-        LimitReport { scheme: self.arguments.scheme, levels: self.reference.levels, chosen: true }
+        LimitReport {
+            scheme: self.arguments.scheme,
+            levels: self.reference.levels,
+            chosen: true,
+            boundary: self.arguments.features.boundary.unwrap_or_default(),
+            crease_angle_degrees: self.arguments.features.crease_angle,
+        }
     }
 
     fn judge(

@@ -106,14 +106,21 @@ fn load_reference(
         .unwrap_or_else(|| reference::affordable_levels(input.mesh.face_count(), USUAL_LEVELS));
     progress.stage(format!("refining {control} by {levels} levels to stand for its limit surface"));
     let scheme = arguments.scheme.unwrap_or_default();
-    let reference = reference::at_level(&input.mesh, scheme.scheme(), levels)?;
-    let limit =
-        LimitReport { scheme, levels: reference.levels, chosen: arguments.reference_levels.is_none() };
+    let report = describe(&input);
+    let control = arguments.features.apply(input.mesh)?;
+    let reference = reference::at_level(&control, scheme.scheme(), levels)?;
+    let limit = LimitReport {
+        scheme,
+        levels: reference.levels,
+        chosen: arguments.reference_levels.is_none(),
+        boundary: arguments.features.boundary.unwrap_or_default(),
+        crease_angle_degrees: arguments.features.crease_angle,
+    };
     let report = SurfaceReport {
         vertices: reference.mesh.vertex_count(),
         triangles: reference.mesh.face_count(),
         limit: Some(limit),
-        ..describe(&input)
+        ..report
     };
     Ok((reference.mesh, report))
 }
@@ -190,8 +197,11 @@ fn surface_in_words(surface: &SurfaceReport) -> String {
 
 /// Finds what makes no sense before any work is done.
 fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
-    if arguments.limit_of.is_none() && (arguments.reference_levels.is_some() || arguments.scheme.is_some()) {
-        return usage("--reference-levels and --scheme belong to a limit surface; they need --limit-of");
+    let of_limit = arguments.reference_levels.is_some() || arguments.scheme.is_some();
+    if arguments.limit_of.is_none() && (of_limit || arguments.features.are_given()) {
+        return usage(
+            "--reference-levels, --scheme, --crease-angle and --boundary belong to a limit surface; they need --limit-of",
+        );
     }
     certified::check(arguments)?;
     arguments.heatmap.as_deref().map_or(Ok(()), heatmap::check_name)

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::certified::CertifiedReport;
 use super::diagnosis::DiagnosisReport;
-use crate::arguments::SchemeName;
+use crate::arguments::{Boundary, SchemeName};
 
 /// What a sampled distance is, in every report of one.
 pub(crate) const KIND: &str = "sampled lower bound";
@@ -48,6 +48,8 @@ pub(crate) struct LimitReport {
     pub(crate) levels: usize,
     /// Whether the program chose the number of levels.
     pub(crate) chosen: bool,
+    pub(crate) boundary: Boundary,
+    pub(crate) crease_angle_degrees: Option<f64>,
 }
 
 /// The distances. Lengths are in the meshes' units.

@@ -12,7 +12,8 @@ pub(crate) use comparison::ComparedMethod;
 pub(crate) use information::{InformationReport, MeshInformation};
 pub(crate) use measurement::{DistanceReport, LimitReport, MeasureReport, SurfaceReport};
 pub(crate) use refinement::{
-    OutputReport, ParametersReport, RefineReport, SecondsReport, StepEntry, ViewReport,
+    ErrorReport, ExactParametersReport, MethodReport, OutputReport, ParametersReport, RefineReport,
+    RoundEntry, SecondsReport, StepEntry, ViewReport,
 };
 
 use serde::Serialize;

@@ -2,12 +2,14 @@
 
 use limitmesh::Mesh;
 use limitmesh::measure::{triangle_quality, watertightness};
-use limitmesh::refine::{StepReport, Stop};
+use limitmesh::mesh::Weld;
+use limitmesh::refine::{ErrorBounds, ExactProgress, ExactStop, StepReport, Stop};
 use serde::Serialize;
 
 use super::InputReport;
 use super::diagnosis::DiagnosisReport;
-use crate::arguments::{Method, SchemeName, Seam};
+use crate::arguments::{Boundary, Method, RefineArguments, SchemeName, Seam};
+use crate::words::{lower_bound, upper_bound};
 
 /// All of it.
 #[derive(Debug, Serialize)]
@@ -16,17 +18,31 @@ pub(crate) struct RefineReport {
     pub(crate) input: InputReport,
     pub(crate) diagnosis: DiagnosisReport,
     pub(crate) parameters: ParametersReport,
-    pub(crate) steps: Vec<StepEntry>,
-    /// `levels`: all were done; `satisfied`: no face was divisible any more; `triangle-cap`: the next step would
-    /// have passed the cap.
-    pub(crate) stop: &'static str,
-    /// Triangles that the step left undone would have given; null unless the cap stopped the refinement.
-    pub(crate) needed_triangles: Option<usize>,
+    #[serde(flatten)]
+    pub(crate) method: MethodReport,
     pub(crate) output: OutputReport,
     pub(crate) seconds: SecondsReport,
 }
 
-/// The name of a stop in the report.
+/// What the method did.
+#[derive(Debug, Serialize)]
+pub(crate) struct MethodReport {
+    /// Steps of a stepwise method.
+    pub(crate) steps: Vec<StepEntry>,
+    /// Rounds of the exact method.
+    pub(crate) rounds: Vec<RoundEntry>,
+    /// Times that the most divided part of a control face was divided.
+    pub(crate) levels: usize,
+    /// See [`stop_name`] and [`exact_stop_name`].
+    pub(crate) stop: &'static str,
+    /// Triangles that the step left undone would have given; null unless the cap stopped a stepwise method.
+    pub(crate) needed_triangles: Option<usize>,
+    /// How far the mesh and the limit surface are from each other; null for the stepwise methods.
+    pub(crate) error: Option<ErrorReport>,
+}
+
+/// The name of a stepwise method's stop: all steps were done, no face was divisible any more, or the next step would
+/// have passed the cap.
 pub(crate) fn stop_name(stop: Stop) -> &'static str {
     match stop {
         Stop::Levels => "levels",
@@ -36,20 +52,73 @@ pub(crate) fn stop_name(stop: Stop) -> &'static str {
     }
 }
 
+/// The name of an exact refinement's stop: the goals are met, the number of triangles asked for is used up, or a cap
+/// was reached before.
+pub(crate) fn exact_stop_name(stop: ExactStop) -> &'static str {
+    match stop {
+        ExactStop::Met => "met",
+        ExactStop::Triangles => "triangles",
+        ExactStop::TriangleCap => "triangle-cap",
+        ExactStop::LevelCap => "level-cap",
+        _ => "other",
+    }
+}
+
 /// What was asked for, defaults filled in; null where an option does not apply to the method.
 #[derive(Debug, Serialize)]
 pub(crate) struct ParametersReport {
     pub(crate) method: Method,
     pub(crate) angle_degrees: Option<f64>,
-    pub(crate) levels: usize,
+    pub(crate) levels: Option<usize>,
     pub(crate) scheme: SchemeName,
     pub(crate) seam: Option<Seam>,
     pub(crate) view: Option<ViewReport>,
     pub(crate) limit: bool,
+    pub(crate) boundary: Boundary,
+    pub(crate) crease_angle_degrees: Option<f64>,
     pub(crate) max_triangles: usize,
     /// Distance within which vertices were merged: 0 at equal positions, null for none.
     pub(crate) weld: Option<f64>,
     pub(crate) strict: bool,
+    /// Goals and caps of the exact method; null for the others.
+    pub(crate) exact: Option<ExactParametersReport>,
+}
+
+impl ParametersReport {
+    /// What all methods have; the rest null.
+    pub(crate) fn common(arguments: &RefineArguments) -> Self {
+        Self {
+            method: arguments.method,
+            angle_degrees: None,
+            levels: None,
+            scheme: arguments.scheme,
+            seam: None,
+            view: None,
+            limit: false,
+            boundary: arguments.features.boundary.unwrap_or_default(),
+            crease_angle_degrees: arguments.features.crease_angle,
+            max_triangles: arguments.max_triangles,
+            weld: match arguments.build.options().weld {
+                Weld::Never => None,
+                Weld::Within(distance) => Some(distance),
+                _ => Some(0.0),
+            },
+            strict: arguments.build.strict,
+            exact: None,
+        }
+    }
+}
+
+/// Goals and caps of the exact method; null where a goal was not set.
+#[derive(Debug, Serialize)]
+pub(crate) struct ExactParametersReport {
+    /// In the mesh's unit.
+    pub(crate) tolerance: Option<f64>,
+    /// In per cent of the control mesh's diagonal.
+    pub(crate) tolerance_percent: Option<f64>,
+    pub(crate) triangles: Option<usize>,
+    pub(crate) max_levels: usize,
+    pub(crate) provenance: bool,
 }
 
 /// Where the viewer looks from: one of direction and eye.
@@ -83,6 +152,73 @@ impl From<&StepReport> for StepEntry {
             seconds: step.duration.as_secs_f64(),
         }
     }
+}
+
+/// What one round of the exact method did.
+#[derive(Debug, Serialize)]
+pub(crate) struct RoundEntry {
+    pub(crate) round: usize,
+    pub(crate) triangles: usize,
+    /// How many times over the worst place looked at in this round failed the goals; null where that is not bounded.
+    pub(crate) worst: Option<f64>,
+}
+
+impl From<&ExactProgress> for RoundEntry {
+    fn from(progress: &ExactProgress) -> Self {
+        Self { round: progress.round, triangles: progress.triangles, worst: finite(progress.worst) }
+    }
+}
+
+/// An interval for the symmetric Hausdorff distance between the mesh and the limit surface of the control mesh.
+#[derive(Debug, Serialize)]
+pub(crate) struct ErrorReport {
+    /// A distance that was found, in the mesh's unit.
+    pub(crate) lower: f64,
+    /// A distance that is not exceeded; null where none is known.
+    pub(crate) upper: Option<f64>,
+    /// In per cent of `diagonal`.
+    pub(crate) lower_percent: f64,
+    pub(crate) upper_percent: Option<f64>,
+    /// Diagonal of the bounding box of the control mesh.
+    pub(crate) diagonal: f64,
+    /// A point of the limit surface at the distance `lower` from the mesh.
+    pub(crate) at: [f64; 3],
+    /// Whether `upper` is proven.
+    pub(crate) certified: bool,
+}
+
+impl ErrorReport {
+    /// Of a mesh whose control mesh has that diagonal.
+    pub(crate) fn new(bounds: &ErrorBounds, diagonal: f64) -> Self {
+        let percent = |length: f64| 100.0 * length / diagonal;
+        let upper = finite(bounds.upper);
+        Self {
+            lower: bounds.lower,
+            upper,
+            lower_percent: percent(bounds.lower),
+            upper_percent: upper.map(percent),
+            diagonal,
+            at: bounds.at,
+            certified: upper.is_some(),
+        }
+    }
+
+    /// `within 0.0998 % (0.0123) of the limit surface, certified; at least 0.0962 %`.
+    pub(crate) fn in_words(&self) -> String {
+        let least = format!("at least {} %", lower_bound(self.lower_percent));
+        match (self.upper, self.upper_percent) {
+            (Some(upper), Some(percent)) => format!(
+                "within {} % ({}) of the limit surface, certified; {least}",
+                upper_bound(percent),
+                upper_bound(upper)
+            ),
+            _ => format!("{least} ({}) from the limit surface, not certified", lower_bound(self.lower)),
+        }
+    }
+}
+
+fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
 }
 
 /// The mesh that was written.

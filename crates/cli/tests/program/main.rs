@@ -2,6 +2,7 @@
 
 mod common;
 mod compare;
+mod exact;
 mod examine;
 mod measure;
 mod refine;

@@ -13,8 +13,8 @@ const CONTRACT: &str = "version input.path input.format input.vertices input.fac
     diagnosis.isolated_vertices.count diagnosis.flipped_faces.count diagnosis.non_orientable_faces.count
     diagnosis.non_manifold_edges.count diagnosis.bow_tie_vertices.count diagnosis.dropped_tags.count
     parameters.method parameters.angle_degrees parameters.levels parameters.scheme parameters.seam
-    parameters.view parameters.limit parameters.max_triangles parameters.weld parameters.strict
-    steps stop output.path output.vertices output.triangles output.boundary_edges
+    parameters.view parameters.limit parameters.boundary parameters.crease_angle_degrees parameters.max_triangles parameters.weld parameters.strict
+    steps rounds levels stop needed_triangles error parameters.exact output.path output.vertices output.triangles output.boundary_edges
     output.non_manifold_edges output.watertight output.euler_characteristic output.components
     output.t_junctions output.min_angle_degrees output.mean_min_angle_degrees output.angle_histogram
     seconds.read seconds.repair seconds.refine seconds.write seconds.total";
@@ -55,7 +55,13 @@ fn every_built_in_model_is_refined_by_every_method() {
     let output = folder.path().join("out.ply");
     for model in limitmesh::models::all() {
         let name = format!("builtin:{}", model.name);
-        for options in ["--levels 2", "--method amresh --levels 2", "--method uniform --levels 1"] {
+        let methods = [
+            "",
+            "--method limit-normal --levels 2",
+            "--method amresh --levels 2",
+            "--method uniform --levels 1",
+        ];
+        for options in methods {
             let report = refine(&name, &output, options);
             let info = run(&format!("info {name} --json"), &[]).expect(0).json();
             assert_eq!(report["output"]["euler_characteristic"], info["mesh"]["euler_characteristic"]);
@@ -77,12 +83,14 @@ fn uniform_refinement_quadruples_the_faces_of_the_head() {
 }
 
 #[test]
-fn defaults_are_limit_normal_ten_degrees_three_levels_loop_all() {
+fn defaults_of_the_paper_s_method_are_ten_degrees_three_levels_loop_all() {
     let folder = folder();
-    let parameters = refine("builtin:shoe", &folder.path().join("out.ply"), "")["parameters"].clone();
+    let parameters =
+        refine("builtin:shoe", &folder.path().join("out.ply"), "--method limit-normal")["parameters"].clone();
     let expected = serde_json::json!({
         "method": "limit-normal", "angle_degrees": 10.0, "levels": 3, "scheme": "loop", "seam": "all",
-        "view": null, "limit": false, "max_triangles": 50_000_000, "weld": 0.0, "strict": false
+        "exact": null, "view": null, "limit": false, "boundary": "smooth", "crease_angle_degrees": null,
+        "max_triangles": 50_000_000, "weld": 0.0, "strict": false
     });
     assert_eq!(parameters, expected);
 }
@@ -92,7 +100,8 @@ fn a_smaller_angle_gives_more_triangles_and_a_view_fewer() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     let triangles = |options: &str| {
-        refine("builtin:icosphere", &output, options)["output"]["triangles"].as_u64().expect("a count")
+        let options = format!("--method limit-normal {options}");
+        refine("builtin:icosphere", &output, &options)["output"]["triangles"].as_u64().expect("a count")
     };
     let (wide, narrow) = (triangles("--angle 10"), triangles("--angle 3"));
     assert!(wide < narrow, "{wide} {narrow}");
@@ -110,13 +119,13 @@ fn every_format_holds_the_same_mesh() {
     let welded =
         |path: &Path| limitmesh::Mesh::from_soup(&soup(path), &Default::default()).expect("a mesh").0;
     let ply = folder.path().join("out.ply");
-    refine("builtin:cup", &ply, "--levels 1");
+    refine("builtin:cup", &ply, "--tolerance 0.5%");
     let expected = welded(&ply);
     for (name, options) in
         [("out.obj", ""), ("out.off", ""), ("text.ply", "--ascii"), ("out.stl", ""), ("text.stl", "--ascii")]
     {
         let path = folder.path().join(name);
-        run(&format!("refine builtin:cup -o {{}} --levels 1 {options}"), &[&path]).expect(0);
+        run(&format!("refine builtin:cup -o {{}} --tolerance 0.5% {options}"), &[&path]).expect(0);
         let mesh = welded(&path);
         if name.ends_with("stl") {
             // Single precision, and vertices in the order of the facets.
@@ -171,7 +180,9 @@ fn the_cap_stops_before_the_step_that_would_pass_it() {
 fn a_cap_below_the_input_writes_the_input() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    run("refine builtin:head -o {} --max-triangles 10", &[&output]).expect(3).saying("stopped short");
+    run("refine builtin:head -o {} --method limit-normal --max-triangles 10", &[&output])
+        .expect(3)
+        .saying("stopped short");
     assert_eq!(counts(&soup(&output)).triangles, 142);
 }
 
@@ -181,7 +192,8 @@ fn flat_faces_satisfy_the_criterion_at_once() {
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
     let input = file(&folder, "square.obj", square);
     let output = folder.path().join("out.ply");
-    let run = run("refine {} -o {} --report -", &[&input, &output]).expect(0).saying("no face is divisible");
+    let words = "refine {} -o {} --method limit-normal --report -";
+    let run = run(words, &[&input, &output]).expect(0).saying("no face is divisible");
     assert_eq!(run.json()["stop"], "satisfied");
     assert_eq!(run.json()["diagnosis"]["polygons"]["first"], serde_json::json!([0]));
     assert_eq!(
@@ -205,7 +217,14 @@ fn results_are_the_same_bytes_for_any_number_of_threads() {
         std::fs::read(&output).expect("a file")
     };
     // Large enough that the loops do run in parallel.
-    for options in ["--angle 3 --levels 4", "--method uniform --levels 3 --limit", "--scheme butterfly"] {
+    let methods = [
+        "--tolerance 0.03%",
+        "--triangles 20000",
+        "--method limit-normal --angle 3 --levels 4",
+        "--method uniform --levels 3 --limit",
+        "--method limit-normal --scheme butterfly",
+    ];
+    for options in methods {
         let one = bytes(1, options);
         assert!(one.len() > 100_000, "{options}");
         assert!(one == bytes(2, options), "{options}");
@@ -249,7 +268,7 @@ fn welding_within_a_distance_closes_a_gap() {
 fn ply_carries_limit_normals() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    run("refine builtin:icosphere -o {} --levels 1 --ascii", &[&output]).expect(0);
+    run("refine builtin:icosphere -o {} --tolerance 5% --ascii", &[&output]).expect(0);
     let text = std::fs::read_to_string(&output).expect("text");
     let (header, body) = text.split_once("end_header\n").expect("a header");
     let properties: Vec<&str> =
@@ -270,7 +289,7 @@ fn tags_reach_the_output_where_its_format_has_them() {
     let cage = "v 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nt corner 1/1/0 0 10.0\n";
     let input = file(&folder, "tagged.obj", cage);
     let output = folder.path().join("out.obj");
-    run("refine {} -o {} --levels 2", &[&input, &output]).expect(0);
+    run("refine {} -o {} --method limit-normal --levels 2", &[&input, &output]).expect(0);
     let soup = soup(&output);
     assert_eq!(soup.corners.len(), 1);
     assert_eq!(soup.positions[soup.corners[0].vertex as usize], [0.0, 0.0, 1.0]);
@@ -285,13 +304,45 @@ fn tags_are_kept_or_the_loss_is_told() {
     std::fs::write(&input, content).expect("a file");
     for name in ["out.obj", "out.ply"] {
         let output = folder.path().join(name);
-        let run = run("refine {} -o {} --levels 2", &[&input, &output]).expect(0);
+        let run = run("refine {} -o {} --method limit-normal --levels 2", &[&input, &output]).expect(0);
         let kept = name.ends_with("obj");
         let told = run.stderr.contains("1 crease tag and 1 corner tag: followed, but left out of the output");
         assert_eq!(told, !kept, "{}", run.stderr);
         let soup = soup(&output);
         assert_eq!((soup.creases.len(), soup.corners.len()), if kept { (4, 1) } else { (0, 0) });
     }
+}
+
+#[test]
+fn a_cube_with_creases_stays_a_cube_and_the_limit_surface_is_the_same_one() {
+    let folder = folder();
+    let output = folder.path().join("cube.ply");
+    let report = refine("builtin:cube", &output, "--method uniform --levels 3 --crease-angle 30");
+    assert_eq!(report["parameters"]["crease_angle_degrees"], 30.0);
+    let on_cube = |p: &[f64; 3]| (p.iter().fold(0.0, |far: f64, x| far.max(x.abs())) - 0.5).abs() < 1e-7;
+    assert!(soup(&output).positions.iter().all(on_cube));
+    let off = |options: &str| {
+        let words = format!("measure {{}} --limit-of builtin:cube --json --samples 2000 {options}");
+        run(&words, &[&output]).expect(0).json()["hausdorff"]["symmetric"].as_f64().expect("a number")
+    };
+    assert!(off("--crease-angle 30") < 1e-7 && off("") > 0.1);
+}
+
+#[test]
+fn boundaries_are_smooth_or_keep_their_corners_or_stay() {
+    let folder = folder();
+    let square = file(&folder, "square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n");
+    let output = folder.path().join("out.obj");
+    let kept = |rule: &str| {
+        let words = format!("refine {{}} -o {{}} --method uniform --levels 2 --limit {rule}");
+        run(&words, &[&square, &output]).expect(0);
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        corners.iter().filter(|corner| soup(&output).positions.contains(corner)).count()
+    };
+    assert_eq!(kept(""), 0);
+    assert_eq!(kept("--boundary smooth"), 0);
+    assert_eq!(kept("--boundary corners"), 2);
+    assert_eq!(kept("--boundary fixed"), 4);
 }
 
 /// A tetrahedron whose faces name their own vertices, one of them a rounding away from the others at its place.
@@ -303,12 +354,16 @@ fn edges_that_nearly_equal_positions_keep_open_are_told() {
     let folder = folder();
     let input = file(&folder, "nearly.obj", NEARLY_CLOSED);
     let output = folder.path().join("out.ply");
-    let first = run("refine {} -o {} --levels 1", &[&input, &output]).expect(0);
+    let first = run("refine {} -o {} --tolerance 1%", &[&input, &output]).expect(0);
     let told = first.stderr.split("--weld ").nth(1).and_then(|rest| rest.split(',').next());
     let distance = told.unwrap_or_else(|| panic!("no distance in {}", first.stderr)).to_owned();
     let second =
-        run(&format!("refine {{}} -o {{}} --levels 1 --weld {distance}"), &[&input, &output]).expect(0);
-    assert!(!second.stderr.contains("--weld") && second.stderr.contains(", closed ("), "{}", second.stderr);
+        run(&format!("refine {{}} -o {{}} --tolerance 1% --weld {distance}"), &[&input, &output]).expect(0);
+    assert!(
+        !second.stderr.contains("--weld") && second.stderr.contains(", closed, within"),
+        "{}",
+        second.stderr
+    );
     assert_eq!(counts(&self::soup(&output)).boundary_edges, 0);
     // The same option lets the result be measured against its own control mesh.
     run(&format!("measure {{}} --limit-of {{}} --weld {distance} --samples 1000"), &[&output, &input])

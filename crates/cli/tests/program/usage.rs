@@ -16,7 +16,7 @@ fn help_and_version_are_printed() {
         assert!(help.contains(command), "{command} in:\n{help}");
     }
     let help = run("refine --help", &[]).expect(0).stdout;
-    for word in ["degrees", "default: 3", "Examples:", "limit-normal", "silhouette"] {
+    for word in ["degrees", "default: 3", "Examples:", "limit-normal", "silhouette", "--tolerance", "0.1%"] {
         assert!(help.contains(word), "{word} in:\n{help}");
     }
     let version = run("--version", &[]).expect(0).stdout;
@@ -46,6 +46,24 @@ fn options_out_of_range_are_refused_before_any_work() {
         ("--method uniform --angle 5", "divides every face"),
         ("--method uniform --seam any", "never meet"),
         ("--max-triangles 0", "at least 1"),
+        ("--tolerance 0", "above 0"),
+        ("--tolerance -1%", "at least 0"),
+        ("--tolerance NaN", "not a finite number"),
+        ("--tolerance 1e999", "not a finite number"),
+        ("--tolerance 1000%", "the whole mesh"),
+        ("--tolerance fine", "a length or per cent"),
+        ("--triangles 0", "at least 1"),
+        ("--triangles many", "whole number"),
+        ("--max-levels 0", "at least 1"),
+        ("--max-levels 25", "at most 24"),
+        ("--levels 3", "--max-levels"),
+        ("--limit", "lie on the limit surface"),
+        ("--seam all", "lie on the limit surface"),
+        ("--method uniform --tolerance 1", "--method exact"),
+        ("--method amresh --triangles 1000", "--method exact"),
+        ("--method limit-normal --max-levels 3", "--method exact"),
+        ("--method limit-normal --provenance", "--method exact"),
+        ("--scheme butterfly", "--method uniform"),
         ("--weld -1", "at least 0"),
         ("--weld near", "'none'"),
         ("--scheme catmull", "loop-warren"),
@@ -55,6 +73,7 @@ fn options_out_of_range_are_refused_before_any_work() {
     for (options, words) in wrong {
         run(&format!("refine builtin:head -o {{}} {options}"), &[&output]).expect(2).saying(words);
     }
+    run("refine builtin:head -o {} --provenance", &[&folder.path().join("out.obj")]).expect(2).saying("PLY");
     let other = folder.path().join("out.vtk");
     run("refine builtin:head -o {}", &[&other]).expect(2).saying("'vtk'").saying(".ply");
     run("refine builtin:head -o {} --report {}", &[&output, &output]).expect(2).saying("twice");
@@ -68,6 +87,7 @@ fn measuring_needs_exactly_one_reference() {
         .expect(2)
         .saying("cannot be used with");
     run("measure builtin:head builtin:cup --reference-levels 3", &[]).expect(2).saying("--limit-of");
+    run("measure builtin:head builtin:cup --crease-angle 30", &[]).expect(2).saying("--limit-of");
     run("measure builtin:head builtin:cup --samples 0", &[]).expect(2).saying("at least 1");
     run("measure builtin:head --limit-of builtin:head --reference-levels 12", &[])
         .expect(2)

@@ -54,10 +54,10 @@ fn quiet_says_nothing_and_otherwise_only_results_go_to_standard_output() {
     let output = folder.path().join("out.ply");
     let picture = folder.path().join("out.png");
     let silent =
-        run("refine builtin:head -o {} --levels 1 --picture {} --quiet", &[&output, &picture]).expect(0);
+        run("refine builtin:head -o {} --tolerance 1% --picture {} --quiet", &[&output, &picture]).expect(0);
     assert_eq!((silent.stdout.as_str(), silent.stderr.as_str()), ("", ""));
     assert_eq!(names(folder.path()), ["out.ply", "out.png"]);
-    let told = run("refine builtin:head -o {} --levels 1", &[&output]).expect(0);
+    let told = run("refine builtin:head -o {} --tolerance 1%", &[&output]).expect(0);
     assert_eq!(told.stdout, "");
     assert_eq!(told.stderr.lines().count(), 1, "one line of summary, no progress: {}", told.stderr);
     for command in ["info builtin:cup", "measure builtin:cup builtin:cup", "models"] {

@@ -4,9 +4,11 @@ mod numbers;
 mod obj;
 mod off;
 mod ply;
+mod property;
 mod stl;
 mod whole;
 
+pub use property::{Property, PropertyValues};
 pub use whole::write_whole;
 
 use crate::error::WriteError;
@@ -26,6 +28,10 @@ pub struct Output<'a> {
     pub colours: Option<&'a [[u8; 3]]>,
     /// A number for each vertex, such as a distance. PLY holds it, as property `quality`.
     pub quality: Option<&'a [f64]>,
+    /// Further properties of the vertices. PLY holds them.
+    pub vertex_properties: &'a [Property<'a>],
+    /// Further properties of the triangles. PLY holds them.
+    pub face_properties: &'a [Property<'a>],
     /// Sharp edges. OBJ holds them.
     pub creases: &'a [CreaseTag],
     /// Sharp vertices. OBJ holds them.
@@ -35,7 +41,16 @@ pub struct Output<'a> {
 impl<'a> Output<'a> {
     /// The triangles alone.
     pub fn new(surface: Triangles<'a>) -> Self {
-        Self { surface, normals: None, colours: None, quality: None, creases: &[], corners: &[] }
+        Self {
+            surface,
+            normals: None,
+            colours: None,
+            quality: None,
+            vertex_properties: &[],
+            face_properties: &[],
+            creases: &[],
+            corners: &[],
+        }
     }
 
     /// Sets [`Self::normals`].
@@ -53,6 +68,18 @@ impl<'a> Output<'a> {
     /// Sets [`Self::quality`].
     pub fn quality(mut self, quality: &'a [f64]) -> Self {
         self.quality = Some(quality);
+        self
+    }
+
+    /// Sets [`Self::vertex_properties`].
+    pub fn vertex_properties(mut self, properties: &'a [Property<'a>]) -> Self {
+        self.vertex_properties = properties;
+        self
+    }
+
+    /// Sets [`Self::face_properties`].
+    pub fn face_properties(mut self, properties: &'a [Property<'a>]) -> Self {
+        self.face_properties = properties;
         self
     }
 
@@ -166,7 +193,7 @@ fn check(output: &Output<'_>, format: Format, options: &WriteOptions) -> Result<
     if let Some(quality) = output.quality.filter(|_| format == Format::Ply) {
         check_finite("quality", quality, 1, format, false)?;
     }
-    Ok(())
+    if format == Format::Ply { property::check(output) } else { Ok(()) }
 }
 
 /// The first of `groups` that names a vertex that does not exist, and that vertex.

@@ -1,4 +1,5 @@
-//! Stanford PLY 1.0, little-endian or ASCII: `double` positions, and normals, colours and quality if there are any.
+//! Stanford PLY 1.0, little-endian or ASCII: `double` positions; normals, colours, quality and named properties if there
+//! are any.
 
 use super::Output;
 use super::numbers::Pieces;
@@ -10,14 +11,16 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) ->
     for vertex in 0..output.surface.positions.len() {
         if ascii { vertex_text(&mut out, output, vertex)? } else { vertex_bytes(&mut out, output, vertex)? }
     }
-    for triangle in output.surface.triangles {
+    for (face, triangle) in output.surface.triangles.iter().enumerate() {
         if ascii {
             out.bytes(b"3");
             triangle.iter().for_each(|&v| out.integer(v));
+            output.face_properties.iter().for_each(|property| property.text(&mut out, face));
             out.end_line()?;
         } else {
             out.bytes(&[3]);
             triangle.iter().for_each(|v| out.bytes(&v.to_le_bytes()));
+            output.face_properties.iter().for_each(|property| property.bytes(&mut out, face));
             out.end()?;
         }
     }
@@ -44,10 +47,13 @@ fn header(output: &Output<'_>, ascii: bool) -> String {
     if output.quality.is_some() {
         properties.push(("double", "quality"));
     }
+    properties.extend(output.vertex_properties.iter().map(|property| (property.kind(), property.name)));
     element("vertex", positions.len(), &properties);
     // Many readers know signed indices only, which reach far enough unless there are more than 2³¹ vertices.
     let index = if positions.len() > i32::MAX as usize { "list uchar uint" } else { "list uchar int" };
-    element("face", triangles.len(), &[(index, "vertex_indices")]);
+    let mut properties = vec![(index, "vertex_indices")];
+    properties.extend(output.face_properties.iter().map(|property| (property.kind(), property.name)));
+    element("face", triangles.len(), &properties);
     header + "end_header\n"
 }
 
@@ -63,6 +69,7 @@ fn vertex_bytes(out: &mut Pieces<'_>, output: &Output<'_>, vertex: usize) -> io:
     if let Some(quality) = output.quality {
         out.bytes(&quality[vertex].to_le_bytes());
     }
+    output.vertex_properties.iter().for_each(|property| property.bytes(out, vertex));
     out.end()
 }
 
@@ -80,5 +87,6 @@ fn vertex_text(out: &mut Pieces<'_>, output: &Output<'_>, vertex: usize) -> io::
     if let Some(quality) = output.quality {
         out.number(quality[vertex]);
     }
+    output.vertex_properties.iter().for_each(|property| property.text(out, vertex));
     out.end_line()
 }

@@ -1,0 +1,59 @@
+//! Options that say where the surface of a control mesh is sharp.
+
+use clap::{Args, ValueEnum};
+use limitmesh::Mesh;
+use limitmesh::mesh::{BoundaryRule, MeshError};
+use serde::Serialize;
+
+use super::values;
+
+/// The shape of a surface's boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Boundary {
+    /// A smooth curve
+    #[default]
+    Smooth,
+    /// A smooth curve that keeps the vertices in one face only
+    Corners,
+    /// The mesh's own boundary edges, all straight
+    Fixed,
+}
+
+/// Where the surface is sharp, beside the tags of the file.
+#[derive(Args, Debug, Clone, Copy)]
+pub(crate) struct FeatureArguments {
+    /// Keep edges sharp where the faces meet at more than this angle between their normals [degrees, above 0 to 180]
+    ///
+    /// For parts with flat faces and round ones: 30 keeps a box a box, and makes a cylinder round between sharp rims.
+    #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
+    pub(crate) crease_angle: Option<f64>,
+
+    /// What becomes of open boundaries [default: smooth]
+    #[arg(long, value_enum, value_name = "RULE")]
+    pub(crate) boundary: Option<Boundary>,
+}
+
+impl FeatureArguments {
+    /// Whether any is given.
+    pub(crate) fn are_given(&self) -> bool {
+        self.crease_angle.is_some() || self.boundary.is_some()
+    }
+
+    /// The control mesh with the tags that these options put on it.
+    ///
+    /// # Errors
+    /// None that the command line's own checks leave.
+    pub(crate) fn apply(&self, mesh: Mesh) -> Result<Mesh, MeshError> {
+        let rule = match self.boundary.unwrap_or_default() {
+            Boundary::Smooth => BoundaryRule::Smooth,
+            Boundary::Corners => BoundaryRule::Corners,
+            Boundary::Fixed => BoundaryRule::Fixed,
+        };
+        let mesh = mesh.with_boundary(rule);
+        match self.crease_angle {
+            Some(angle) => mesh.with_creases_above(angle.to_radians()),
+            None => Ok(mesh),
+        }
+    }
+}

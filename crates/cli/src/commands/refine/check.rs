@@ -1,0 +1,110 @@
+//! What makes no sense on a command line of `limitmesh refine`, found before any work is done.
+
+use std::path::Path;
+
+use limitmesh_io::Format;
+
+use super::picture;
+use crate::arguments::{Method, RefineArguments};
+use crate::failure::{UsageError, usage};
+use crate::input;
+use crate::output;
+
+/// Checks options and names of files; gives the format to write.
+pub(super) fn check(arguments: &RefineArguments) -> anyhow::Result<Format> {
+    match arguments.method {
+        Method::Exact => stepwise_options(arguments)?,
+        _ => exact_options(arguments)?,
+    }
+    if arguments.method == Method::Uniform {
+        uniform(arguments)?;
+    }
+    let view = arguments.view.is_some() || arguments.eye.is_some();
+    if view && arguments.method != Method::LimitNormal {
+        return usage(
+            "--view and --eye make the limit-normal method depend on the viewer; they need --method limit-normal",
+        );
+    }
+    if arguments.dilatation.is_some() && !view {
+        return usage(
+            "--dilatation widens the angle of faces that look at a viewer; it needs --view or --eye",
+        );
+    }
+    let format = Format::from_path(&arguments.output).map_err(|unknown| UsageError(unknown.to_string()))?;
+    if arguments.exact.provenance && format != Format::Ply {
+        return usage(format!(
+            "--provenance writes properties of PLY files; {} is none",
+            arguments.output.display()
+        ));
+    }
+    files(arguments)?;
+    Ok(format)
+}
+
+/// Refuses options of the stepwise methods.
+fn stepwise_options(arguments: &RefineArguments) -> anyhow::Result<()> {
+    if arguments.levels.is_some() {
+        return usage(
+            "--levels is the number of steps of the other methods; with --method exact, --max-levels is a cap",
+        );
+    }
+    if arguments.seam.is_some() {
+        return usage("--seam has no effect with --method exact, whose vertices lie on the limit surface");
+    }
+    if arguments.limit {
+        return usage("--limit has no effect with --method exact, whose vertices lie on the limit surface");
+    }
+    Ok(())
+}
+
+/// Refuses options of the exact method.
+fn exact_options(arguments: &RefineArguments) -> anyhow::Result<()> {
+    let exact = &arguments.exact;
+    let given = [
+        ("--tolerance", exact.tolerance.is_some()),
+        ("--triangles", exact.triangles.is_some()),
+        ("--max-levels", exact.max_levels.is_some()),
+        ("--provenance", exact.provenance),
+    ];
+    match given.into_iter().find(|&(_, given)| given) {
+        Some((option, _)) => usage(format!("{option} is for exact refinement; it needs --method exact")),
+        None => Ok(()),
+    }
+}
+
+/// Refuses what has no effect on uniform refinement.
+fn uniform(arguments: &RefineArguments) -> anyhow::Result<()> {
+    if arguments.angle.is_some() {
+        return usage("--angle has no effect with --method uniform, which divides every face");
+    }
+    if arguments.seam.is_some() {
+        return usage(
+            "--seam has no effect with --method uniform, where divided and undivided faces never meet",
+        );
+    }
+    Ok(())
+}
+
+/// Checks that what is to be written can be, replaces no input, and is written once.
+fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
+    output::check_folder(&arguments.output)?;
+    let input = Path::new(&arguments.input);
+    let mut written = vec![arguments.output.as_path()];
+    if let Some(picture) = &arguments.picture {
+        picture::check_name(picture)?;
+        written.push(picture);
+    }
+    if let Some(report) = &arguments.report {
+        output::check_folder(report)?;
+        written.push(report);
+    }
+    if let Some(path) = written[1..].iter().find(|path| input::same_file(input, path)) {
+        return usage(format!("{} is the input; a report or picture would replace it", path.display()));
+    }
+    for (i, path) in written.iter().enumerate() {
+        if written[..i].iter().any(|earlier| input::same_file(earlier, path)) {
+            return usage(format!("{} would be written twice", path.display()));
+        }
+    }
+    Ok(())
+}

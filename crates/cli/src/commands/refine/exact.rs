@@ -1,0 +1,163 @@
+//! Exact refinement: from the goals on the command line to the mesh, its certified distance, and what is said of it.
+
+use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
+
+use limitmesh::Mesh;
+use limitmesh::refine::{Exact, ExactOptions, ExactProgress, ExactStop, RefineError, exact};
+
+use super::Refined;
+use super::provenance::Provenance;
+use crate::arguments::{Extent, RefineArguments};
+use crate::failure::{Outcome, usage};
+use crate::progress::Progress;
+use crate::report::refinement::exact_stop_name;
+use crate::report::{ErrorReport, ExactParametersReport, MethodReport, ParametersReport, RoundEntry};
+use crate::words::{counted, thousands};
+
+/// The tolerance where no goal is given: facets can hardly be seen then in a picture a thousand pixels wide.
+const USUAL_TOLERANCE: Extent = Extent::Percent(0.1);
+
+/// The goals, with those that hold where none is given.
+#[derive(Clone, Copy)]
+struct Goals {
+    tolerance: Option<Extent>,
+    /// Of the control mesh's bounding box.
+    diagonal: f64,
+    angle_degrees: Option<f64>,
+    triangles: Option<usize>,
+}
+
+impl Goals {
+    fn new(arguments: &RefineArguments, diagonal: f64) -> Self {
+        let exact = &arguments.exact;
+        let none = exact.tolerance.is_none() && exact.triangles.is_none() && arguments.angle.is_none();
+        let tolerance = exact.tolerance.or(none.then_some(USUAL_TOLERANCE));
+        Self { tolerance, diagonal, angle_degrees: arguments.angle, triangles: exact.triangles }
+    }
+
+    /// The tolerance in the mesh's unit.
+    fn length(&self) -> Option<f64> {
+        self.tolerance.map(|tolerance| tolerance.length(self.diagonal))
+    }
+
+    fn options<'a>(&self, arguments: &RefineArguments) -> ExactOptions<'a> {
+        let mut options = ExactOptions::default().max_triangles(Some(arguments.max_triangles));
+        if let Some(length) = self.length() {
+            options = options.tolerance(length);
+        }
+        if let Some(degrees) = self.angle_degrees {
+            options = options.angle(degrees.to_radians());
+        }
+        if let Some(count) = self.triangles {
+            options = options.triangles(count);
+        }
+        if let Some(levels) = arguments.exact.max_levels {
+            options = options.max_levels(levels);
+        }
+        options
+    }
+
+    /// The goals on quality, as a list in words.
+    fn in_words(&self) -> String {
+        let tolerance = self.tolerance.map(|tolerance| match tolerance {
+            Extent::Length(length) => format!("the tolerance of {}", as_typed(length)),
+            Extent::Percent(percent) => format!("the tolerance of {} %", as_typed(percent)),
+        });
+        let angle = self.angle_degrees.map(|degrees| format!("the angle of {}°", as_typed(degrees)));
+        let goals: Vec<String> = [tolerance, angle].into_iter().flatten().collect();
+        if goals.is_empty() { "the triangles asked for".to_owned() } else { goals.join(" and ") }
+    }
+}
+
+/// The fewest digits that say exactly this number, as a person would write it.
+fn as_typed(x: f64) -> String {
+    if (1e-6..1e9).contains(&x) { format!("{x}") } else { format!("{x:e}") }
+}
+
+/// Refines until the goals are met or a cap is reached.
+pub(super) fn run(
+    control: &Mesh,
+    arguments: &RefineArguments,
+    progress: &Progress,
+) -> anyhow::Result<Refined> {
+    let diagonal = control.diagonal();
+    let goals = Goals::new(arguments, diagonal);
+    let rounds = Mutex::new(Vec::new());
+    let observer = |round: &ExactProgress| {
+        progress.stage(format!("refining: {}", counted(round.triangles, "triangle", "triangles")));
+        rounds.lock().unwrap_or_else(PoisonError::into_inner).push(RoundEntry::from(round));
+        ControlFlow::Continue(())
+    };
+    progress.stage(format!("refining {}", counted(control.face_count(), "triangle", "triangles")));
+    let options = goals.options(arguments).observer(&observer);
+    let found = match exact(control, arguments.scheme.scheme(), &options) {
+        Err(why @ RefineError::NotExact { .. }) => {
+            return usage(format!("{why}; --method uniform, limit-normal and amresh take any"));
+        }
+        found => found?,
+    };
+    let rounds = rounds.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let error = ErrorReport::new(&found.error, diagonal);
+    let outcome = outcome(&found, &goals, &error, arguments);
+    let Exact { mesh, normals, origins, parents, stop, levels, .. } = found;
+    Ok(Refined {
+        mesh,
+        normals: Some(normals),
+        provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents)),
+        achieved: Some(error.in_words()),
+        how: counted(levels, "level", "levels"),
+        report: MethodReport {
+            steps: Vec::new(),
+            rounds,
+            levels,
+            stop: exact_stop_name(stop),
+            needed_triangles: None,
+            error: Some(error),
+        },
+        outcome,
+    })
+}
+
+/// What was asked for, defaults filled in.
+pub(super) fn parameters(arguments: &RefineArguments, diagonal: f64) -> ParametersReport {
+    let goals = Goals::new(arguments, diagonal);
+    let options = goals.options(arguments);
+    ParametersReport {
+        angle_degrees: goals.angle_degrees,
+        exact: Some(ExactParametersReport {
+            tolerance: goals.length(),
+            tolerance_percent: goals.length().map(|length| 100.0 * length / diagonal),
+            triangles: goals.triangles,
+            max_levels: options.max_levels,
+            provenance: arguments.exact.provenance,
+        }),
+        ..ParametersReport::common(arguments)
+    }
+}
+
+/// Whether a cap ended the refinement before the goals were met, and what was reached.
+fn outcome(found: &Exact, goals: &Goals, error: &ErrorReport, arguments: &RefineArguments) -> Outcome {
+    let triangles = found.mesh.face_count();
+    let written = format!(
+        "{} was written with {}, {}",
+        arguments.output.display(),
+        counted(triangles, "triangle", "triangles"),
+        error.in_words()
+    );
+    let cap = match found.stop {
+        ExactStop::TriangleCap => format!("--max-triangles {}", thousands(arguments.max_triangles)),
+        ExactStop::LevelCap => {
+            format!("--max-levels {}", goals.options(arguments).max_levels)
+        }
+        ExactStop::Triangles if goals.triangles.is_some_and(|wanted| triangles > wanted) => {
+            let wanted = goals.triangles.unwrap_or_default();
+            return Outcome::StoppedShort(format!(
+                "the control mesh has more than --triangles {} already; {written}",
+                thousands(wanted)
+            ));
+        }
+        _ => return Outcome::Done,
+    };
+    Outcome::StoppedShort(format!("{cap} was reached before {}; {written}", goals.in_words()))
+}

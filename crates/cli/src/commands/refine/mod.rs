@@ -1,0 +1,155 @@
+//! `limitmesh refine`: reads a control mesh, refines it, writes the result, a report and a picture.
+
+mod check;
+mod exact;
+mod provenance;
+mod stepwise;
+
+use std::time::{Duration, Instant};
+
+use limitmesh::Mesh;
+use limitmesh::mesh::Tags;
+use limitmesh_io::{Format, Output, WriteOptions};
+use limitmesh_render::Style;
+
+use super::picture;
+use crate::arguments::{Method, RefineArguments};
+use crate::failure::Outcome;
+use crate::input::{self, Input};
+use crate::interrupt;
+use crate::output;
+use crate::progress::Progress;
+use crate::report::{InputReport, MethodReport, OutputReport, RefineReport, SecondsReport, VERSION};
+use crate::words::{counted, seconds};
+use provenance::Provenance;
+
+/// What a method gave, and what is said of it.
+struct Refined {
+    mesh: Mesh,
+    normals: Option<Vec<[f64; 3]>>,
+    provenance: Option<Provenance>,
+    /// How near the mesh is to the limit surface, in words.
+    achieved: Option<String>,
+    /// How it came about, in words.
+    how: String,
+    report: MethodReport,
+    outcome: Outcome,
+}
+
+/// Refines a mesh.
+pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::Result<Outcome> {
+    let format = check::check(arguments)?;
+    let input = input::load(&arguments.input, &arguments.build.options(), progress)?;
+    let input_report = InputReport {
+        path: input.name,
+        format: input.format,
+        vertices: input.diagnosis.input_vertices,
+        faces: input.diagnosis.input_faces,
+        left_out: input.left_out,
+    };
+    let Input { mesh: control, diagnosis, reading, building, .. } = input;
+    if let Some(note) = lost_tags(control.tags(), format) {
+        progress.note(note);
+    }
+    let control = arguments.features.apply(control)?;
+
+    let parameters = match arguments.method {
+        Method::Exact => exact::parameters(arguments, control.diagonal()),
+        _ => stepwise::parameters(arguments),
+    };
+    let start = Instant::now();
+    let refined = match arguments.method {
+        Method::Exact => exact::run(&control, arguments, progress)?,
+        _ => stepwise::run(control, arguments, format, progress)?,
+    };
+    let refining = start.elapsed();
+
+    progress.stage(format!("writing {}", arguments.output.display()));
+    let start = Instant::now();
+    write(arguments, &refined)?;
+    let writing = start.elapsed();
+    progress.note(summary(arguments, &refined, refining));
+
+    let Refined { mesh, normals, report, outcome, .. } = refined;
+    if let Some(path) = &arguments.report {
+        progress.stage("examining the result");
+        let report = RefineReport {
+            version: VERSION,
+            input: input_report,
+            diagnosis: (&diagnosis).into(),
+            parameters,
+            method: report,
+            output: OutputReport::of(arguments.output.display().to_string(), &mesh),
+            seconds: phases(reading, building, refining, writing),
+        };
+        progress.clear();
+        output::write_json(path, &report)?;
+    }
+    if let Some(path) = &arguments.picture {
+        progress.stage(format!("drawing {}", path.display()));
+        let style = Style::default().wireframe(true);
+        let view = picture::view_direction(arguments.view);
+        picture::draw(path, mesh.as_triangles(), normals.as_deref(), view, &style, picture::SIZE)?;
+    }
+    Ok(outcome)
+}
+
+/// Tells about tags of the input that the output's format has no place for.
+fn lost_tags(tags: &Tags, format: Format) -> Option<String> {
+    if tags.is_empty() || format == Format::Obj {
+        return None;
+    }
+    let kinds = [
+        (tags.creases.len(), "crease tag", "crease tags"),
+        (tags.corners.len(), "corner tag", "corner tags"),
+    ];
+    let found: Vec<String> = kinds
+        .into_iter()
+        .filter(|&(count, ..)| count > 0)
+        .map(|(count, one, many)| counted(count, one, many))
+        .collect();
+    Some(format!("{}: followed, but left out of the output, whose format has none", found.join(" and ")))
+}
+
+fn write(arguments: &RefineArguments, refined: &Refined) -> anyhow::Result<()> {
+    let Refined { mesh, normals, provenance, .. } = refined;
+    let mut output = Output::new(mesh.as_triangles());
+    if let (Some(normals), Ok(Format::Ply)) = (normals, Format::from_path(&arguments.output)) {
+        output = output.normals(normals);
+    }
+    let of_vertices = provenance.as_ref().map(Provenance::of_vertices);
+    let of_faces = provenance.as_ref().map(Provenance::of_faces);
+    if let (Some(vertices), Some(faces)) = (&of_vertices, &of_faces) {
+        output = output.vertex_properties(vertices).face_properties(faces);
+    }
+    let output = output.creases(&mesh.tags().creases).corners(&mesh.tags().corners);
+    let options = WriteOptions::default().ascii(arguments.ascii);
+    interrupt::uninterrupted(|| limitmesh_io::write(&arguments.output, &output, &options))?;
+    Ok(())
+}
+
+fn phases(read: Duration, repair: Duration, refine: Duration, write: Duration) -> SecondsReport {
+    SecondsReport {
+        read: read.as_secs_f64(),
+        repair: repair.as_secs_f64(),
+        refine: refine.as_secs_f64(),
+        write: write.as_secs_f64(),
+        total: (read + repair + refine + write).as_secs_f64(),
+    }
+}
+
+fn summary(arguments: &RefineArguments, refined: &Refined, refining: Duration) -> String {
+    let Refined { mesh, achieved, how, .. } = refined;
+    let edges = match mesh.topology().boundary_edge_count() {
+        0 => "closed".to_owned(),
+        open => counted(open, "open edge", "open edges"),
+    };
+    format!(
+        "{}: {}, {}, {edges}{} ({how}; refined in {})",
+        arguments.output.display(),
+        counted(mesh.face_count(), "triangle", "triangles"),
+        counted(mesh.vertex_count(), "vertex", "vertices"),
+        achieved.as_ref().map_or(String::new(), |achieved| format!(", {achieved}")),
+        seconds(refining.as_secs_f64())
+    )
+}

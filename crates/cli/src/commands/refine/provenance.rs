@@ -1,0 +1,41 @@
+//! Where the vertices and triangles of an exact refinement came from, as properties of a PLY file.
+
+use limitmesh::refine::Origin;
+use limitmesh_io::Property;
+
+/// Columns of numbers, one for each vertex or triangle.
+pub(super) struct Provenance {
+    /// Of each vertex.
+    faces: Vec<u32>,
+    barycentric: [Vec<f64>; 3],
+    /// Of each triangle.
+    parents: Vec<u32>,
+}
+
+impl Provenance {
+    /// Takes the origins of the vertices and the parents of the triangles apart.
+    pub(super) fn new(origins: &[Origin], parents: Vec<u32>) -> Self {
+        let column = |corner: usize| origins.iter().map(|origin| origin.barycentric[corner]).collect();
+        Self {
+            faces: origins.iter().map(|origin| origin.face).collect(),
+            barycentric: [0, 1, 2].map(column),
+            parents,
+        }
+    }
+
+    /// Properties of the vertices.
+    pub(super) fn of_vertices(&self) -> [Property<'_>; 4] {
+        let [a, b, c] = &self.barycentric;
+        [
+            Property::integers("parent_face", &self.faces),
+            Property::numbers("parent_a", a),
+            Property::numbers("parent_b", b),
+            Property::numbers("parent_c", c),
+        ]
+    }
+
+    /// Properties of the triangles.
+    pub(super) fn of_faces(&self) -> [Property<'_>; 1] {
+        [Property::integers("parent_face", &self.parents)]
+    }
+}

@@ -1,0 +1,157 @@
+//! Refinement step by step: uniform, by limit normals, by neighbouring normals.
+
+use std::ops::ControlFlow;
+
+use limitmesh::Mesh;
+use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal, Sight, View};
+use limitmesh::limit::LimitTable;
+use limitmesh::refine::{Refinement, StepReport, StepwiseOptions, Stop, UniformOptions, stepwise, uniform};
+use limitmesh_io::Format;
+
+use super::Refined;
+use crate::arguments::{Method, RefineArguments, Seam};
+use crate::failure::Outcome;
+use crate::progress::Progress;
+use crate::report::refinement::stop_name;
+use crate::report::{MethodReport, ParametersReport, StepEntry, ViewReport};
+use crate::words::{counted, thousands};
+
+/// The angle where none is given, in degrees: the paper's middle one.
+const USUAL_ANGLE: f64 = 10.0;
+
+/// The dilatant factor where none is given: the paper's in most of its experiments.
+const USUAL_DILATATION: f64 = 1.0;
+
+/// The number of steps where none is given: the paper's in most of its experiments.
+const USUAL_LEVELS: usize = 3;
+
+fn levels(arguments: &RefineArguments) -> usize {
+    arguments.levels.unwrap_or(USUAL_LEVELS)
+}
+
+/// Refines, and moves the vertices to the limit if asked.
+pub(super) fn run(
+    control: Mesh,
+    arguments: &RefineArguments,
+    format: Format,
+    progress: &Progress,
+) -> anyhow::Result<Refined> {
+    let Refinement { mesh, steps, stop, .. } = refine(&control, arguments, progress)?;
+    drop(control);
+    let (mesh, normals) = finish(mesh, arguments, format, progress)?;
+    let early = if stop == Stop::Satisfied { ", no face is divisible any more" } else { "" };
+    Ok(Refined {
+        normals,
+        provenance: None,
+        achieved: None,
+        how: counted(steps.len(), "step", "steps") + early,
+        outcome: outcome(arguments, &mesh, &steps, stop),
+        mesh,
+        report: MethodReport {
+            steps: steps.iter().map(StepEntry::from).collect(),
+            rounds: Vec::new(),
+            levels: steps.len(),
+            stop: stop_name(stop),
+            needed_triangles: match stop {
+                Stop::TriangleCap { needed } => Some(needed),
+                _ => None,
+            },
+            error: None,
+        },
+    })
+}
+
+/// Runs the method asked for.
+fn refine(control: &Mesh, arguments: &RefineArguments, progress: &Progress) -> anyhow::Result<Refinement> {
+    let levels = levels(arguments);
+    let stage = |done: usize, faces: usize| {
+        if done < levels {
+            let faces = counted(faces, "triangle", "triangles");
+            progress.stage(format!("refining: step {} of at most {levels}, from {faces}", done + 1));
+        }
+    };
+    stage(0, control.face_count());
+    let observer = |report: &StepReport| {
+        stage(report.step, report.faces_after);
+        ControlFlow::Continue(())
+    };
+    let scheme = arguments.scheme.scheme();
+    let cap = Some(arguments.max_triangles);
+    let angle = arguments.angle.unwrap_or(USUAL_ANGLE).to_radians();
+    let criterion: Box<dyn Criterion> = match (arguments.method, view(arguments)) {
+        (Method::Amresh, _) => Box::new(NeighbourNormal::new(angle)),
+        (Method::LimitNormal, Some(view)) => Box::new(LimitNormal::new(angle).view(view)),
+        (Method::LimitNormal, None) => Box::new(LimitNormal::new(angle)),
+        (Method::Uniform | Method::Exact, _) => {
+            let options = UniformOptions::default().levels(levels).max_triangles(cap).observer(&observer);
+            return Ok(uniform(control, scheme, &options)?);
+        }
+    };
+    let options = StepwiseOptions::default()
+        .levels(levels)
+        .seam(arguments.seam.unwrap_or_default().rule())
+        .max_triangles(cap)
+        .observer(&observer);
+    Ok(stepwise(control, scheme, criterion.as_ref(), &options)?)
+}
+
+fn view(arguments: &RefineArguments) -> Option<View> {
+    let sight = arguments.view.map(Sight::Direction).or(arguments.eye.map(Sight::Eye))?;
+    Some(View { sight, dilatation: arguments.dilatation.unwrap_or(USUAL_DILATATION) })
+}
+
+/// Takes limit normals where the output or the picture shows them, then moves the vertices to the limit if asked.
+///
+/// In this order: the normals of the moved vertices are those of the limit surface that they now lie on.
+fn finish(
+    mesh: Mesh,
+    arguments: &RefineArguments,
+    format: Format,
+    progress: &Progress,
+) -> anyhow::Result<(Mesh, Option<Vec<[f64; 3]>>)> {
+    let scheme = arguments.scheme.scheme();
+    let wanted = format == Format::Ply || arguments.picture.is_some();
+    let normals = match wanted.then(|| LimitTable::new(scheme).normals(&mesh)) {
+        Some(Err(why)) => {
+            progress.note(format!("no limit normals: {why}"));
+            None
+        }
+        normals => normals.and_then(Result::ok),
+    };
+    if !arguments.limit {
+        return Ok((mesh, normals));
+    }
+    progress.stage("moving the vertices to the limit");
+    let options = UniformOptions::default().levels(0).limit(true);
+    Ok((uniform(&mesh, scheme, &options)?.mesh, normals))
+}
+
+/// What was asked for, defaults filled in.
+pub(super) fn parameters(arguments: &RefineArguments) -> ParametersReport {
+    let adaptive = arguments.method != Method::Uniform;
+    ParametersReport {
+        angle_degrees: adaptive.then(|| arguments.angle.unwrap_or(USUAL_ANGLE)),
+        levels: Some(levels(arguments)),
+        seam: adaptive.then(|| arguments.seam.unwrap_or(Seam::All)),
+        view: view(arguments).map(|view| ViewReport {
+            direction: arguments.view,
+            eye: arguments.eye,
+            dilatation: view.dilatation,
+        }),
+        limit: arguments.limit,
+        ..ParametersReport::common(arguments)
+    }
+}
+
+fn outcome(arguments: &RefineArguments, mesh: &Mesh, steps: &[StepReport], stop: Stop) -> Outcome {
+    let Stop::TriangleCap { needed } = stop else { return Outcome::Done };
+    Outcome::StoppedShort(format!(
+        "step {} of {} would have given {}, more than --max-triangles {}; {} was written with {}",
+        steps.len() + 1,
+        levels(arguments),
+        counted(needed, "triangle", "triangles"),
+        thousands(arguments.max_triangles),
+        arguments.output.display(),
+        counted(mesh.face_count(), "triangle", "triangles"),
+    ))
+}

@@ -1,0 +1,217 @@
+//! `refine --method exact`, the default: goals, caps, the certified error, where vertices came from.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::common::{claimed, counts, file, folder, has_keys, run, soup};
+
+const CONTRACT: &str = "parameters.method parameters.exact.tolerance parameters.exact.tolerance_percent
+    parameters.exact.triangles parameters.exact.max_levels parameters.exact.provenance rounds steps levels stop
+    error.lower error.upper error.lower_percent error.upper_percent error.diagonal error.at error.certified";
+
+/// Refines to an exit code and gives the report, after checking that it fits the file and itself.
+#[track_caller]
+fn refine(code: i32, input: &str, output: &Path, options: &str) -> Value {
+    let report = run(&format!("refine {input} -o {{}} --report - {options}"), &[output]).expect(code).json();
+    has_keys(&report, CONTRACT);
+    assert_eq!(report["parameters"]["method"], "exact");
+    assert_eq!(claimed(&report["output"]), counts(&soup(output)), "{input} {options}");
+    assert_eq!(report["output"]["t_junctions"], 0);
+    let error = &report["error"];
+    assert!(number(&error["lower"]) <= number(&error["upper"]), "{error}");
+    let percent = 100.0 * number(&error["upper"]) / number(&error["diagonal"]);
+    assert!((percent - number(&error["upper_percent"])).abs() < 1e-12 * percent);
+    assert_eq!(error["certified"], true);
+    let rounds = report["rounds"].as_array().expect("a list");
+    for (i, round) in rounds.iter().enumerate() {
+        assert_eq!(round["round"], i + 1);
+    }
+    report
+}
+
+#[track_caller]
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+fn triangles(report: &Value) -> u64 {
+    report["output"]["triangles"].as_u64().expect("a count")
+}
+
+#[test]
+fn a_thousandth_of_the_diagonal_is_kept_by_default() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let report = refine(0, "builtin:cup", &output, "");
+    let info = run("info builtin:cup --json", &[]).expect(0).json();
+    let diagonal = number(&info["mesh"]["bounding_box"]["diagonal"]);
+    let expected = json!({
+        "tolerance": 0.1 / 100.0 * diagonal, "tolerance_percent": 0.1, "triangles": null, "max_levels": 24,
+        "provenance": false
+    });
+    assert_eq!(report["parameters"]["exact"], expected);
+    assert_eq!(report["parameters"]["levels"], Value::Null);
+    assert_eq!(report["parameters"]["angle_degrees"], Value::Null);
+    assert_eq!((&report["stop"], &report["steps"]), (&json!("met"), &json!([])));
+    assert!(number(&report["error"]["upper_percent"]) <= 0.1);
+    assert_eq!(report["output"]["watertight"], info["mesh"]["watertight"]);
+    let said = run("refine builtin:cup -o {}", &[&output]).expect(0);
+    assert!(
+        said.stderr.contains(" % (") && said.stderr.contains("certified; at least 0.0"),
+        "{}",
+        said.stderr
+    );
+}
+
+#[test]
+fn the_interval_holds_what_samples_find() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let report = refine(0, "builtin:head", &output, "--tolerance 0.5%");
+    let measured = run("measure {} --limit-of builtin:head --json", &[&output]).expect(0).json();
+    let sampled = number(&measured["hausdorff"]["symmetric"]);
+    let (lower, upper) = (number(&report["error"]["lower"]), number(&report["error"]["upper"]));
+    // Five levels of uniform refinement stand for the surface: a few hundredths of a per cent of the error off.
+    assert!(sampled <= 1.01 * upper, "{sampled} {upper}");
+    assert!(sampled >= 0.9 * lower, "{sampled} {lower}");
+    assert!(upper <= number(&report["parameters"]["exact"]["tolerance"]));
+}
+
+#[test]
+fn a_number_of_triangles_is_used_up_and_not_passed() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let few = refine(0, "builtin:shoe", &output, "--triangles 3000");
+    let many = refine(0, "builtin:shoe", &output, "--triangles 12000");
+    for (report, wanted) in [(&few, 3000), (&many, 12000)] {
+        assert_eq!(report["stop"], "triangles");
+        assert!(triangles(report) <= wanted && triangles(report) > wanted * 9 / 10, "{wanted}");
+    }
+    // Four times the triangles: about a quarter of the distance.
+    assert!(number(&many["error"]["upper"]) < 0.5 * number(&few["error"]["upper"]));
+    // Whichever comes first ends it.
+    let met = refine(0, "builtin:shoe", &output, "--triangles 100000 --tolerance 1%");
+    assert_eq!(met["stop"], "met");
+    assert!(triangles(&met) < 10_000 && number(&met["error"]["upper_percent"]) <= 1.0);
+    assert_eq!(
+        refine(0, "builtin:shoe", &output, "--triangles 3000 --tolerance 0.001%")["stop"],
+        "triangles"
+    );
+    let too_few = refine(3, "builtin:shoe", &output, "--triangles 1");
+    let control = limitmesh::models::find("shoe").expect("a model").soup().faces.len() as u64;
+    assert_eq!(triangles(&too_few), control);
+}
+
+#[test]
+fn a_smaller_angle_gives_more_triangles() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let wide = refine(0, "builtin:icosphere", &output, "--angle 10");
+    let narrow = refine(0, "builtin:icosphere", &output, "--angle 3");
+    assert!(triangles(&wide) < triangles(&narrow));
+    assert_eq!(wide["parameters"]["exact"]["tolerance"], Value::Null);
+    assert_eq!(wide["parameters"]["angle_degrees"], 10.0);
+    let both = refine(0, "builtin:icosphere", &output, "--angle 10 --tolerance 0.01%");
+    assert!(triangles(&both) > triangles(&wide));
+    assert!(number(&both["error"]["upper_percent"]) <= 0.01);
+}
+
+#[test]
+fn what_no_machine_can_meet_ends_in_a_conforming_mesh() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    for tolerance in ["1e-300", "1e-12%"] {
+        for (cap, stop) in [("--max-triangles 5000", "triangle-cap"), ("--max-levels 2", "level-cap")] {
+            let options = format!("--tolerance {tolerance} {cap}");
+            let report = refine(3, "builtin:cup", &output, &options);
+            assert_eq!(report["stop"], stop, "{options}");
+            assert_eq!(report["output"]["watertight"], true);
+            if stop == "triangle-cap" {
+                assert!(triangles(&report) <= 5000 && triangles(&report) > 2000);
+            } else {
+                assert_eq!(report["levels"], 2);
+            }
+            let told = run(&format!("refine builtin:cup -o {{}} -q {options}"), &[&output]).expect(3);
+            let cap = cap.replace("5000", "5,000");
+            assert!(told.stderr.contains(&cap) && told.stderr.contains("before the tolerance of 1e-"));
+            assert!(told.stderr.contains("was written with") && told.stderr.contains("certified"));
+        }
+    }
+}
+
+#[test]
+fn a_flat_mesh_is_met_as_it_is() {
+    let folder = folder();
+    let square = file(&folder, "square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    let output = folder.path().join("out.ply");
+    let words = "refine {} -o {} --boundary fixed --report -";
+    let report = run(words, &[&square, &output]).expect(0).json();
+    assert_eq!(triangles(&report), 2);
+    assert_eq!(report["error"]["lower"], 0.0);
+}
+
+/// The rows of numbers of an ASCII PLY file's two elements, and the names of the vertices' properties.
+fn rows(path: &Path) -> (Vec<String>, Vec<Vec<f64>>, Vec<Vec<f64>>) {
+    let text = std::fs::read_to_string(path).expect("text");
+    let (header, body) = text.split_once("end_header\n").expect("a header");
+    let (vertex, face) = header.split_once("element face ").expect("faces");
+    assert!(face.contains("property int parent_face"));
+    let names = vertex.lines().filter_map(|line| line.strip_prefix("property ")?.split(' ').next_back());
+    let count: usize = vertex
+        .split("element vertex ")
+        .nth(1)
+        .and_then(|rest| rest.lines().next()?.parse().ok())
+        .expect("a count");
+    let mut rows: Vec<Vec<f64>> =
+        body.lines().map(|line| line.split(' ').map(|x| x.parse().expect("a number")).collect()).collect();
+    let faces = rows.split_off(count);
+    (names.map(str::to_owned).collect(), rows, faces)
+}
+
+#[test]
+fn vertices_and_triangles_know_where_they_came_from() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    refine(0, "builtin:cube", &output, "--tolerance 0.5% --ascii --provenance");
+    let (names, vertices, faces) = rows(&output);
+    assert_eq!(names[6..], ["parent_face", "parent_a", "parent_b", "parent_c"]);
+    let control = limitmesh::Mesh::from_soup(
+        &limitmesh::models::find("cube").expect("a model").soup(),
+        &Default::default(),
+    )
+    .expect("a mesh")
+    .0;
+    let limits = limitmesh::limit::LimitTable::new(&limitmesh::scheme::Loop)
+        .positions(&control)
+        .expect("limit positions");
+    let mut corners = 0;
+    for vertex in &vertices {
+        let barycentric = &vertex[7..10];
+        assert!(barycentric.iter().all(|b| (0.0..=1.0).contains(b)));
+        assert_eq!(barycentric.iter().sum::<f64>(), 1.0);
+        // A corner of a control face lies at the limit of that control vertex.
+        if let Some(corner) = barycentric.iter().position(|&b| b == 1.0) {
+            let limit = limits[control.triangles()[vertex[6] as usize][corner] as usize];
+            assert!((0..3).all(|axis| (limit[axis] - vertex[axis]).abs() < 1e-12), "{vertex:?} {limit:?}");
+            corners += 1;
+        }
+    }
+    assert_eq!(corners, control.vertex_count());
+    let mut parents = vec![0; control.face_count()];
+    for face in &faces {
+        assert_eq!((face.len(), face[0]), (5, 3.0));
+        parents[face[4] as usize] += 1;
+        for &vertex in &face[1..4] {
+            let vertex = &vertices[vertex as usize];
+            // A corner of the triangle lies in its control face, or on an edge of a neighbour.
+            assert!(vertex[6] == face[4] || vertex[7..10].contains(&0.0), "{vertex:?} {face:?}");
+        }
+    }
+    assert!(parents.iter().all(|&count| count > 0), "{parents:?}");
+    // The file remains one that can be read.
+    assert_eq!(soup(&output).faces.len(), faces.len());
+    let plain = folder.path().join("plain.ply");
+    run("refine builtin:cube -o {} --tolerance 0.5% --provenance", &[&plain]).expect(0);
+    assert_eq!(soup(&plain).positions, soup(&output).positions);
+}
