@@ -228,6 +228,21 @@ fn refines(name: &str, path: &Path, faces: u64, info: &Value) {
     let report = run(&command, &[&output, path]).expect(0).json();
     let percent = report["hausdorff"]["symmetric_percent"].as_f64().expect("a number");
     assert!((0.0..25.0).contains(&percent), "{name}: {percent} %");
+    bounds_distances(name, &output, path);
+}
+
+/// The certified distance of two meshes is found, and what sampling finds lies within it.
+fn bounds_distances(name: &str, a: &Path, b: &Path) {
+    let certified = &run("measure {} {} --certified --json", &[a, b]).expect(0).json()["hausdorff"];
+    let sampled = &run("measure {} {} --samples 20000 --json", &[a, b]).expect(0).json()["hausdorff"];
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let least = 1e-6 * number(&certified["reference_diagonal"]);
+    for direction in ["forward", "backward"] {
+        let (lower, upper) = (number(&certified[direction]["lower"]), number(&certified[direction]["upper"]));
+        let found = number(&sampled[direction]);
+        assert!(found <= upper * (1.0 + 1e-12), "{name} {direction}: {found} above {upper}");
+        assert!(upper - lower <= least.max(0.01 * lower), "{name} {direction}: {lower} to {upper}");
+    }
 }
 
 /// Edges with one face once vertices at one place are one: where sheets that were cut came apart, there are more.

@@ -85,7 +85,7 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
     pub(super) fn bound(&mut self, t: [DVec3; 3], faces: [u32; 3], goal: f64) -> f64 {
         self.steps += 1;
         let slack = self.target.scale.slack;
-        let best = self.by_corners(t, faces) + slack;
+        let best = self.by_corners(t, faces, goal - slack) + slack;
         if best <= goal {
             return best;
         }
@@ -109,15 +109,19 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
         best
     }
 
-    /// Steps from each corner, and one triangle near a corner for all.
-    fn by_corners(&self, t: [DVec3; 3], faces: [u32; 3]) -> f64 {
+    /// Steps from each corner, and one triangle near a corner for all; the first that is at most `goal`, or the best.
+    fn by_corners(&self, t: [DVec3; 3], faces: [u32; 3], goal: f64) -> f64 {
         let sides = [t[1].distance(t[2]), t[2].distance(t[0]), t[0].distance(t[1])];
-        let mut best = f64::INFINITY;
+        let own: [f64; 3] = core::array::from_fn(|i| self.target.distance_to(t[i], faces[i]));
+        let step = |i: usize| own[i] + sides[(i + 1) % 3].max(sides[(i + 2) % 3]);
+        let mut best = step(0).min(step(1)).min(step(2));
         for (i, &face) in faces.iter().enumerate() {
-            let own = self.target.distance_to(t[i], face);
-            best = best.min(own + sides[(i + 1) % 3].max(sides[(i + 2) % 3]));
-            if !faces[..i].contains(&face) {
-                best = best.min(self.to_one(t, face));
+            if best > goal && !faces[..i].contains(&face) {
+                let to_one = (0..3).fold(0.0, |greatest: f64, j| {
+                    let known = faces[j] == face;
+                    greatest.max(if known { own[j] } else { self.target.distance_to(t[j], face) })
+                });
+                best = best.min(to_one);
             }
         }
         best
