@@ -204,6 +204,9 @@ impl<'a> Masks<'a> {
         LabelledRing { centre: vertex, neighbours, sharp: self.sharpness.ring(vertex) }
     }
 
+    // Kept apart, so that the loops over untagged vertices and edges stay short.
+    #[cold]
+    #[inline(never)]
     fn tagged_vertex_point(&self, vertex: VertexId) -> DVec3 {
         let mut sum = DVec3::ZERO;
         for (share, view) in vertex_views(&self.labelled_ring(vertex)) {
@@ -213,6 +216,8 @@ impl<'a> Masks<'a> {
         sum
     }
 
+    #[cold]
+    #[inline(never)]
     fn tagged_edge_point(&self, h: HalfEdgeId) -> DVec3 {
         let topology = self.mesh.topology();
         let [origin, target] = topology.ends(h).map(|end| self.labelled_ring(end));
