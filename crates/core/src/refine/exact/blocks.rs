@@ -14,7 +14,7 @@ pub(super) struct Blocks {
 
 impl Blocks {
     pub(super) fn of(growth: &Growth<'_>, emission: &Emission) -> Self {
-        let at = |vertex: u32| growth.points[vertex as usize].position;
+        let at = |vertex: u32| growth.emitted(vertex);
         let leaves = &emission.leaves;
         let mut blocks: Vec<(usize, usize, DVec3, DVec3)> = Vec::with_capacity(growth.forest.roots());
         let mut last = None;
@@ -46,7 +46,7 @@ impl Blocks {
             }
             let (start, end, ..) = self.blocks[block];
             for triangle in &emission.triangles[start..end] {
-                let [a, b, c] = triangle.map(|vertex| growth.points[vertex as usize].position - point);
+                let [a, b, c] = triangle.map(|vertex| growth.emitted(vertex) - point);
                 least = least.min(closest_to_origin(a, b, c).squared);
             }
         }

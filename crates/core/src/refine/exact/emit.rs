@@ -40,7 +40,7 @@ impl Growth<'_> {
     pub(super) fn finish(mut self, stop: ExactStop, emission: Emission) -> Result<Exact, RefineError> {
         let junctions = self.junctions(&emission);
         let mut positions: Vec<[f64; 3]> =
-            self.points.iter().map(|point| point.position.to_array()).collect();
+            (0..self.points.len()).map(|vertex| self.emitted(vertex as u32).to_array()).collect();
         join_copies(&mut positions, &junctions.vertices);
         check_finite(&positions)?;
         let error = self.probe(&emission);

@@ -51,6 +51,8 @@ pub(super) struct Evaluation<'a> {
     pub(super) forest: &'a Forest,
     /// Limits of the vertices; positions that are not a number are not known yet.
     pub(super) points: &'a [LimitPoint],
+    /// How far vertices are moved along their normals; empty where none is.
+    pub(super) offsets: &'a [f64],
     pub(super) marks: &'a [u8],
     pub(super) demand: &'a Demand,
     /// Values at or below this need not be told apart.
@@ -68,8 +70,8 @@ impl Evaluation<'_> {
                 let patch = root_patch(self.control, self.sharpness, FaceId(root));
                 let corners = [0, 1, 2].map(|corner| {
                     let h = HalfEdgeId::of(FaceId(root), corner);
-                    let known = self.points[self.forest.corners(root)[corner] as usize];
-                    LimitPoint { normal: vector(self.sided.at(self.control.topology(), h)), ..known }
+                    let normal = vector(self.sided.at(self.control.topology(), h));
+                    LimitPoint { normal, ..self.known(self.forest.corners(root)[corner]) }
                 });
                 self.visit(root, &patch, corners, &mut found);
             }
@@ -104,9 +106,29 @@ impl Evaluation<'_> {
         }
     }
 
+    /// A vertex as it is known, at the place where it is emitted.
+    #[inline]
+    fn known(&self, vertex: u32) -> LimitPoint {
+        let point = self.points[vertex as usize];
+        match self.offsets.get(vertex as usize) {
+            Some(&offset) => LimitPoint { position: point.position + offset * point.normal, ..point },
+            None => point,
+        }
+    }
+
+    /// How far the corners of a leaf and the vertices on its edges are from the surface at most.
+    fn moved(&self, node: u32) -> f64 {
+        if self.offsets.is_empty() {
+            return 0.0;
+        }
+        let middles = (0..3).filter_map(|edge| self.forest.middle(node, edge));
+        let vertices = self.forest.corners(node).into_iter().chain(middles);
+        vertices.filter_map(|v| self.offsets.get(v as usize)).fold(0.0, |most, offset| most.max(offset.abs()))
+    }
+
     /// The limit of a vertex: as it is known, with the normal on this side where that matters.
     fn limit(&self, vertex: u32, compute: impl FnOnce() -> LimitPoint, found: &mut Found) -> LimitPoint {
-        let known = self.points[vertex as usize];
+        let known = self.known(vertex);
         if known.position.is_nan() {
             let computed = compute();
             found.points.push((vertex, computed));
@@ -155,7 +177,13 @@ impl Evaluation<'_> {
                 break;
             }
         }
-        found.leaves.extend(best);
+        // The surface's corners are that far from the triangles' own.
+        let moved = self.moved(node);
+        found.leaves.extend(best.map(|leaf| {
+            let deviation =
+                leaf.deviation.max(Deviation { own: moved, height: moved, ..Deviation::default() });
+            Leaf { value: leaf.value.max(moved * leaf.scale), deviation, ..leaf }
+        }));
     }
 }
 

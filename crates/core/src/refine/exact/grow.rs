@@ -23,6 +23,18 @@ const WORST_SHARE: f64 = 0.8;
 /// The part of a budget kept for leaves whose bounds come out greater than expected among their neighbours.
 const RESERVE: usize = 100;
 
+/// The same with balancing, which shows only afterwards where triangles are still needed.
+const BALANCING_RESERVE: usize = 5;
+
+/// How far triangles may miss the goals before they are balanced: by half that much afterwards at best.
+const UNBALANCED: f64 = 1.8;
+
+/// What balancing leaves of the worst value at best.
+const BALANCED: f64 = 0.4;
+
+/// Rounds of balancing and splitting what it did not help.
+const MOST_BALANCINGS: usize = 12;
+
 /// Triangles that one split adds at most: three, and one at each neighbour.
 const MOST_ADDED: usize = 6;
 
@@ -41,6 +53,8 @@ pub(super) struct Growth<'a> {
     pub(super) forest: Forest,
     /// Limits of the vertices.
     pub(super) points: Vec<LimitPoint>,
+    /// How far each vertex is moved along its normal; empty where none is.
+    pub(super) offsets: Vec<f64>,
     /// By node: the value as a leaf.
     pub(super) values: Vec<f64>,
     /// By node: the deviations as a leaf.
@@ -84,6 +98,7 @@ impl<'a> Growth<'a> {
                 .map(|(position, normal)| LimitPoint { position: vector(position), normal: vector(*normal) })
                 .collect(),
             sided,
+            offsets: Vec::new(),
             values: vec![f64::INFINITY; nodes],
             deviations: vec![Deviation::default(); nodes],
             diagonals: vec![false; nodes],
@@ -101,14 +116,24 @@ impl<'a> Growth<'a> {
         // Values above it fail; without a demand on quality all do.
         let floor = if self.demand.is_some() { 1.0 } else { 0.0 };
         let full = self.budget;
-        self.budget = full - full / RESERVE;
-        let mut stop = self.grow(floor)?;
+        self.budget = full - full / if self.options.balance { BALANCING_RESERVE } else { RESERVE };
+        // Balanced triangles may miss the surface by more than others before they are.
+        let mut stop = self.grow(if self.options.balance { UNBALANCED * floor } else { floor })?;
         self.budget = full;
-        let limit = if floor > 0.0 { floor } else { self.worst() };
-        loop {
+        let mut limit = if floor > 0.0 { floor } else { self.worst() };
+        for round in 0.. {
             // With the neighbours as they are emitted, some bounds come out greater than was expected.
-            let emission = Emission::of(self);
-            if !self.settle(&emission, limit) {
+            let mut emission = Emission::of(self);
+            if self.options.balance && round < MOST_BALANCINGS {
+                self.balance(&emission);
+                self.wanted = emission.leaves.order.clone();
+                self.evaluate(if floor > 0.0 { floor } else { BALANCED * limit })?;
+                // Diagonals may have changed.
+                emission = Emission::of(self);
+                limit = if floor > 0.0 { floor } else { limit.min(WORST_SHARE * self.worst()) };
+            }
+            let fails = self.settle(&emission, limit);
+            if !fails && (round + 1 >= MOST_BALANCINGS || self.worst() <= limit || !self.options.balance) {
                 return Ok((stop, emission));
             }
             if let Some(reason) = self.split_worst(limit)? {
@@ -120,6 +145,7 @@ impl<'a> Growth<'a> {
                 self.evaluate(limit)?;
             }
         }
+        Ok((stop, Emission::of(self)))
     }
 
     /// Evaluates and splits until no leaf is known to fail.
@@ -220,6 +246,7 @@ impl<'a> Growth<'a> {
             rules: self.rules,
             forest: &self.forest,
             points: &self.points,
+            offsets: &self.offsets,
             marks: &self.marks,
             demand: &self.demand,
             target,
@@ -305,6 +332,9 @@ impl<'a> Growth<'a> {
         self.loose.resize(nodes, false);
         self.marks.resize(nodes, 0);
         self.points.resize(self.forest.vertex_count(), UNKNOWN);
+        if !self.offsets.is_empty() {
+            self.offsets.resize(self.forest.vertex_count(), 0.0);
+        }
         for &node in &changes.split {
             if let Some(first) = self.forest.children(node) {
                 self.wanted.extend(first..first + 4);

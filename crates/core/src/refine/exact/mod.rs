@@ -8,6 +8,7 @@
 //! from its patch, and the paper's closure (Figure 5) happens when triangles are emitted and is never refined.
 //! Rounds of "evaluate what changed, split what fails, worst first" go on until the goals are met.
 
+mod balance;
 mod blocks;
 mod camera;
 mod demand;

@@ -27,6 +27,9 @@ pub struct ExactOptions<'a> {
     pub cameras: Vec<Camera>,
     /// The best mesh with at most so many triangles. Default: none.
     pub triangles: Option<usize>,
+    /// Moves vertices off the limit surface by about half the local error, so that the error lies on both sides and
+    /// fewer triangles are needed. Default: no.
+    pub balance: bool,
     /// Levels at most below the control faces. Default: 24.
     pub max_levels: usize,
     /// Triangles at most, as a cap rather than a goal: reaching it is a failure to meet the others. Default: none.
@@ -52,6 +55,7 @@ impl Default for ExactOptions<'_> {
             pixels: None,
             cameras: Vec::new(),
             triangles: None,
+            balance: false,
             max_levels: USUAL_LEVELS,
             max_triangles: None,
             max_memory: None,
@@ -88,6 +92,12 @@ impl<'a> ExactOptions<'a> {
     /// Sets [`Self::triangles`].
     pub fn triangles(mut self, count: usize) -> Self {
         self.triangles = Some(count);
+        self
+    }
+
+    /// Sets [`Self::balance`].
+    pub fn balance(mut self, balance: bool) -> Self {
+        self.balance = balance;
         self
     }
 

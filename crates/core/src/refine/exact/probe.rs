@@ -80,7 +80,7 @@ impl Growth<'_> {
     /// The corners of a triangle, starting at the origin of a half-edge.
     fn turned(&self, emission: &Emission, h: u32) -> [DVec3; 3] {
         let triangle = emission.triangles[(h / 3) as usize];
-        [0, 1, 2].map(|i| self.points[triangle[((h % 3 + i) % 3) as usize] as usize].position)
+        [0, 1, 2].map(|i| self.emitted(triangle[((h % 3 + i) % 3) as usize]))
     }
 
     /// The certified interval.
@@ -117,10 +117,9 @@ impl Growth<'_> {
         let evaluation = self.evaluation(0.0);
         let mut samples: Vec<(f64, DVec3)> = Vec::new();
         for &leaf in leaves {
-            let corners = self.forest.corners(leaf).map(|vertex| self.points[vertex as usize].position);
-            let middles = [0, 1, 2].map(|edge| {
-                self.forest.middle(leaf, edge).map(|vertex| self.points[vertex as usize].position)
-            });
+            let corners = self.forest.corners(leaf).map(|vertex| self.emitted(vertex));
+            let middles =
+                [0, 1, 2].map(|edge| self.forest.middle(leaf, edge).map(|vertex| self.emitted(vertex)));
             let facets: Vec<Facet> = leaf_triangles(corners, middles, self.diagonals[leaf as usize])
                 .map(|triangle| Facet::new(triangle.corners))
                 .collect();
