@@ -186,6 +186,25 @@ fn estimates_come_near() {
     }
 }
 
+/// Half the error on each side needs fewer triangles, and stays certified.
+#[test]
+fn balanced_meshes_need_fewer_triangles() {
+    for name in ["bunny", "head", "sphere"] {
+        let control = model(name);
+        let options = ExactOptions::default().tolerance(0.001 * control.diagonal());
+        let plain = exact(&control, &Loop, &options).unwrap();
+        let balanced = exact(&control, &Loop, &options.balance(true)).unwrap();
+        balanced.mesh.validate().unwrap();
+        assert_eq!(balanced.stop, ExactStop::Met);
+        assert!(balanced.error.upper <= 0.001 * control.diagonal());
+        assert!(balanced.mesh.face_count() < plain.mesh.face_count(), "{name}");
+        let reference = limit_reference(&control, &Loop, 6).unwrap();
+        let samples = SamplingOptions::default().samples(200_000);
+        let sampled = hausdorff(balanced.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+        assert!(sampled.symmetric() <= 1.02 * balanced.error.upper, "{name}: {}", sampled.symmetric());
+    }
+}
+
 /// Copies of a cut edge get the same vertices, at equal bits.
 #[test]
 fn cut_sheets_stay_together() {

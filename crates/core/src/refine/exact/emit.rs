@@ -43,7 +43,7 @@ impl Growth<'_> {
             (0..self.points.len()).map(|vertex| self.emitted(vertex as u32).to_array()).collect();
         join_copies(&mut positions, &junctions.vertices);
         check_finite(&positions)?;
-        let error = self.probe(&emission);
+        let error = self.probe(&emission)?;
         let Emission { triangles, twins, leaves } = emission;
         let parents = leaves.parents(&self.forest, |leaf| self.pattern(leaf));
         let origins = self.origins();

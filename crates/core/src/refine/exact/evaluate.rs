@@ -59,6 +59,8 @@ pub(super) struct Evaluation<'a> {
     pub(super) target: f64,
     /// How often regular pieces may be halved to tighten a bound.
     pub(super) halvings: usize,
+    /// By node, the diagonals that must be kept.
+    pub(super) fixed: Option<&'a [bool]>,
 }
 
 impl Evaluation<'_> {
@@ -153,7 +155,12 @@ impl Evaluation<'_> {
         }
         let open = self.forest.open_edges(node);
         let mut best: Option<Leaf> = None;
+        let is_choice = split.count_ones() == 2;
+        let fixed = self.fixed.filter(|_| is_choice).map(|fixed| fixed[node as usize]);
         for diagonal_from_end in [false, true] {
+            if fixed.is_some_and(|fixed| fixed != diagonal_from_end) {
+                continue;
+            }
             let mut leaf =
                 Leaf { node, value: 0.0, scale: 0.0, deviation: Deviation::default(), diagonal_from_end };
             for triangle in leaf_triangles(corners, middles, diagonal_from_end) {
@@ -173,7 +180,7 @@ impl Evaluation<'_> {
             if best.is_none_or(|best| leaf.value < best.value) {
                 best = Some(leaf);
             }
-            if split.count_ones() != 2 {
+            if !is_choice {
                 break;
             }
         }

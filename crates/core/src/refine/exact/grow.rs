@@ -14,7 +14,10 @@ use crate::surface::{Deviation, LimitPoint, Rules};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// Halvings of a net before a leaf is called too bad: the bound is within some per cent of the truth then.
-pub(super) const HALVINGS: usize = 2;
+const HALVINGS: usize = 2;
+
+/// Halvings for the final bounds: within a per cent.
+const MOST_HALVINGS: usize = 5;
 
 /// Under a budget, a round splits what is worse than this part of the worst value: the nearer to 1, the closer to splitting one
 /// by one.
@@ -70,6 +73,9 @@ pub(super) struct Growth<'a> {
     wanted: Vec<u32>,
     /// Triangles that must not be exceeded.
     budget: usize,
+    halvings: usize,
+    /// Whether the triangles stand as they are.
+    is_emitted: bool,
     round: usize,
 }
 
@@ -107,6 +113,8 @@ impl<'a> Growth<'a> {
             wanted: (0..nodes as u32).collect(),
             scales: vec![0.0; nodes],
             budget: options.budget().0,
+            halvings: HALVINGS,
+            is_emitted: false,
             round: 0,
         })
     }
@@ -250,8 +258,17 @@ impl<'a> Growth<'a> {
             marks: &self.marks,
             demand: &self.demand,
             target,
-            halvings: HALVINGS,
+            halvings: self.halvings,
+            fixed: self.is_emitted.then_some(&self.diagonals[..]),
         }
+    }
+
+    /// Evaluates leaves again with bounds as tight as they get, down to a length.
+    pub(super) fn tighten(&mut self, wanted: Vec<u32>, length: f64) -> Result<(), RefineError> {
+        let scale = wanted.first().map_or(0.0, |&leaf| f64::from(self.scales[leaf as usize]));
+        self.wanted = wanted;
+        (self.halvings, self.is_emitted) = (MOST_HALVINGS, true);
+        self.evaluate(length * scale)
     }
 
     /// Keeps what an evaluation found; gives the greatest value.

@@ -6,11 +6,18 @@ use super::grow::Growth;
 use super::leaf::leaf_triangles;
 use super::options::ErrorBounds;
 use crate::mesh::NONE;
-use crate::surface::Facet;
+use crate::refine::RefineError;
+use crate::surface::{Deviation, Facet};
 use crate::vector::{DVec3, unit_or_zero};
 
 /// Leaves with the greatest bounds that are looked at for a lower bound.
-const PROBED: usize = 64;
+const PROBED: usize = 256;
+
+/// Samples whose distance to the whole mesh is measured.
+const MEASURED: usize = 160;
+
+/// Leaves that are evaluated again for a tighter upper bound.
+const MOST_TIGHTENED: usize = 20_000;
 
 /// Levels below a leaf whose vertices are sampled: the greatest distance is met within some per cent.
 const SAMPLED_LEVELS: usize = 3;
@@ -84,23 +91,57 @@ impl Growth<'_> {
     }
 
     /// The certified interval.
-    pub(super) fn probe(&mut self, emission: &Emission) -> ErrorBounds {
-        let mut bounds: Vec<(f64, u32)> =
-            emission.leaves.order.iter().map(|&leaf| (self.settled(emission, leaf), leaf)).collect();
-        bounds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let upper = bounds.first().map_or(0.0, |worst| worst.0) + self.rounding();
+    pub(super) fn probe(&mut self, emission: &Emission) -> Result<ErrorBounds, RefineError> {
         let blocks = Blocks::of(self, emission);
-        let mut best = ErrorBounds { lower: 0.0, upper, at: [0.0; 3] };
+        let mut bounds = self.bounds(emission);
+        let mut best = self.sampled(emission, &blocks, &bounds);
+        // Bounds below the goals were not tightened while the mesh grew.
+        let slack = bounds.partition_point(|&(bound, _)| bound > NARROW * best.lower);
+        if best.lower > 0.0 && slack > 0 && slack <= MOST_TIGHTENED {
+            let mut wanted: Vec<u32> = bounds[..slack].iter().map(|&(_, leaf)| leaf).collect();
+            wanted.sort_unstable();
+            let before: Vec<Deviation> = wanted.iter().map(|&leaf| self.deviations[leaf as usize]).collect();
+            let known: Vec<f64> = wanted.iter().map(|&leaf| self.settled(emission, leaf)).collect();
+            self.tighten(wanted.clone(), best.lower)?;
+            // Smaller pieces show steeper drifts, which may cost more than they gain.
+            for ((&leaf, deviation), known) in wanted.iter().zip(before).zip(known) {
+                if self.settled(emission, leaf) > known {
+                    self.deviations[leaf as usize] = deviation;
+                }
+            }
+            bounds = self.bounds(emission);
+        }
+        best.upper = bounds.first().map_or(0.0, |worst| worst.0) + self.rounding();
+        best.lower = (best.lower - self.rounding()).max(0.0);
+        Ok(best)
+    }
+
+    /// The bounds of all leaves, the greatest first.
+    fn bounds(&self, emission: &Emission) -> Vec<(f64, u32)> {
+        let leaves = emission.leaves.order.iter();
+        let mut bounds: Vec<(f64, u32)> = leaves.map(|&leaf| (self.settled(emission, leaf), leaf)).collect();
+        bounds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        bounds
+    }
+
+    /// The greatest distance found from samples over the leaves that promise most.
+    fn sampled(&self, emission: &Emission, blocks: &Blocks, bounds: &[(f64, u32)]) -> ErrorBounds {
+        let upper = bounds.first().map_or(0.0, |worst| worst.0);
         // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
         let mut worst: Vec<u32> = bounds.iter().take(PROBED).map(|&(_, leaf)| leaf).collect();
         let height = |leaf: u32| self.deviations[leaf as usize].height;
-        bounds.sort_unstable_by(|a, b| height(b.1).total_cmp(&height(a.1)).then(a.1.cmp(&b.1)));
-        worst.extend(bounds.iter().take(PROBED).map(|&(_, leaf)| leaf));
+        let mut by_height: Vec<u32> = bounds.iter().map(|&(_, leaf)| leaf).collect();
+        let probed = PROBED.min(by_height.len());
+        if probed < by_height.len() {
+            by_height
+                .select_nth_unstable_by(probed, |&a, &b| height(b).total_cmp(&height(a)).then(a.cmp(&b)));
+        }
+        worst.extend(&by_height[..probed]);
         worst.sort_unstable();
         worst.dedup();
-        for (place, point) in self.samples(&worst).into_iter().enumerate() {
-            // Once the interval is narrow more samples add little.
-            if place > 0 && best.lower > NARROW * upper {
+        let mut best = ErrorBounds { lower: 0.0, upper, at: [0.0; 3] };
+        for (_, point) in self.samples(&worst).into_iter().take(MEASURED) {
+            if best.lower > NARROW * upper {
                 break;
             }
             let distance = blocks.distance(self, emission, point);
@@ -108,12 +149,11 @@ impl Growth<'_> {
                 (best.lower, best.at) = (distance, point.to_array());
             }
         }
-        best.lower = (best.lower - self.rounding()).max(0.0);
         best
     }
 
-    /// Points of the surface over leaves, those farthest from their own triangles first.
-    fn samples(&self, leaves: &[u32]) -> Vec<DVec3> {
+    /// Points of the surface over leaves, one for each, those highest over their triangles first.
+    fn samples(&self, leaves: &[u32]) -> Vec<(f64, DVec3)> {
         let evaluation = self.evaluation(0.0);
         let mut samples: Vec<(f64, DVec3)> = Vec::new();
         for &leaf in leaves {
@@ -123,13 +163,16 @@ impl Growth<'_> {
             let facets: Vec<Facet> = leaf_triangles(corners, middles, self.diagonals[leaf as usize])
                 .map(|triangle| Facet::new(triangle.corners))
                 .collect();
-            let own =
-                |point: DVec3| facets.iter().map(|facet| facet.squared(point)).fold(f64::INFINITY, f64::min);
+            // Sideways the neighbours take over: the height over the nearest triangle tells more than the distance.
+            let promise = |point: DVec3| {
+                let nearest = facets.iter().min_by(|a, b| a.squared(point).total_cmp(&b.squared(point)));
+                nearest.map_or(0.0, |facet| facet.height(point).abs())
+            };
             let points = evaluation.samples(leaf, SAMPLED_LEVELS).into_iter();
-            samples.extend(points.map(|point| (own(point), point)).max_by(|a, b| a.0.total_cmp(&b.0)));
+            samples.extend(points.map(|point| (promise(point), point)).max_by(|a, b| a.0.total_cmp(&b.0)));
         }
         samples.sort_by(|a, b| b.0.total_cmp(&a.0));
-        samples.into_iter().map(|(_, point)| point).collect()
+        samples
     }
 
     /// What rounding can have done to a distance: positions are convex combinations of convex combinations, one for
