@@ -20,6 +20,7 @@ mod grow;
 mod leaf;
 mod options;
 mod probe;
+mod settle;
 
 pub use camera::Camera;
 pub use estimate::exact_estimate;
