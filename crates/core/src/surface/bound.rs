@@ -29,59 +29,17 @@
 //! So the greatest of the least of both bounds over all triangles bounds the distance of mesh and surface, both
 //! ways. θ and the neighbours' angles are those of the mesh as it is emitted.
 
-use super::facet::{Beside, Facet};
-use super::net::{EDGES, INNER, Net};
+use super::facet::Facet;
+use super::gauge::{Borders, Deviation, Gauge, INSIDE};
+use super::net::Net;
 use super::patch::{Patch, RefinedPatch};
 use super::rules::Rules;
-use crate::vector::DVec3;
 
 /// Levels that a piece at an irregular vertex is split at most: it has shrunk by 2⁻⁴⁰ then, below rounding.
 const DEEPEST: usize = 40;
 
-/// For each edge of a piece the edge of the triangle that it is part of, or [`INSIDE`].
-type Borders = [u8; 3];
-
-/// The edge lies inside the triangle's piece of surface.
-const INSIDE: u8 = 3;
-
 /// The whole piece stands for the triangle.
 const ALL: Borders = [0, 1, 2];
-
-/// How far a triangle and its piece of the surface can be from each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Deviation {
-    /// The bound that needs no neighbours.
-    pub(crate) own: f64,
-    /// The greatest height over the triangle's plane, and distance to edges without a neighbour.
-    pub(crate) height: f64,
-    /// How far pieces reach over edges with a neighbour.
-    pub(crate) drift: f64,
-    /// The greatest ratio of that to the distance from the edge's ends.
-    pub(crate) slope: f64,
-}
-
-impl Deviation {
-    /// The greater of each.
-    pub(crate) fn max(self, other: Self) -> Self {
-        Self {
-            own: self.own.max(other.own),
-            height: self.height.max(other.height),
-            drift: self.drift.max(other.drift),
-            slope: self.slope.max(other.slope),
-        }
-    }
-
-    /// The bound where the neighbours' planes are turned by angles with this chord (2 sin(θ/2)) at most, and `slope`
-    /// is the greatest that is allowed.
-    #[inline]
-    pub(crate) fn bound(&self, chord: f64, slope: f64) -> f64 {
-        if self.slope <= slope {
-            self.own.min(self.height * (1.0 + 0.5 * chord * chord) + chord * self.drift)
-        } else {
-            self.own
-        }
-    }
-}
 
 /// Part of a patch's domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,21 +81,51 @@ pub(crate) struct Effort {
     pub(crate) slope: f64,
 }
 
-/// The deviation of `facet` and the part of the surface that it stands for: the facet's corner `i` belongs to the part's.
-pub(crate) fn deviation(
-    patch: &Patch,
-    part: Part,
-    facet: &Facet,
-    rules: &Rules<'_>,
-    effort: Effort,
-) -> Deviation {
-    let mut bound = Bound { facet, rules, effort, found: Deviation::default() };
-    bound.part(patch, part, ALL, 0);
-    bound.found
+/// A patch whose parts several triangles stand for, and what is derived from it once for all of them.
+pub(crate) struct Pieces<'a> {
+    patch: &'a Patch,
+    refined: Option<RefinedPatch<'a>>,
+    net: Option<Net>,
+}
+
+impl<'a> Pieces<'a> {
+    pub(crate) fn of(patch: &'a Patch) -> Self {
+        Self { patch, refined: None, net: None }
+    }
+
+    /// The patch refined once.
+    pub(crate) fn refined(&mut self, rules: &Rules<'_>) -> &RefinedPatch<'a> {
+        self.refined.get_or_insert_with(|| self.patch.refined(rules))
+    }
+
+    /// The deviation of `facet` and the part of the surface that it stands for: the facet's corner `i` belongs to the
+    /// part's.
+    pub(crate) fn deviation(
+        &mut self,
+        part: Part,
+        facet: &Facet,
+        rules: &Rules<'_>,
+        effort: Effort,
+    ) -> Deviation {
+        let gauge = Gauge { facet, open: effort.open };
+        let mut bound = Bound { gauge, rules, effort, found: Deviation::default() };
+        match (self.patch, part) {
+            (_, Part::Child(child)) => {
+                let refined = self.refined.get_or_insert_with(|| self.patch.refined(rules));
+                bound.part(&refined.part(child), Part::Whole, ALL, 1);
+            }
+            (Patch::Regular(points), _) => {
+                let net = self.net.get_or_insert_with(|| Net::of(points));
+                bound.net_part(net, part, ALL);
+            }
+            (Patch::Irregular(_), _) => bound.irregular(self.patch, part, ALL, 0),
+        }
+        bound.found
+    }
 }
 
 struct Bound<'a> {
-    facet: &'a Facet,
+    gauge: Gauge<'a>,
     rules: &'a Rules<'a>,
     effort: Effort,
     found: Deviation,
@@ -145,121 +133,25 @@ struct Bound<'a> {
 
 impl Bound<'_> {
     fn part(&mut self, patch: &Patch, part: Part, borders: Borders, depth: usize) {
-        let halvings = self.effort.halvings;
         match (patch, part) {
-            (Patch::Regular(points), Part::Whole) => self.net(&Net::of(points), borders, halvings),
-            (Patch::Regular(points), Part::Half { edge, second }) => {
-                let half = Net::of(points).halves(edge)[usize::from(second)];
-                self.net(&half, borders, halvings);
-            }
-            (Patch::Regular(points), Part::Quarter { edge, at_end }) => {
-                let (quarter, borders) = quarter(&Net::of(points), edge, at_end, borders);
-                self.net(&quarter, borders, halvings);
-            }
             (_, Part::Child(child)) => {
                 self.part(&patch.refined(self.rules).part(child), Part::Whole, borders, depth + 1);
             }
+            (Patch::Regular(points), _) => self.net_part(&Net::of(points), part, borders),
             (Patch::Irregular(_), _) => self.irregular(patch, part, borders, depth),
         }
     }
 
-    /// The deviation of a net's points.
-    fn of_net(&self, net: &Net, borders: Borders) -> Deviation {
-        let mut deviation = Deviation::default();
-        for at in INNER {
-            self.inner_point(net.0[at], &mut deviation);
-        }
-        for (edge, points) in EDGES.iter().enumerate() {
-            let border = borders[edge] as usize;
-            if border == INSIDE as usize {
-                points[1..4].iter().for_each(|&at| self.inner_point(net.0[at], &mut deviation));
-            } else {
-                points[1..4].iter().for_each(|&at| self.curve_point(border, net.0[at], &mut deviation));
+    fn net_part(&mut self, net: &Net, part: Part, borders: Borders) {
+        let halvings = self.effort.halvings;
+        match part {
+            Part::Half { edge, second } => self.net(&net.half(edge, second), borders, halvings),
+            Part::Quarter { edge, at_end } => {
+                let (quarter, borders) = quarter(net, edge, at_end, borders);
+                self.net(&quarter, borders, halvings);
             }
-            // Corners between two edges of the triangle are its own; others belong to one edge or to none.
-            let [before, border] = [borders[(edge + 2) % 3], borders[edge]];
-            match (before, border) {
-                (INSIDE, INSIDE) => self.inner_point(net.0[points[0]], &mut deviation),
-                (INSIDE, on) | (on, INSIDE) => {
-                    self.curve_point(on as usize, net.0[points[0]], &mut deviation)
-                }
-                (last, next) if last == next => {
-                    self.curve_point(next as usize, net.0[points[0]], &mut deviation)
-                }
-                _ => {}
-            }
+            Part::Whole | Part::Child(_) => self.net(net, borders, halvings),
         }
-        deviation
-    }
-
-    /// A hull point of the surface.
-    #[inline]
-    fn inner_point(&self, point: DVec3, deviation: &mut Deviation) {
-        if self.facet.is_flat() {
-            self.found_alone(self.facet.squared(point).sqrt(), deviation);
-            return;
-        }
-        let height = self.facet.height(point).abs();
-        let mut own = height;
-        let mut alone = height;
-        for edge in 0..3 {
-            let beside = self.facet.beside(edge, point);
-            if beside.outside > 0.0 {
-                own = f64::INFINITY;
-                if self.effort.open[edge] {
-                    alone = alone.max(height.hypot(beside.outside));
-                } else {
-                    self.drifted(edge, beside, deviation);
-                }
-            }
-        }
-        if own.is_infinite() {
-            own = self.facet.squared(point).sqrt();
-            if alone > height {
-                alone = alone.max(own);
-            }
-        }
-        deviation.own = deviation.own.max(own);
-        deviation.height = deviation.height.max(alone);
-    }
-
-    /// A hull point of the curve over an edge of the triangle.
-    #[inline]
-    fn curve_point(&self, edge: usize, point: DVec3, deviation: &mut Deviation) {
-        let own = self.facet.squared_to_edge(edge, point).sqrt();
-        if self.facet.is_flat() {
-            self.found_alone(own, deviation);
-            return;
-        }
-        deviation.own = deviation.own.max(own);
-        if self.effort.open[edge] {
-            deviation.height = deviation.height.max(own);
-        } else {
-            deviation.height = deviation.height.max(self.facet.height(point).abs());
-            let beside = self.facet.beside(edge, point);
-            if beside.outside > 0.0 {
-                self.drifted(edge, beside, deviation);
-            }
-        }
-        for other in [(edge + 1) % 3, (edge + 2) % 3] {
-            if self.facet.beside(other, point).outside > 0.0 {
-                deviation.slope = f64::INFINITY;
-            }
-        }
-    }
-
-    /// For a triangle that has no plane.
-    fn found_alone(&self, distance: f64, deviation: &mut Deviation) {
-        let slope = f64::INFINITY;
-        *deviation = deviation.max(Deviation { own: distance, height: distance, slope, drift: 0.0 });
-    }
-
-    #[inline]
-    fn drifted(&self, edge: usize, beside: Beside, deviation: &mut Deviation) {
-        let room = beside.along.min(self.facet.length(edge) - beside.along);
-        deviation.drift = deviation.drift.max(beside.outside);
-        let slope = if room > 0.0 { beside.outside / room } else { f64::INFINITY };
-        deviation.slope = deviation.slope.max(slope);
     }
 
     fn is_enough(&self, deviation: &Deviation) -> bool {
@@ -267,8 +159,9 @@ impl Bound<'_> {
     }
 
     fn net(&mut self, net: &Net, borders: Borders, halvings: usize) {
-        let deviation = self.of_net(net, borders);
-        if halvings == 0 || self.is_enough(&deviation) {
+        let (deviation, attained) = self.gauge.net(net, borders);
+        // What is too far away for sure stays so however it is divided.
+        if halvings == 0 || attained > self.effort.target || self.is_enough(&deviation) {
             self.found = self.found.max(deviation);
             return;
         }
@@ -289,9 +182,9 @@ impl Bound<'_> {
     fn hull(&self, patch: &Patch, borders: Borders) -> f64 {
         let mut greatest = 0.0f64;
         patch.for_each_hull_point(|point| {
-            greatest = greatest.max(self.facet.squared(point));
+            greatest = greatest.max(self.gauge.facet.squared(point));
             for border in borders.into_iter().filter(|&border| border != INSIDE) {
-                greatest = greatest.max(self.facet.squared_to_edge(border as usize, point));
+                greatest = greatest.max(self.gauge.facet.squared_to_edge(border as usize, point));
             }
         });
         greatest.sqrt()
@@ -395,9 +288,9 @@ fn quarter(net: &Net, edge: usize, at_end: bool, borders: Borders) -> (Net, Bord
     let (end, tip) = ((edge + 1) % 3, (edge + 2) % 3);
     // Away from the other end first, then away from the corner opposite.
     let (quarter, order) = if at_end {
-        (net.halves(tip)[0].halves(end)[0], [end, tip, edge])
+        (net.half(tip, false).half(end, false), [end, tip, edge])
     } else {
-        (net.halves(end)[1].halves(tip)[1], [edge, end, tip])
+        (net.half(end, true).half(tip, true), [edge, end, tip])
     };
     let mut turned = borders;
     order.into_iter().zip(borders).for_each(|(at, border)| turned[at] = border);

@@ -7,6 +7,9 @@ use crate::vector::{DVec3, unit_or_zero};
 /// up to 1e-16 over this.
 const FLAT: f64 = 1e-7;
 
+/// Squared lengths between these neither overflow nor vanish in what is computed from them.
+const SAFE: core::ops::Range<f64> = 1e-140..1e140;
+
 /// A triangle with what its distances need.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Facet {
@@ -20,6 +23,11 @@ pub(crate) struct Facet {
     outward: [DVec3; 3],
     /// What is no farther outside an edge than this stands on it, but for rounding.
     on_edge: f64,
+    /// Where the edges' lines stand outwards of the first corner.
+    offsets: [f64; 3],
+    /// Where the edges start along their directions, from the first corner.
+    starts: [f64; 3],
+    least_slope: f64,
 }
 
 /// Distances below this part of a triangle's size are what rounding leaves of zero where points coincide.
@@ -39,17 +47,37 @@ impl Facet {
     pub(crate) fn new(corners: [DVec3; 3]) -> Self {
         let [a, b, c] = corners;
         let edges = [b - a, c - b, a - c];
-        let along = edges.map(unit_or_zero);
-        let normal = along[0].cross(along[1]);
-        let normal = if normal.length_squared() > FLAT * FLAT { normal.normalize() } else { DVec3::ZERO };
+        let squares = edges.map(DVec3::length_squared);
+        let (along, lengths) = if squares.iter().all(|square| SAFE.contains(square)) {
+            let lengths = squares.map(f64::sqrt);
+            ([0, 1, 2].map(|edge| edges[edge] / lengths[edge]), lengths)
+        } else {
+            let along = edges.map(unit_or_zero);
+            (along, [0, 1, 2].map(|edge| edges[edge].dot(along[edge])))
+        };
+        let across = along[0].cross(along[1]);
+        let sine = across.length();
+        let normal = if sine > FLAT { across / sine } else { DVec3::ZERO };
+        let outward = along.map(|edge| edge.cross(normal));
+        let from_first = [DVec3::ZERO, edges[0], -edges[2]];
+        // The tangent of an angle is the parallelogram's area over the product of its edges; the greatest product
+        // belongs to the least angle.
+        let cosine = |corner: usize| {
+            let before = (corner + 2) % 3;
+            -along[corner].dot(along[before]) * (lengths[corner] * lengths[before])
+        };
+        let area = sine * (lengths[0] * lengths[1]);
         Self {
             corners,
             along,
-            lengths: [0, 1, 2].map(|edge| edges[edge].dot(along[edge])),
+            lengths,
             normal,
-            outward: along.map(|edge| edge.cross(normal)),
             on_edge: ROUNDING
                 * edges.iter().chain(&corners).map(|v| v.abs().max_element()).fold(0.0, f64::max),
+            outward,
+            offsets: [0, 1, 2].map(|edge| outward[edge].dot(from_first[edge])),
+            starts: [0, 1, 2].map(|edge| along[edge].dot(from_first[edge])),
+            least_slope: area / cosine(0).max(cosine(1)).max(cosine(2)),
         }
     }
 
@@ -105,13 +133,39 @@ impl Facet {
         closest_to_origin(a, b, c).squared
     }
 
-    /// Tangent of the least angle; 0 for a triangle without area.
+    /// Tangent of the least angle; 0 or not a number for a triangle without area.
     pub(crate) fn least_slope(&self) -> f64 {
-        let slope = |corner: usize| {
-            let (out, back) = (self.along[corner], -self.along[(corner + 2) % 3]);
-            let cosine = out.dot(back);
-            if cosine <= 0.0 { f64::INFINITY } else { out.cross(back).length() / cosine }
-        };
-        slope(0).min(slope(1)).min(slope(2))
+        self.least_slope
+    }
+
+    /// What is no farther outside an edge than this stands on it, but for rounding.
+    pub(crate) fn on_edge(&self) -> f64 {
+        self.on_edge
+    }
+
+    /// A point as seen from the first corner.
+    #[inline]
+    pub(crate) fn seen_from_first(&self, point: DVec3) -> DVec3 {
+        point - self.corners[0]
+    }
+
+    /// [`Self::height`] of a point as seen from the first corner.
+    #[inline]
+    pub(crate) fn height_from_first(&self, offset: DVec3) -> f64 {
+        self.normal.dot(offset)
+    }
+
+    /// How far a point, as seen from the first corner, stands outside an edge's line; negative inside.
+    #[inline]
+    pub(crate) fn outside_from_first(&self, edge: usize, offset: DVec3) -> f64 {
+        self.outward[edge].dot(offset) - self.offsets[edge]
+    }
+
+    /// [`Beside::along`] of a point as seen from the first corner, or what is left of the edge from there if that is
+    /// less.
+    #[inline]
+    pub(crate) fn room_from_first(&self, edge: usize, offset: DVec3) -> f64 {
+        let along = self.along[edge].dot(offset) - self.starts[edge];
+        along.min(self.lengths[edge] - along)
     }
 }

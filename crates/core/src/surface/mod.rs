@@ -2,20 +2,22 @@
 //!
 //! Each control face carries a [`Patch`]: its corners and their one-ring, which is all that the surface over it
 //! depends on. Refining a patch gives the four over its parts, at any depth, so that only what is needed is ever
-//! computed; limit positions and normals of new vertices come with it. [`deviation`] certifies how far a triangle
+//! computed; limit positions and normals of new vertices come with it. [`Pieces::deviation`] certifies how far a triangle
 //! can be from the piece that it stands for.
 
 mod bound;
 mod facet;
 mod fan;
+mod gauge;
 mod lattice;
 mod net;
 mod patch;
 mod root;
 mod rules;
 
-pub(crate) use bound::{Deviation, Effort, Part, deviation};
+pub(crate) use bound::{Effort, Part, Pieces};
 pub(crate) use facet::Facet;
+pub(crate) use gauge::Deviation;
 pub(crate) use patch::{LimitPoint, Patch};
 pub(crate) use root::root_patch;
 pub(crate) use rules::Rules;

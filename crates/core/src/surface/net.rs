@@ -51,22 +51,39 @@ impl Net {
     /// The two halves that the line from the middle of the edge from corner `edge` to the corner opposite cuts: the first
     /// with the edge's start, the second with its end. Corners keep their places; the middle takes the other end's.
     pub(crate) fn halves(&self, edge: usize) -> [Self; 2] {
-        let turned = &TURNED[edge];
         let mut halves = [[DVec3::ZERO; 15]; 2];
+        let [first, second] = &mut halves;
+        self.halved(edge, |at, point| first[at] = point, |at, point| second[at] = point);
+        halves.map(Self)
+    }
+
+    /// One of the [`Self::halves`].
+    pub(crate) fn half(&self, edge: usize, second: bool) -> Self {
+        let mut half = [DVec3::ZERO; 15];
+        if second {
+            self.halved(edge, |_, _| (), |at, point| half[at] = point);
+        } else {
+            self.halved(edge, |at, point| half[at] = point, |_, _| ());
+        }
+        Self(half)
+    }
+
+    #[inline]
+    fn halved(&self, edge: usize, mut first: impl FnMut(usize, DVec3), mut second: impl FnMut(usize, DVec3)) {
+        let turned = &TURNED[edge];
         for &(start, degree) in &ROWS {
             let mut row = [DVec3::ZERO; 5];
             for j in 0..=degree {
                 row[j] = self.0[turned[start + j]];
             }
             for step in 0..=degree {
-                halves[0][turned[start + step]] = row[0];
-                halves[1][turned[start + degree - step]] = row[degree - step];
+                first(turned[start + step], row[0]);
+                second(turned[start + degree - step], row[degree - step]);
                 for j in 0..degree - step {
                     row[j] = 0.5 * (row[j] + row[j + 1]);
                 }
             }
         }
-        halves.map(Self)
     }
 
     /// The corners.

@@ -36,9 +36,11 @@ impl LimitPoint {
 }
 
 /// A patch refined once: its parts and the limits of its new vertices.
+// Almost all are regular: boxing them would cost an allocation for each.
+#[allow(clippy::large_enum_variant)]
 pub(crate) enum RefinedPatch<'a> {
     /// Of a regular patch.
-    Regular(Box<Refined>),
+    Regular(Refined),
     /// Of an irregular one.
     Irregular(RefinedFans<'a>),
 }
@@ -55,7 +57,7 @@ impl Patch {
     /// The patch refined once.
     pub(crate) fn refined(&self, rules: &Rules) -> RefinedPatch<'_> {
         match self {
-            Self::Regular(points) => RefinedPatch::Regular(Box::new(Refined::of(points))),
+            Self::Regular(points) => RefinedPatch::Regular(Refined::of(points)),
             Self::Irregular(fans) => RefinedPatch::Irregular(fans.refined(rules)),
         }
     }

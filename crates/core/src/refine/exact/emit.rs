@@ -99,9 +99,9 @@ impl Growth<'_> {
         let mut twins = vec![NONE; 3 * total];
         for &leaf in &leaves.order {
             let pattern = self.pattern(leaf);
-            let corners = forest.corners(leaf);
-            let middles = [0, 1, 2].map(|edge| forest.middle(leaf, edge).unwrap_or(NONE));
-            let labels = [corners, middles].concat();
+            let [a, b, c] = forest.corners(leaf);
+            let [d, e, f] = [0, 1, 2].map(|edge| forest.middle(leaf, edge).unwrap_or(NONE));
+            let labels = [a, b, c, d, e, f];
             triangles
                 .extend(pattern.triangles().iter().map(|triangle| triangle.map(|at| labels[at as usize])));
             let base = 3 * leaves.starts[leaf as usize];

@@ -10,7 +10,7 @@ use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::SidedNormals;
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
-use crate::surface::{Deviation, Effort, Facet, LimitPoint, Patch, Rules, deviation, root_patch};
+use crate::surface::{Deviation, Effort, Facet, LimitPoint, Part, Patch, Pieces, Rules, root_patch};
 use crate::vector::{DVec3, vector};
 
 /// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
@@ -39,6 +39,15 @@ pub(super) struct Leaf {
     pub(super) deviation: Deviation,
     /// The diagonal by which a leaf with two split edges is cut starts at the unsplit edge's end.
     pub(super) diagonal_from_end: bool,
+}
+
+/// What a triangle of a leaf comes to.
+#[derive(Clone, Copy)]
+struct Value {
+    value: f64,
+    /// What distances were multiplied by.
+    scale: f64,
+    deviation: Deviation,
 }
 
 /// What an evaluation looks at.
@@ -144,43 +153,51 @@ impl Evaluation<'_> {
 
     fn leaf(&self, node: u32, patch: &Patch, corners: [LimitPoint; 3], found: &mut Found) {
         let split = self.forest.split_edges(node);
+        let mut pieces = Pieces::of(patch);
+        // The corners, then the middles of the edges that are split.
+        let [a, b, c] = corners;
+        let mut points = [a, b, c, a, b, c];
         let mut middles = [None; 3];
-        if split != 0 {
-            let refined = patch.refined(self.rules);
-            for edge in (0..3).filter(|edge| split & 1 << edge != 0) {
-                if let Some(vertex) = self.forest.middle(node, edge) {
-                    middles[edge] = Some(self.limit(vertex, || refined.middle(edge), found));
-                }
+        for edge in (0..3).filter(|edge| split & 1 << edge != 0) {
+            if let Some(vertex) = self.forest.middle(node, edge) {
+                points[3 + edge] = self.limit(vertex, || pieces.refined(self.rules).middle(edge), found);
+                middles[edge] = Some(3 + edge);
             }
         }
         let open = self.forest.open_edges(node);
         let mut best: Option<Leaf> = None;
         let is_choice = split.count_ones() == 2;
         let fixed = self.fixed.filter(|_| is_choice).map(|fixed| fixed[node as usize]);
+        // What the triangle comes to that both diagonals leave as it is.
+        let mut cut_off: Option<Value> = None;
         for diagonal_from_end in [false, true] {
             if fixed.is_some_and(|fixed| fixed != diagonal_from_end) {
                 continue;
             }
             let mut leaf =
                 Leaf { node, value: 0.0, scale: 0.0, deviation: Deviation::default(), diagonal_from_end };
-            for triangle in leaf_triangles(corners, middles, diagonal_from_end) {
-                let LeafTriangle { part, corners: triangle, borders } = triangle;
-                let facet = Facet::new(triangle.map(|point| point.position));
-                let (chord, slope) = expected(&facet, &triangle);
-                let scale = self.demand.distance_scale(&facet, &triangle);
-                let open = borders.map(|border| border.is_some_and(|edge| open[edge]));
-                let effort =
-                    Effort { target: self.target / scale, halvings: self.halvings, open, chord, slope };
-                let found = deviation(patch, part, &facet, self.rules, effort);
-                let value = (found.bound(chord, slope) * scale).max(self.demand.cone(&facet, &triangle));
-                leaf.value = leaf.value.max(value);
-                leaf.scale = leaf.scale.max(scale);
-                leaf.deviation = leaf.deviation.max(found);
+            for triangle in leaf_triangles([0, 1, 2], middles, diagonal_from_end) {
+                let LeafTriangle { part, corners, borders } = triangle;
+                let is_shared = is_choice && matches!(part, Part::Child(_));
+                let found = match cut_off {
+                    Some(known) if is_shared => known,
+                    _ => {
+                        let corners = corners.map(|at| points[at]);
+                        let open = borders.map(|border| border.is_some_and(|edge| open[edge]));
+                        self.triangle(&mut pieces, part, corners, open)
+                    }
+                };
+                if is_shared {
+                    cut_off = Some(found);
+                }
+                leaf.value = leaf.value.max(found.value);
+                leaf.scale = leaf.scale.max(found.scale);
+                leaf.deviation = leaf.deviation.max(found.deviation);
             }
             if best.is_none_or(|best| leaf.value < best.value) {
                 best = Some(leaf);
             }
-            if !is_choice {
+            if !is_choice || leaf.value <= self.target {
                 break;
             }
         }
@@ -191,6 +208,23 @@ impl Evaluation<'_> {
                 leaf.deviation.max(Deviation { own: moved, height: moved, ..Deviation::default() });
             Leaf { value: leaf.value.max(moved * leaf.scale), deviation, ..leaf }
         }));
+    }
+
+    /// The value of a triangle and its deviation from its part of the surface.
+    fn triangle(
+        &self,
+        pieces: &mut Pieces<'_>,
+        part: Part,
+        corners: [LimitPoint; 3],
+        open: [bool; 3],
+    ) -> Value {
+        let facet = Facet::new(corners.map(|point| point.position));
+        let (chord, slope) = expected(&facet, &corners);
+        let scale = self.demand.distance_scale(&facet, &corners);
+        let effort = Effort { target: self.target / scale, halvings: self.halvings, open, chord, slope };
+        let deviation = pieces.deviation(part, &facet, self.rules, effort);
+        let value = (deviation.bound(chord, slope) * scale).max(self.demand.cone(&facet, &corners));
+        Value { value, scale, deviation }
     }
 }
 
@@ -225,6 +259,6 @@ impl Evaluation<'_> {
 /// normals at its corners, and the greatest slope of a drift, from its own angles.
 fn expected(facet: &Facet, corners: &[LimitPoint; 3]) -> (f64, f64) {
     // The neighbour stands as far from the limit normals, on their other side.
-    let chords = corners.iter().map(|corner| 2.0 * corner.normal.distance(facet.normal()));
-    (chords.fold(0.0, f64::max), facet.least_slope())
+    let squares = corners.iter().map(|corner| corner.normal.distance_squared(facet.normal()));
+    (2.0 * squares.fold(0.0, f64::max).sqrt(), facet.least_slope())
 }

@@ -1,0 +1,279 @@
+//! How far hull points stand from a triangle, its plane and its edges: what the bounds of [`super::bound`] are the
+//! greatest of.
+
+use super::facet::{Beside, Facet};
+use super::net::{EDGES, INNER, Net};
+use crate::vector::DVec3;
+
+/// For each edge of a piece the edge of the triangle that it is part of, or [`INSIDE`].
+pub(crate) type Borders = [u8; 3];
+
+/// The edge lies inside the triangle's piece of surface.
+pub(crate) const INSIDE: u8 = 3;
+
+/// How far a triangle and its piece of the surface can be from each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Deviation {
+    /// The bound that needs no neighbours.
+    pub(crate) own: f64,
+    /// The greatest height over the triangle's plane, and distance to edges without a neighbour.
+    pub(crate) height: f64,
+    /// How far pieces reach over edges with a neighbour.
+    pub(crate) drift: f64,
+    /// The greatest ratio of that to the distance from the edge's ends.
+    pub(crate) slope: f64,
+}
+
+impl Deviation {
+    /// The greater of each.
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self {
+            own: self.own.max(other.own),
+            height: self.height.max(other.height),
+            drift: self.drift.max(other.drift),
+            slope: self.slope.max(other.slope),
+        }
+    }
+
+    /// The bound where the neighbours' planes are turned by angles with this chord (2 sin(θ/2)) at most, and `slope`
+    /// is the greatest that is allowed.
+    #[inline]
+    pub(crate) fn bound(&self, chord: f64, slope: f64) -> f64 {
+        if self.slope <= slope {
+            self.own.min(self.height * (1.0 + 0.5 * chord * chord) + chord * self.drift)
+        } else {
+            self.own
+        }
+    }
+}
+
+/// A triangle and which of its edges have no neighbour.
+#[derive(Clone, Copy)]
+pub(crate) struct Gauge<'a> {
+    pub(crate) facet: &'a Facet,
+    pub(crate) open: [bool; 3],
+}
+
+/// The greatest of what was met, for a triangle that has a plane and neighbours all round.
+#[derive(Default)]
+struct Greatest {
+    height: f64,
+    /// Squared distance from the triangle, or for points of curves from the edge.
+    squared: f64,
+    /// The part of that distance within the plane.
+    side: f64,
+    drift: f64,
+    slope: f64,
+    /// The ratio of a curve point's distance from its edge's line, on either side, to the distance from the ends.
+    swing: f64,
+    /// A foot stood beyond the ends of its edge.
+    beyond: bool,
+}
+
+impl Greatest {
+    #[inline]
+    fn stands(&mut self, height: f64, side: f64) {
+        self.height = self.height.max(height.abs());
+        self.side = self.side.max(side.abs());
+        self.squared = self.squared.max(height * height + side * side);
+    }
+
+    /// A point of the surface, as seen from the facet's first corner, with its height.
+    #[inline]
+    fn inner(&mut self, facet: &Facet, offset: DVec3, height: f64) {
+        let mut side = 0.0f64;
+        for edge in 0..3 {
+            let outside = facet.outside_from_first(edge, offset);
+            if outside > facet.on_edge() {
+                let room = facet.room_from_first(edge, offset);
+                side = side.max(outside);
+                self.drift = self.drift.max(outside);
+                self.slope = self.slope.max(outside / room);
+                self.beyond |= room <= 0.0;
+            }
+        }
+        self.stands(height, side);
+    }
+
+    /// The same for a point of the curve over an edge.
+    #[inline]
+    fn curve(&mut self, facet: &Facet, edge: usize, offset: DVec3, height: f64) {
+        let outside = facet.outside_from_first(edge, offset);
+        let room = facet.room_from_first(edge, offset);
+        self.stands(height, outside);
+        if outside > facet.on_edge() {
+            self.drift = self.drift.max(outside);
+            self.slope = self.slope.max(outside / room);
+        }
+        self.swing = self.swing.max(outside.abs() / room);
+        self.beyond |= room <= 0.0;
+    }
+}
+
+impl Gauge<'_> {
+    /// The deviation of a net's points, and a height that the piece itself attains.
+    pub(crate) fn net(&self, net: &Net, borders: Borders) -> (Deviation, f64) {
+        if self.facet.is_flat() || self.open != [false; 3] {
+            return (self.each_of_net(net, borders), 0.0);
+        }
+        let facet = self.facet;
+        let offsets = net.0.map(|point| facet.seen_from_first(point));
+        let heights = offsets.map(|offset| facet.height_from_first(offset));
+        let mut greatest = Greatest::default();
+        for at in INNER {
+            greatest.inner(facet, offsets[at], heights[at]);
+        }
+        for (edge, points) in EDGES.iter().enumerate() {
+            let border = borders[edge];
+            for &at in &points[1..4] {
+                if border == INSIDE {
+                    greatest.inner(facet, offsets[at], heights[at]);
+                } else {
+                    greatest.curve(facet, border as usize, offsets[at], heights[at]);
+                }
+            }
+            let at = points[0];
+            match corner(borders, edge) {
+                Corner::Own => {}
+                Corner::On(border) => greatest.curve(facet, border, offsets[at], heights[at]),
+                Corner::Inside => greatest.inner(facet, offsets[at], heights[at]),
+            }
+        }
+        // A curve that swings less than the least angle opens crosses no other edge.
+        if greatest.beyond || greatest.swing > facet.least_slope() {
+            return (self.each_of_net(net, borders), attained(&heights));
+        }
+        let Greatest { height, squared, side, drift, slope, .. } = greatest;
+        // Squares of tiny lengths vanish.
+        let own = if squared > 1e-280 { squared.sqrt() } else { height.hypot(side) };
+        (Deviation { own, height, drift, slope }, attained(&heights))
+    }
+
+    /// The deviation of a net's points, one by one, for any triangle.
+    fn each_of_net(&self, net: &Net, borders: Borders) -> Deviation {
+        let mut deviation = Deviation::default();
+        for at in INNER {
+            self.inner_point(net.0[at], &mut deviation);
+        }
+        for (edge, points) in EDGES.iter().enumerate() {
+            for &at in &points[1..4] {
+                if borders[edge] == INSIDE {
+                    self.inner_point(net.0[at], &mut deviation);
+                } else {
+                    self.curve_point(borders[edge] as usize, net.0[at], &mut deviation);
+                }
+            }
+            match corner(borders, edge) {
+                Corner::Own => {}
+                Corner::On(border) => self.curve_point(border, net.0[points[0]], &mut deviation),
+                Corner::Inside => self.inner_point(net.0[points[0]], &mut deviation),
+            }
+        }
+        deviation
+    }
+
+    /// A hull point of the surface.
+    pub(crate) fn inner_point(&self, point: DVec3, deviation: &mut Deviation) {
+        if self.facet.is_flat() {
+            self.found_alone(self.facet.squared(point).sqrt(), deviation);
+            return;
+        }
+        let height = self.facet.height(point).abs();
+        let mut own = height;
+        let mut alone = height;
+        for edge in 0..3 {
+            let beside = self.facet.beside(edge, point);
+            if beside.outside > 0.0 {
+                own = f64::INFINITY;
+                if self.open[edge] {
+                    alone = alone.max(height.hypot(beside.outside));
+                } else {
+                    self.drifted(edge, beside, deviation);
+                }
+            }
+        }
+        if own.is_infinite() {
+            own = self.facet.squared(point).sqrt();
+            if alone > height {
+                alone = alone.max(own);
+            }
+        }
+        deviation.own = deviation.own.max(own);
+        deviation.height = deviation.height.max(alone);
+    }
+
+    /// A hull point of the curve over an edge of the triangle.
+    pub(crate) fn curve_point(&self, edge: usize, point: DVec3, deviation: &mut Deviation) {
+        let own = self.facet.squared_to_edge(edge, point).sqrt();
+        if self.facet.is_flat() {
+            self.found_alone(own, deviation);
+            return;
+        }
+        deviation.own = deviation.own.max(own);
+        if self.open[edge] {
+            deviation.height = deviation.height.max(own);
+        } else {
+            deviation.height = deviation.height.max(self.facet.height(point).abs());
+            let beside = self.facet.beside(edge, point);
+            if beside.outside > 0.0 {
+                self.drifted(edge, beside, deviation);
+            }
+        }
+        for other in [(edge + 1) % 3, (edge + 2) % 3] {
+            if self.facet.beside(other, point).outside > 0.0 {
+                deviation.slope = f64::INFINITY;
+            }
+        }
+    }
+
+    /// For a triangle that has no plane.
+    fn found_alone(&self, distance: f64, deviation: &mut Deviation) {
+        let slope = f64::INFINITY;
+        *deviation = deviation.max(Deviation { own: distance, height: distance, slope, drift: 0.0 });
+    }
+
+    fn drifted(&self, edge: usize, beside: Beside, deviation: &mut Deviation) {
+        let room = beside.along.min(self.facet.length(edge) - beside.along);
+        deviation.drift = deviation.drift.max(beside.outside);
+        let slope = if room > 0.0 { beside.outside / room } else { f64::INFINITY };
+        deviation.slope = deviation.slope.max(slope);
+    }
+}
+
+/// What a corner of a piece is to the triangle.
+enum Corner {
+    /// One of its own, which lies on the surface.
+    Own,
+    /// A point of the curve over an edge.
+    On(usize),
+    /// A point like others.
+    Inside,
+}
+
+/// What the corner is that an edge of a piece starts at.
+#[inline]
+fn corner(borders: Borders, edge: usize) -> Corner {
+    match (borders[(edge + 2) % 3], borders[edge]) {
+        (INSIDE, INSIDE) => Corner::Inside,
+        (INSIDE, on) | (on, INSIDE) => Corner::On(on as usize),
+        (last, next) if last == next => Corner::On(next as usize),
+        _ => Corner::Own,
+    }
+}
+
+/// The greatest height in the middle of a piece and of its edges, from those of its net.
+#[inline]
+fn attained(heights: &[f64; 15]) -> f64 {
+    let mut greatest = 0.0f64;
+    let (mut outer, mut halves, mut inner) = (0.0, 0.0, 0.0);
+    for [a, b, c, d, e] in EDGES.map(|edge| edge.map(|at| heights[at])) {
+        let (ends, seconds) = (a + e, b + d);
+        greatest = greatest.max((ends + 4.0 * seconds + 6.0 * c).abs() / 16.0);
+        outer += a + 4.0 * seconds;
+        halves += 6.0 * c;
+    }
+    for at in INNER {
+        inner += 12.0 * heights[at];
+    }
+    greatest.max((outer + halves + inner).abs() / 81.0)
+}
