@@ -5,7 +5,10 @@ use super::grow::Growth;
 use super::options::{Exact, ExactStop, Origin};
 use crate::emit::{Diagonal, Pattern, closure};
 use crate::index::HalfEdgeId;
-use crate::mesh::{Groups, Junctions, Mesh, NONE, Tags, Topology, check_finite, outgoing_half_edges};
+use crate::mesh::{
+    CreaseTag, Groups, INFINITELY_SHARP, Junctions, Mesh, NONE, Tags, Topology, check_finite,
+    outgoing_half_edges,
+};
 use crate::refine::RefineError;
 use crate::refine::junctions::join_copies;
 
@@ -44,13 +47,14 @@ impl Growth<'_> {
         join_copies(&mut positions, &junctions.vertices);
         check_finite(&positions)?;
         let error = self.probe(&emission)?;
+        let tags = self.tags(&emission);
         let Emission { triangles, twins, leaves } = emission;
         let parents = leaves.parents(&self.forest, |leaf| self.pattern(leaf));
         let origins = self.origins();
         let outgoing = outgoing_half_edges(&triangles, &twins, self.forest.vertex_count());
         let topology = Topology::from_parts(triangles, twins, outgoing);
         Ok(Exact {
-            mesh: Mesh::from_parts(topology, positions, Tags::default(), junctions),
+            mesh: Mesh::from_parts(topology, positions, tags, junctions),
             normals: self.points.iter().map(|point| point.normal.to_array()).collect(),
             origins,
             parents,
@@ -127,8 +131,13 @@ impl Growth<'_> {
         (triangles, twins)
     }
 
+    /// The half-edges of the emitted triangles along an edge of a leaf: twice the same where it is not split.
+    pub(super) fn borders(&self, leaves: &Leaves, leaf: u32, edge: usize) -> [u32; 2] {
+        self.pattern(leaf).border(edge).map(|h| 3 * leaves.starts[leaf as usize] + h as u32)
+    }
+
     /// The half-edge of the emitted triangles along an edge of a leaf that is not split.
-    pub(super) fn border(&self, leaves: &Leaves, leaf: u32, edge: usize) -> u32 {
+    fn border(&self, leaves: &Leaves, leaf: u32, edge: usize) -> u32 {
         3 * leaves.starts[leaf as usize] + self.pattern(leaf).border(edge)[0] as u32
     }
 
@@ -178,6 +187,31 @@ impl Growth<'_> {
         self.along(leaves, first + edge as u32, edge, vertices, half_edges);
         vertices.push(self.forest.corners(first + edge as u32)[next]);
         self.along(leaves, first + next as u32, edge, vertices, half_edges);
+    }
+
+    /// The tags of the emitted mesh: creases along those of the control mesh, and its corners.
+    fn tags(&self, emission: &Emission) -> Tags {
+        let mut tags = Tags { corners: self.control.tags().corners.clone(), ..Tags::default() };
+        if self.sharpness.is_empty() {
+            return tags;
+        }
+        for &leaf in &emission.leaves.order {
+            let open = self.forest.open_edges(leaf);
+            for edge in (0..3).filter(|&edge| open[edge]) {
+                let [first, second] = self.borders(&emission.leaves, leaf, edge);
+                let halves = [Some(first), (second != first).then_some(second)];
+                for h in halves.into_iter().flatten() {
+                    // Each is met from both sides; boundaries have one only.
+                    let twin = emission.twins[h as usize];
+                    if twin != NONE && h < twin {
+                        let triangle = emission.triangles[h as usize / 3];
+                        let ends = [0, 1].map(|i| triangle[(h as usize + i) % 3]);
+                        tags.creases.push(CreaseTag { vertices: ends, sharpness: INFINITELY_SHARP });
+                    }
+                }
+            }
+        }
+        tags
     }
 
     /// Where the vertices came from.

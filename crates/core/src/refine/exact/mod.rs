@@ -18,6 +18,7 @@ mod evaluate;
 mod forest;
 mod grow;
 mod leaf;
+mod optimized;
 mod options;
 mod probe;
 mod settle;
@@ -42,6 +43,9 @@ use grow::Growth;
 /// more elements than can be numbered, or the observer's wish to stop.
 pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions<'_>) -> Result<Exact, RefineError> {
     options.check()?;
+    if options.optimize {
+        return optimized::optimized(control, scheme, options);
+    }
     let Some(rules) = Rules::of(scheme) else {
         return Err(RefineError::NotExact { scheme: scheme.name().to_owned() });
     };

@@ -30,6 +30,9 @@ pub struct ExactOptions<'a> {
     /// Moves vertices off the limit surface by about half the local error, so that the error lies on both sides and
     /// fewer triangles are needed. Default: no.
     pub balance: bool,
+    /// Collapses edges of a finer mesh as long as the goals allow ([`crate::refine::optimize`]): slower, and fewer triangles for
+    /// the same distance. For a tolerance, a number of triangles, or both; not with [`Self::balance`]. Default: no.
+    pub optimize: bool,
     /// Levels at most below the control faces. Default: 24.
     pub max_levels: usize,
     /// Triangles at most, as a cap rather than a goal: reaching it is a failure to meet the others. Default: none.
@@ -56,6 +59,7 @@ impl Default for ExactOptions<'_> {
             cameras: Vec::new(),
             triangles: None,
             balance: false,
+            optimize: false,
             max_levels: USUAL_LEVELS,
             max_triangles: None,
             max_memory: None,
@@ -98,6 +102,12 @@ impl<'a> ExactOptions<'a> {
     /// Sets [`Self::balance`].
     pub fn balance(mut self, balance: bool) -> Self {
         self.balance = balance;
+        self
+    }
+
+    /// Sets [`Self::optimize`].
+    pub fn optimize(mut self, optimize: bool) -> Self {
+        self.optimize = optimize;
         self
     }
 
@@ -163,6 +173,10 @@ impl<'a> ExactOptions<'a> {
                 place: why.to_string(),
                 what: "a view must show something",
             })?;
+        }
+        if self.optimize && (self.angle.is_some() || self.pixels.is_some() || self.balance) {
+            let expected = "goals that are a tolerance or a number of triangles, and no balance";
+            return bad("optimisation", 1.0, expected);
         }
         let quality = self.tolerance.is_some() || self.angle.is_some() || self.pixels.is_some();
         if !quality && self.triangles.is_none() {
@@ -234,7 +248,7 @@ pub struct Exact {
     pub normals: Vec<[f64; 3]>,
     /// Where each vertex came from.
     pub origins: Vec<Origin>,
-    /// The control face of each triangle.
+    /// The control face of each triangle; empty after optimisation, whose triangles reach over several.
     pub parents: Vec<u32>,
     /// How far mesh and limit surface can be from each other.
     pub error: ErrorBounds,

@@ -42,8 +42,11 @@ impl Growth<'_> {
         let count = 1 + self.forest.split_edges(leaf).count_ones();
         // Edges on sharp curves count on their own.
         let open = self.forest.open_edges(leaf);
-        let alone =
-            [0, 1, 2].map(|edge| if open[edge] { self.border(&emission.leaves, leaf, edge) } else { NONE });
+        let alone = [0, 1, 2].map(|edge| match open[edge] {
+            true => self.borders(&emission.leaves, leaf, edge),
+            false => [NONE; 2],
+        });
+        let alone = alone.as_flattened();
         let (mut squared, mut slope) = (0.0f64, STEEP);
         for triangle in first..first + count {
             let (turn, room) = self.around(emission, triangle, alone);
@@ -55,7 +58,7 @@ impl Growth<'_> {
 
     /// The greatest squared chord of the angles between the planes of a triangle and its neighbours, and the greatest
     /// slope at which points may drift over them; half-edges in `alone` do not count.
-    fn around(&self, emission: &Emission, triangle: u32, alone: [u32; 3]) -> (f64, f64) {
+    fn around(&self, emission: &Emission, triangle: u32, alone: &[u32]) -> (f64, f64) {
         let at = |vertex: u32| self.emitted(vertex);
         let own = emission.triangles[triangle as usize].map(at);
         let edges = [own[1] - own[0], own[2] - own[1], own[0] - own[2]];
