@@ -205,6 +205,46 @@ fn balanced_meshes_need_fewer_triangles() {
     }
 }
 
+/// At a crease each side has its own normal: on a prism with flat caps the caps' are along the axis.
+#[test]
+fn sides_of_a_crease_have_normals_of_their_own() {
+    let sides = 12;
+    let mut soup = limitmesh::PolygonSoup::default();
+    for z in [0.0, 1.0] {
+        for i in 0..sides {
+            let angle = core::f64::consts::TAU * f64::from(i) / f64::from(sides);
+            soup.positions.push([angle.cos(), angle.sin(), z]);
+        }
+    }
+    let sides = sides as u32;
+    soup.faces.push(&(0..sides).rev().collect::<Vec<_>>());
+    soup.faces.push(&(sides..2 * sides).collect::<Vec<_>>());
+    for i in 0..sides {
+        let j = (i + 1) % sides;
+        soup.faces.push(&[i, j, sides + j, sides + i]);
+    }
+    let (control, _) = Mesh::from_soup(&soup, &Default::default()).unwrap();
+    let control = control.with_creases_above(60f64.to_radians()).unwrap();
+    let result = exact(&control, &Loop, &ExactOptions::default().tolerance(0.002)).unwrap();
+    result.mesh.validate().unwrap();
+    assert!(!result.mesh.tags().creases.is_empty());
+    let mut caps = 0;
+    for face in 0..result.mesh.face_count() {
+        let points = result.mesh.as_triangles().corners(face);
+        let n = result.mesh.face_normal(limitmesh::FaceId(face as u32));
+        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let is_cap = (0..3).all(|i| points[i][2] == points[0][2]);
+        caps += usize::from(is_cap);
+        for corner in 0..3 {
+            let h = limitmesh::HalfEdgeId::of(limitmesh::FaceId(face as u32), corner);
+            let normal = result.corner_normal(h);
+            let cosine = (0..3).map(|i| n[i] * normal[i]).sum::<f64>() / length;
+            assert!(cosine > if is_cap { 1.0 - 1e-12 } else { 0.95 }, "face {face}, cap {is_cap}: {cosine}");
+        }
+    }
+    assert!(caps > 20, "{caps}");
+}
+
 /// Copies of a cut edge get the same vertices, at equal bits.
 #[test]
 fn cut_sheets_stay_together() {

@@ -47,7 +47,7 @@ impl Growth<'_> {
         join_copies(&mut positions, &junctions.vertices);
         check_finite(&positions)?;
         let error = self.probe(&emission)?;
-        let tags = self.tags(&emission);
+        let (tags, sides) = (self.tags(&emission), self.sides(&emission));
         let Emission { triangles, twins, leaves } = emission;
         let parents = leaves.parents(&self.forest, |leaf| self.pattern(leaf));
         let origins = self.origins();
@@ -56,6 +56,7 @@ impl Growth<'_> {
         Ok(Exact {
             mesh: Mesh::from_parts(topology, positions, tags, junctions),
             normals: self.points.iter().map(|point| point.normal.to_array()).collect(),
+            sides,
             origins,
             parents,
             error,
@@ -68,7 +69,7 @@ impl Growth<'_> {
         })
     }
 
-    fn pattern(&self, leaf: u32) -> &'static Pattern {
+    pub(super) fn pattern(&self, leaf: u32) -> &'static Pattern {
         let diagonal = if self.diagonals[leaf as usize] { Diagonal::FromEnd } else { Diagonal::FromStart };
         closure(self.forest.split_edges(leaf), diagonal)
     }
@@ -190,7 +191,7 @@ impl Growth<'_> {
     }
 
     /// The tags of the emitted mesh: creases along those of the control mesh, and its corners.
-    fn tags(&self, emission: &Emission) -> Tags {
+    pub(super) fn tags(&self, emission: &Emission) -> Tags {
         let mut tags = Tags { corners: self.control.tags().corners.clone(), ..Tags::default() };
         if self.sharpness.is_empty() {
             return tags;

@@ -49,7 +49,7 @@ pub(super) struct Growth<'a> {
     pub(super) control: &'a Mesh,
     pub(super) sharpness: Sharpness<'a>,
     /// Limit normals of the control vertices.
-    sided: SidedNormals,
+    pub(super) sided: SidedNormals,
     pub(super) rules: &'a Rules<'a>,
     pub(super) options: &'a ExactOptions<'a>,
     pub(super) demand: Demand,

@@ -22,6 +22,7 @@ mod optimized;
 mod options;
 mod probe;
 mod settle;
+mod sides;
 
 pub use camera::Camera;
 pub use estimate::exact_estimate;

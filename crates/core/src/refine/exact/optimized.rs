@@ -50,6 +50,7 @@ pub(super) fn optimized(
     Ok(Exact {
         normals: collapsed.vertices.iter().map(|&v| fine.normals[v as usize]).collect(),
         origins: collapsed.vertices.iter().map(|&v| fine.origins[v as usize]).collect(),
+        sides: Vec::new(),
         parents: Vec::new(),
         error: ErrorBounds { lower, upper, at },
         worst: options.tolerance.map_or(0.0, |tolerance| upper / tolerance),

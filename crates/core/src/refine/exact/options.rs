@@ -4,6 +4,7 @@ use core::ops::ControlFlow;
 
 use super::camera::Camera;
 use crate::criterion::View;
+use crate::index::HalfEdgeId;
 use crate::mesh::{Mesh, MeshError};
 use crate::refine::RefineError;
 
@@ -244,8 +245,11 @@ pub struct Origin {
 pub struct Exact {
     /// The mesh; all vertices lie on the limit surface. Control vertices keep their numbers.
     pub mesh: Mesh,
-    /// Unit limit normals of the vertices; zero where the surface has none.
+    /// Unit limit normals of the vertices; zero where the surface has none, an average of the sides at sharp edges.
     pub normals: Vec<[f64; 3]>,
+    /// The limit normals of triangles' corners at sharp edges, each of its own side, by the half-edge that leaves the corner,
+    /// ascending; see [`Self::corner_normal`]. Empty without sharp edges, and after optimisation.
+    pub sides: Vec<(u32, [f64; 3])>,
     /// Where each vertex came from.
     pub origins: Vec<Origin>,
     /// The control face of each triangle; empty after optimisation, whose triangles reach over several.
@@ -258,6 +262,16 @@ pub struct Exact {
     pub stop: ExactStop,
     /// Levels of the deepest part of the hierarchy.
     pub levels: usize,
+}
+
+impl Exact {
+    /// The unit limit normal at the corner that a half-edge leaves, on the side of its triangle.
+    pub fn corner_normal(&self, corner: HalfEdgeId) -> [f64; 3] {
+        match self.sides.binary_search_by_key(&corner.0, |&(h, _)| h) {
+            Ok(place) => self.sides[place].1,
+            Err(_) => self.normals[self.mesh.topology().origin(corner).index()],
+        }
+    }
 }
 
 /// What an exact refinement would give.
