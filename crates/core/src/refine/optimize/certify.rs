@@ -19,8 +19,8 @@ const GAP: f64 = 0.01;
 const SUSPECT: f64 = 0.98;
 
 /// What is reserved at a place at fault beyond what its error exceeds the tolerance by, as a share of the tolerance. It
-/// doubles with each attempt, until nothing goes any more where nothing can.
-const MARGIN: f64 = 0.05;
+/// doubles with every other attempt, until nothing goes any more where nothing can.
+const MARGIN: f64 = 0.1;
 
 /// Points of a triangle that are measured, by barycentric coordinates: the centroid, quarters of the sides, and what is
 /// halfway between the centroid and the corners.
@@ -79,7 +79,7 @@ impl<'a> Certifier<'a> {
             if error <= SUSPECT * tolerance {
                 continue;
             }
-            let more = (error - tolerance).max(0.0) + MARGIN * f64::from(1u32 << attempt) * tolerance;
+            let more = (error - tolerance).max(0.0) + MARGIN * f64::from(1u32 << (attempt / 2)) * tolerance;
             for v in collapser.surface.corners(face).into_iter().chain(collapser.samples.of(face)) {
                 let reserve = &mut reserves[v as usize];
                 *reserve = reserve.max(before[v as usize] + more);

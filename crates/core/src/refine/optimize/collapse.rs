@@ -69,26 +69,37 @@ impl<'a> Collapser<'a> {
     /// Collapses edges until a goal is reached, even after flips.
     pub(super) fn run(&mut self, goals: Goals) {
         for _ in 0..MOST_RESUMPTIONS {
-            self.collapse_up_to(goals.tolerance, goals);
+            self.collapse_up_to(goals, goals);
             if !self.flip_all() || self.surface.faces_left() <= goals.triangles {
                 break;
             }
         }
     }
 
-    /// Collapses edges until a goal is reached or none can go without a cost above `limit`.
-    pub(super) fn collapse_up_to(&mut self, limit: f64, goals: Goals) {
+    /// Collapses edges on the way to `goals` until `stop` is reached.
+    pub(super) fn collapse_up_to(&mut self, stop: Goals, goals: Goals) {
         let mut left: Vec<u32> = (0..self.costs.len() as u32).filter(|&v| self.surface.is_alive(v)).collect();
-        let mut threshold = 0.0;
-        while self.surface.faces_left() > goals.triangles {
-            let least = self.round(&left, threshold, goals);
+        let mut threshold = self.flat.min(stop.tolerance);
+        while self.surface.faces_left() > stop.triangles {
+            let least = self.round(&left, threshold, stop.triangles, goals.tolerance);
             left.retain(|&v| self.surface.is_alive(v));
-            if least > limit {
+            if least > stop.tolerance {
                 break;
             }
             let near = self.surface.faces_left() / FAR <= goals.triangles;
-            threshold = (threshold * if near { SLOW } else { FAST }).max(least).min(limit);
+            let growth = if near { SLOW } else { FAST };
+            threshold = self.rung_above((threshold * growth).max(least), growth).min(stop.tolerance);
         }
+    }
+
+    /// The least of the thresholds `flat`, `flat`·`growth`, `flat`·`growth`², … from `cost` on. Were it the cost itself, a
+    /// change in one place would alter the order of the collapses everywhere.
+    fn rung_above(&self, cost: f64, growth: f64) -> f64 {
+        // A little less than a whole number by rounding is that number.
+        const SLACK: f64 = 1e-9;
+        let rung = ((cost / self.flat).ln() / growth.ln() - SLACK).ceil();
+        let threshold = self.flat * growth.powf(rung.max(0.0));
+        if threshold.is_finite() { threshold } else { cost }
     }
 
     /// What it takes to come back to this state.
@@ -118,14 +129,14 @@ impl<'a> Collapser<'a> {
     }
 
     /// One pass over the vertices; gives the least cost of a collapse that is left.
-    fn round(&mut self, vertices: &[u32], threshold: f64, goals: Goals) -> f64 {
+    fn round(&mut self, vertices: &[u32], threshold: f64, triangles: usize, tolerance: f64) -> f64 {
         let mut least = f64::INFINITY;
         for &vertex in vertices {
             if self.costs[vertex as usize] <= threshold && self.surface.is_alive(vertex) {
-                if self.surface.faces_left() <= goals.triangles {
+                if self.surface.faces_left() <= triangles {
                     return least;
                 }
-                self.costs[vertex as usize] = self.consider(vertex, threshold, goals.tolerance);
+                self.costs[vertex as usize] = self.consider(vertex, threshold, tolerance);
             }
             least = least.min(self.costs[vertex as usize]);
         }

@@ -11,21 +11,67 @@ use crate::vector::DVec3;
 /// A flip must lower the error to this share at most: less is not worth the time, nor sure to be a gain.
 const GAIN: f64 = 0.95;
 
-/// The two faces at an edge, and the other diagonal of their quadrilateral.
+/// Looks at edges one after the other.
 #[derive(Default)]
 pub(super) struct Flipper {
     region: Region,
 }
 
-/// One of the two ways to cut a quadrilateral.
+/// The two faces at an edge: their corners counter-clockwise, the edge running from the first to the third.
+struct Quadrilateral {
+    corners: [u32; 4],
+    positions: [DVec3; 4],
+    faces: [u32; 2],
+}
+
+/// What two new triangles are measured by: those that are there.
+#[derive(Clone, Copy)]
+struct Standard {
+    worst: Worst,
+    /// Sum of their unit normals.
+    facing: DVec3,
+}
+
+/// How well one of the two ways to cut a quadrilateral does.
 struct Cut {
     error: f64,
     shape: f64,
 }
 
+impl Quadrilateral {
+    fn at(h: u32, surface: &Surface, samples: &Samples) -> Self {
+        let t = surface.twin(h);
+        let corners =
+            [surface.origin(h), surface.origin(previous(t)), surface.target(h), surface.origin(previous(h))];
+        Self { corners, positions: corners.map(|v| samples.position(v)), faces: [h / 3, t / 3] }
+    }
+
+    fn plane(&self, triangle: [usize; 3]) -> Option<Plane> {
+        Plane::new(triangle.map(|i| self.positions[i]))
+    }
+
+    /// How far the surface bulges over a triangle, by the normals at its corners.
+    fn bulge(&self, [i, j, k]: [usize; 3], ground: &Ground<'_>) -> f64 {
+        let sagitta = |i: usize, j: usize| {
+            ground.sagitta([self.corners[i], self.corners[j]], [self.positions[i], self.positions[j]])
+        };
+        bulge([sagitta(i, j), sagitta(j, k), sagitta(k, i)])
+    }
+
+    fn standard(&self, ground: &Ground<'_>) -> Standard {
+        let mut standard = Standard { worst: Worst::NONE, facing: DVec3::ZERO };
+        for triangle in BEFORE {
+            let plane = self.plane(triangle);
+            standard.worst.add(plane.as_ref(), triangle.map(|i| self.corners[i]), ground);
+            standard.facing += plane.map_or(DVec3::ZERO, |plane| plane.normal);
+        }
+        standard
+    }
+}
+
 impl Flipper {
-    /// Flips the edge of `h` if that lowers the error, or leaves it below `flat` and gives better shaped triangles. `None`
-    /// if it does not.
+    /// Flips the edge of `h` if that lowers the error, or leaves it below `flat` and gives better shaped triangles, and
+    /// gives the corners of the faces; `None` if it does not.
     pub(super) fn flip(
         &mut self,
         h: u32,
@@ -34,81 +80,58 @@ impl Flipper {
         samples: &mut Samples,
         ground: &Ground<'_>,
     ) -> Option<[u32; 4]> {
-        let t = surface.twin(h);
-        if surface.is_sharp(h) || t == NONE {
+        if surface.is_sharp(h) || surface.twin(h) == NONE {
             return None;
         }
-        let corners =
-            [surface.origin(h), surface.origin(previous(t)), surface.target(h), surface.origin(previous(h))];
-        let positions = corners.map(|v| samples.position(v));
+        let quadrilateral = Quadrilateral::at(h, surface, samples);
         self.region.clear();
-        let faces = [h / 3, t / 3];
-        for face in faces {
-            self.region.add_face(face, samples);
-        }
-        for v in corners {
-            self.region.add_corner(v, samples);
-        }
+        quadrilateral.faces.iter().for_each(|&face| self.region.add_face(face, samples));
+        quadrilateral.corners.iter().for_each(|&v| self.region.add_corner(v, samples));
         // Where estimates have proved wrong they are no reason to change what is there.
         if self.region.reserve() > 0.0 {
             return None;
         }
-        let mut worst = Worst::NONE;
-        for [i, j, k] in BEFORE {
-            let plane = Plane::new([positions[i], positions[j], positions[k]]);
-            worst.add(plane.as_ref(), [corners[i], corners[j], corners[k]], ground);
-        }
-        let before = self.cut(BEFORE, corners, positions, faces, f64::INFINITY, None, ground);
+        let before = self.cut(&quadrilateral, BEFORE, f64::INFINITY, None, ground);
         let error = before.as_ref().map_or(f64::INFINITY, |cut| cut.error);
         let bound = if error <= flat { flat.next_up() } else { error * GAIN };
-        let after = self.cut(AFTER, corners, positions, faces, bound, Some(worst), ground)?;
+        let standard = quadrilateral.standard(ground);
+        let after = self.cut(&quadrilateral, AFTER, bound, Some(standard), ground)?;
         let better = error > flat || before.is_none_or(|before| after.shape > before.shape / GAIN);
-        if !better || surface.are_neighbours(corners[1], corners[3]) {
+        if !better || surface.are_neighbours(quadrilateral.corners[1], quadrilateral.corners[3]) {
             return None;
         }
         surface.flip(h);
-        // The flip puts the triangle behind the edge's target into the face of `h`.
-        self.region.hand_over(samples, faces.into_iter());
-        Some(corners)
+        self.region.hand_over(samples, quadrilateral.faces.into_iter());
+        Some(quadrilateral.corners)
     }
 
-    /// Looks at two triangles of the quadrilateral; `None` if their error is not below `bound`, or, where `worst` says
-    /// what is allowed, if they do not stand well.
-    #[allow(clippy::too_many_arguments)]
+    /// Looks at two triangles of the quadrilateral; `None` if their error is not below `bound`, or if they do not meet
+    /// the standard.
     fn cut(
         &mut self,
+        quadrilateral: &Quadrilateral,
         triangles: [[usize; 3]; 2],
-        corners: [u32; 4],
-        positions: [DVec3; 4],
-        faces: [u32; 2],
         bound: f64,
-        worst: Option<Worst>,
+        standard: Option<Standard>,
         ground: &Ground<'_>,
     ) -> Option<Cut> {
         self.region.clear_triangles();
-        let mut estimate = 0.0f64;
-        let mut shape = 1.0f64;
-        for ([i, j, k], face) in triangles.into_iter().zip(faces) {
-            let plane = Plane::new([positions[i], positions[j], positions[k]])?;
-            if let Some(worst) = worst
-                && !ground.fits(&plane, [corners[i], corners[j], corners[k]], worst)
+        let (mut estimate, mut shape) = (0.0f64, 1.0f64);
+        for (triangle, face) in triangles.into_iter().zip(quadrilateral.faces) {
+            let plane = quadrilateral.plane(triangle)?;
+            if let Some(Standard { worst, facing }) = standard
+                && (plane.normal.dot(facing) < LEAST_TURN
+                    || !ground.fits(&plane, triangle.map(|i| quadrilateral.corners[i]), worst))
             {
                 return None;
             }
-            let sagitta =
-                |i: usize, j: usize| ground.sagitta([corners[i], corners[j]], [positions[i], positions[j]]);
-            estimate = estimate.max(bulge([sagitta(i, j), sagitta(j, k), sagitta(k, i)]));
+            estimate = estimate.max(quadrilateral.bulge(triangle, ground));
             shape = shape.min(plane.shape);
             self.region.add_triangle(plane, face);
         }
-        if let (Some(_), [a, b]) = (worst, self.region.planes())
-            && a.normal.dot(b.normal) < LEAST_TURN
-        {
-            return None;
-        }
         let error = self.region.forward_error(estimate, bound)?;
-        let [[a, b, ..], _] = triangles;
-        self.region.probe_edge(positions[a], positions[b]);
+        let [a, b] = [0, 1].map(|end| quadrilateral.positions[triangles[0][end]]);
+        self.region.probe_edge(a, b);
         let error = error.max(self.region.backward_error(ground));
         (error < bound).then_some(Cut { error, shape })
     }

@@ -13,7 +13,7 @@ pub(super) const LEAST_TURN: f64 = 0.2;
 
 /// The least shape of a triangle (see [`Plane::shape`]). Long triangles along directions of low curvature are wanted;
 /// thinner ones than this gain nothing more, and whoever works with the mesh suffers from them.
-const LEAST_SHAPE: f64 = 0.02;
+const LEAST_SHAPE: f64 = 0.01;
 
 /// The least cosine between the normal of a vertex and those of the fine faces around for it to speak for the surface
 /// there: beyond 18° there is an edge that nobody tagged, or the fine mesh is too coarse.

@@ -116,12 +116,26 @@ const HEADROOM: f64 = 0.02;
 /// Up to this share of the tolerance collapses are taken for granted at first, and not undone where the tolerance is not kept.
 const SURE: f64 = 0.3;
 
+/// With so many times as many triangles as asked for they are likewise.
+const EARLY: usize = 3;
+
+/// The certified distance over the estimate at which the errors of a mesh with a given number of triangles are held to be
+/// even: no place is much worse than the collapses were meant to leave behind.
+const EVEN: f64 = 1.05;
+
+/// How often at most a mesh with a given number of triangles is made, to see whether its errors get more even.
+const MOST_EVENING_ATTEMPTS: u32 = 3;
+
+/// What is left of the tolerance from attempt to attempt once the places found at fault were not all: a mesh made anew has
+/// new ones, where the fine mesh is so coarse that estimates are wrong all over.
+const LESS: f64 = 0.93;
+
 /// How often collapses are done again with less of the tolerance where it was not kept. Each attempt leaves fewer such
 /// places; what is left after these is a mesh that is rough wherever one looks.
-const MOST_ATTEMPTS: u32 = 8;
+const MOST_ATTEMPTS: u32 = 14;
 
 /// From this attempt on nothing is taken for granted.
-const FROM_THE_START: u32 = 3;
+const FROM_THE_START: u32 = 8;
 
 /// Errors up to this share of the diagonal are taken for rounding: some ten thousand units in the last place.
 const ROUNDING: f64 = 1e-12;
@@ -184,35 +198,53 @@ pub fn optimize(
     result(&collapser)
 }
 
-/// Collapses edges until a goal is reached, with proof.
+/// Collapses edges until a goal is reached, with proof. Where estimates prove wrong, it tries again with that in reserve:
+/// until the tolerance is kept; and where the number of triangles stops it, until the errors are even.
 fn certified(
     collapser: &mut Collapser<'_>,
     certifier: &Certifier<'_>,
     goals: Goals,
 ) -> Result<Optimized, RefineError> {
     let tolerance = goals.tolerance;
-    let target = Goals { tolerance: tolerance * (1.0 - HEADROOM), ..goals };
+    let mut target = Goals { tolerance: tolerance * (1.0 - HEADROOM), ..goals };
+    let early =
+        Goals { tolerance: target.tolerance * SURE, triangles: target.triangles.saturating_mul(EARLY) };
     let mut reserves = vec![0.0; collapser.ground.fine.vertex_count()];
     let fresh = collapser.snapshot();
     let mut sure = None;
+    let mut best: Option<Optimized> = None;
     for attempt in 0..MOST_ATTEMPTS {
         if attempt == 0 || attempt >= FROM_THE_START {
-            collapser.collapse_up_to(target.tolerance * SURE, target);
-        }
-        if tolerance < f64::MAX && attempt == 0 {
-            sure = Some(collapser.snapshot());
+            collapser.collapse_up_to(early, target);
+            sure.get_or_insert_with(|| collapser.snapshot());
         }
         collapser.run(target);
-        let mut coarse = result(collapser)?;
+        let counted = collapser.surface.faces_left() <= goals.triangles;
+        let coarse = result(collapser)?;
         let hierarchy = Bvh::new(coarse.mesh.as_triangles())?;
         let proof = certifier.certify(&hierarchy)?;
-        if proof.upper() <= tolerance {
-            coarse.bound = Some(proof.upper());
-            return Ok(coarse);
+        let (upper, estimate) = (proof.upper(), coarse.estimate);
+        let kept = upper <= tolerance;
+        let last = !counted || upper <= EVEN * estimate || attempt + 1 >= MOST_EVENING_ATTEMPTS;
+        if !(kept && last) {
+            let level = if counted { estimate.min(tolerance) } else { tolerance };
+            certifier.raise_reserves(&hierarchy, &proof, (attempt, level), collapser, &mut reserves);
         }
-        certifier.raise_reserves(&hierarchy, &proof, (attempt, tolerance), collapser, &mut reserves);
+        let earlier_bound = best.as_ref().and_then(|best| best.bound);
+        if kept && earlier_bound.is_none_or(|bound| counted && upper < bound) {
+            best = Some(Optimized { bound: Some(upper), ..coarse });
+        }
+        if (kept && last) || earlier_bound.is_some_and(|_| !kept) {
+            break;
+        }
+        if attempt >= FROM_THE_START && !kept {
+            target.tolerance *= LESS;
+        }
         let earlier = sure.as_ref().filter(|_| attempt + 1 < FROM_THE_START).unwrap_or(&fresh);
         collapser.restore(earlier, &reserves);
+    }
+    if let Some(best) = best {
+        return Ok(best);
     }
     // The fine mesh itself is at no distance.
     collapser.restore(&fresh, &reserves);
