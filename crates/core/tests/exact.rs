@@ -186,6 +186,27 @@ fn estimates_come_near() {
     }
 }
 
+/// Also where all triangles count alike.
+#[test]
+fn never_worse_than_uniform_refinement_at_equal_triangles() {
+    for name in ["sphere", "torus", "bunny", "cup"] {
+        let control = model(name);
+        let reference = limit_reference(&control, &Loop, 5).unwrap();
+        let distance = |mesh: &Mesh| {
+            let samples = SamplingOptions::default().samples(60_000);
+            hausdorff(mesh.as_triangles(), reference.as_triangles(), &samples).unwrap().symmetric()
+        };
+        for levels in [1, 2] {
+            let uniform = limit_reference(&control, &Loop, levels).unwrap();
+            let options = ExactOptions::default().triangles(uniform.face_count());
+            let adaptive = exact(&control, &Loop, &options).unwrap();
+            assert!(adaptive.mesh.face_count() <= uniform.face_count());
+            let (ours, theirs) = (distance(&adaptive.mesh), distance(&uniform));
+            assert!(ours <= 1.001 * theirs, "{name}, {levels} levels: {ours} against {theirs}");
+        }
+    }
+}
+
 /// Half the error on each side needs fewer triangles, and stays certified.
 #[test]
 fn balanced_meshes_need_fewer_triangles() {

@@ -119,6 +119,18 @@ impl<'a> Growth<'a> {
         })
     }
 
+    /// Divides all control faces by so many levels.
+    pub(super) fn split_all(&mut self, levels: usize) -> Result<(), RefineError> {
+        for _ in 0..levels {
+            let mut changes = Changes::default();
+            for leaf in self.leaf_nodes().collect::<Vec<_>>() {
+                self.forest.split(leaf, &mut changes)?;
+            }
+            self.grown(&changes);
+        }
+        Ok(())
+    }
+
     /// Splits until the goals are met or nothing more is allowed.
     pub(super) fn run(&mut self) -> Result<(ExactStop, Emission), RefineError> {
         // Values above it fail; without a demand on quality all do.

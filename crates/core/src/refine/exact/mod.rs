@@ -50,7 +50,21 @@ pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions<'_>) ->
     let Some(rules) = Rules::of(scheme) else {
         return Err(RefineError::NotExact { scheme: scheme.name().to_owned() });
     };
-    let mut growth = Growth::new(control, scheme, &rules, options)?;
-    let (stop, emission) = growth.run()?;
-    growth.finish(stop, emission)
+    let grown = |levels: usize| {
+        let mut growth = Growth::new(control, scheme, &rules, options)?;
+        growth.split_all(levels)?;
+        let (stop, emission) = growth.run()?;
+        growth.finish(stop, emission)
+    };
+    let worst_first = grown(0)?;
+    // Evenly curved models are best divided evenly: then all that is left of the budget brings nothing.
+    match options.uniform_levels(control.face_count()) {
+        0 => Ok(worst_first),
+        levels => {
+            let evenly = grown(levels)?;
+            // Lower bounds are found distances, within some per cent of the truth.
+            let is_better = evenly.error.lower < worst_first.error.lower;
+            Ok(if is_better { evenly } else { worst_first })
+        }
+    }
 }

@@ -148,6 +148,15 @@ impl<'a> ExactOptions<'a> {
         given.min_by_key(|&(limit, _)| limit).unwrap_or((usize::MAX, ExactStop::TriangleCap))
     }
 
+    /// Levels by which all of a control mesh can be divided where only the number of triangles counts.
+    pub(super) fn uniform_levels(&self, control_faces: usize) -> usize {
+        if self.tolerance.is_some() || self.angle.is_some() || self.pixels.is_some() {
+            return 0;
+        }
+        let fits = |&levels: &usize| control_faces.saturating_mul(1 << (2 * levels)) <= self.budget().0;
+        (1..=self.max_levels.min(20)).take_while(fits).last().unwrap_or(0)
+    }
+
     /// Refuses goals that are no positive numbers, and having none.
     pub(super) fn check(&self) -> Result<(), RefineError> {
         let bad = |name, value, expected| Err(MeshError::BadOption { name, value, expected }.into());
