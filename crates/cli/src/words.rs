@@ -55,6 +55,21 @@ fn bound(x: f64, round: impl Fn(f64) -> f64) -> String {
     format!("{digits:.0}e{exponent}").parse().map_or_else(|_| number(x), number)
 }
 
+/// Bytes with a unit that suits them, in powers of 1024.
+pub(crate) fn bytes(n: usize) -> String {
+    let units = ["bytes", "KiB", "MiB", "GiB", "TiB"];
+    let (mut value, mut unit) = (n as f64, 0);
+    while value >= 1000.0 && unit + 1 < units.len() {
+        value /= 1024.0;
+        unit += 1;
+    }
+    if unit == 0 {
+        format!("{n} bytes")
+    } else {
+        format!("{value:.*} {}", usize::from(value < 10.0), units[unit])
+    }
+}
+
 /// `(x, y, z)`.
 pub(crate) fn point(p: [f64; 3]) -> String {
     format!("({}, {}, {})", number(p[0]), number(p[1]), number(p[2]))
@@ -133,6 +148,20 @@ mod tests {
         ];
         for (x, above, below) in pairs {
             assert_eq!((upper_bound(x).as_str(), lower_bound(x).as_str()), (above, below), "{x}");
+        }
+    }
+
+    #[test]
+    fn bytes_have_a_unit() {
+        let pairs = [
+            (0, "0 bytes"),
+            (999, "999 bytes"),
+            (1024, "1.0 KiB"),
+            (5 << 30, "5.0 GiB"),
+            (90 << 20, "90 MiB"),
+        ];
+        for (n, text) in pairs {
+            assert_eq!(bytes(n), text);
         }
     }
 

@@ -1,7 +1,11 @@
 //! Options of `limitmesh refine --method exact`: its goals and its caps.
 
-use clap::Args;
+use std::path::PathBuf;
 
+use clap::Args;
+use limitmesh::refine::Camera;
+
+use super::camera;
 use super::values::{self, Extent};
 
 /// The heading of these options in the help.
@@ -23,16 +27,54 @@ pub(crate) struct ExactArguments {
     #[arg(long, value_name = "N", value_parser = values::positive)]
     pub(crate) triangles: Option<usize>,
 
+    /// Greatest distance between the mesh and the limit surface as the cameras see it, in pixels [default with a camera: 1]
+    ///
+    /// Silhouettes come out fine; what no camera sees stays coarse.
+    #[arg(long, value_name = "P", value_parser = values::above_zero, allow_hyphen_values = true)]
+    pub(crate) pixels: Option<f64>,
+
+    /// A perspective camera for --pixels; may be given several times: one mesh serves them all
+    ///
+    /// EYE, TARGET and UP are X,Y,Z each; FOV is the vertical angle of view in degrees, WxH the picture in pixels, such
+    /// as 0,0,5,0,0,0,0,1,0,45,1920x1080.
+    #[arg(long, value_name = "EYE,TARGET,UP,FOV,WxH", value_parser = camera::camera, allow_hyphen_values = true)]
+    pub(crate) camera: Vec<Camera>,
+
+    /// A file of cameras for --pixels: one a line, with nothing after a '#'
+    #[arg(long, value_name = "FILE")]
+    pub(crate) camera_path: Vec<PathBuf>,
+
+    /// Let vertices leave the limit surface by up to half the local error: fewer triangles for the same tolerance
+    #[arg(long)]
+    pub(crate) balance: bool,
+
+    /// Collapse edges of a finer mesh as long as the tolerance allows: slower, and fewer triangles
+    ///
+    /// For --tolerance and --triangles. All vertices stay on the limit surface; triangles reach over several control
+    /// faces.
+    #[arg(long)]
+    pub(crate) optimize: bool,
+
     /// Divide no part of a control face more often [1 to 24; default: 24]
     ///
     /// What was reached by then is written, and the exit code is 3.
     #[arg(long, value_name = "N", value_parser = values::exact_levels)]
     pub(crate) max_levels: Option<usize>,
 
+    /// Take no more memory, about [bytes, or with K, M, G or T for powers of 1024; default: no limit]
+    ///
+    /// What was reached by then is written, and the exit code is 3.
+    #[arg(long, value_name = "BYTES", value_parser = values::memory, allow_hyphen_values = true)]
+    pub(crate) max_memory: Option<usize>,
+
+    /// Predict the triangles and the memory, and write no mesh
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+
     /// Say where each vertex and triangle came from, as properties of a PLY file
     ///
     /// Vertices have parent_face and the barycentric coordinates parent_a, parent_b and parent_c there, triangles
-    /// have parent_face: faces of the control mesh, counted from 0.
+    /// have parent_face (not with --optimize): faces of the control mesh, counted from 0.
     #[arg(long)]
     pub(crate) provenance: bool,
 }

@@ -15,7 +15,9 @@ Examples:
         how far a refined mesh is from the limit surface of its control mesh
   limitmesh measure refined.ply --limit-of control.obj --heatmap error.png
   limitmesh measure refined.ply scan.ply --certified --gap 0.01%
-        between which two values the distance certainly lies";
+        between which two values the distance certainly lies
+  limitmesh measure refined.ply --limit-of control.obj --certified
+        the same against the true limit surface";
 
 /// Measure the symmetric Hausdorff distance between two surfaces
 ///
@@ -57,13 +59,15 @@ pub(crate) struct MeasureArguments {
     /// Bound the distance from both sides instead of sampling it: no point is farther away than the upper bound
     ///
     /// Branch and bound over the triangles of both meshes. The interval is as narrow as --gap says, or wider if
-    /// the work runs out first (exit code 3). For two meshes, not for a limit surface.
+    /// the work runs out first (exit code 3). With --limit-of, exact refinement stands for the limit surface, as fine as
+    /// the interval needs it; what it is off by at most is part of the interval.
     #[arg(long, conflicts_with = "samples")]
     pub(crate) certified: bool,
 
     /// How wide the interval may be: a length, or per cent of the reference's diagonal such as 0.01%
     ///
-    /// Default: 1 % of the distance, or 0.0001% of the diagonal where that is more. With --certified only.
+    /// Default: 1 % of the distance, with --limit-of 10 %; or 0.0001% of the diagonal where that is more. With
+    /// --certified only.
     #[arg(long, value_name = "G", value_parser = values::extent, allow_hyphen_values = true)]
     pub(crate) gap: Option<Extent>,
 

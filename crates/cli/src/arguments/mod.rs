@@ -1,5 +1,6 @@
 //! The command line: one file a command, help texts that say each option's unit, default and effect.
 
+mod camera;
 mod compare;
 mod exact;
 mod features;
@@ -12,6 +13,7 @@ mod reproduce;
 mod shared;
 mod values;
 
+pub(crate) use camera::cameras_in;
 pub(crate) use compare::CompareArguments;
 pub(crate) use exact::ExactArguments;
 pub(crate) use features::{Boundary, FeatureArguments};
@@ -69,7 +71,7 @@ pub(crate) struct GlobalArguments {
 /// What to do.
 #[derive(Subcommand, Debug)]
 pub(crate) enum Command {
-    Refine(RefineArguments),
+    Refine(Box<RefineArguments>),
     Measure(MeasureArguments),
     Compare(CompareArguments),
     Render(RenderArguments),

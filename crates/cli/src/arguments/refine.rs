@@ -27,12 +27,18 @@ Examples:
   limitmesh refine builtin:cup -o cup.ply
   limitmesh refine scan.stl -o smooth.obj --tolerance 0.05 --report smooth.json
   limitmesh refine builtin:head -o head.ply --triangles 20000
+  limitmesh refine builtin:cup -o seen.ply --pixels 0.5 --camera 0,-4,2,0,0,0,0,0,1,40,1920x1080
+  limitmesh refine builtin:cup --tolerance 0.001% --dry-run
   limitmesh refine builtin:cup -o cup.ply --method limit-normal --angle 5 --levels 4
   limitmesh refine builtin:sphere -o seen.ply --method limit-normal --view 0,0,-1 --levels 5
   limitmesh refine part.stl -o part.ply --crease-angle 30
   limitmesh refine big.ply -o fine.ply --method uniform --max-triangles 20000000
 
 Exit code 3 means that a cap was reached before what was asked for; the mesh is written, and free of cracks.";
+
+/// Triangles at most where no number is given: as many as take about 10 gigabytes.
+const MOST_EXACT: usize = 30_000_000;
+const MOST_STEPWISE: usize = 50_000_000;
 
 /// The heading of the options of the stepwise methods.
 const STEPWISE: &str = "Options of the other methods";
@@ -49,8 +55,8 @@ pub(crate) struct RefineArguments {
     pub(crate) input: String,
 
     /// File to write; its extension (.obj, .ply, .stl, .off) chooses the format
-    #[arg(short, long, value_name = "FILE")]
-    pub(crate) output: PathBuf,
+    #[arg(short, long, value_name = "FILE", required_unless_present = "dry_run")]
+    pub(crate) output: Option<PathBuf>,
 
     /// What decides which faces are divided
     #[arg(long, value_enum, default_value = "exact")]
@@ -64,6 +70,24 @@ pub(crate) struct RefineArguments {
     #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
     pub(crate) angle: Option<f64>,
 
+    /// Direction of sight, from the viewer into the scene: parallel projection
+    ///
+    /// Makes --angle depend on the viewer, with --method exact or limit-normal: faces that look away are never divided, those on the silhouette always, those that look at the viewer
+    /// where their normal leaves a cone of --dilatation times --angle.
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    #[arg(conflicts_with = "eye")]
+    pub(crate) view: Option<[f64; 3]>,
+
+    /// Eye point: as --view, with a direction of its own for each face
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true)]
+    pub(crate) eye: Option<[f64; 3]>,
+
+    /// Factor on the angle of faces that look straight at the viewer [at least 0; default: 1]
+    ///
+    /// Larger values divide fewer of them; with --view or --eye only.
+    #[arg(long, value_name = "K", value_parser = values::factor, allow_hyphen_values = true)]
+    pub(crate) dilatation: Option<f64>,
+
     /// Subdivision scheme
     #[arg(long, value_enum, default_value = "loop")]
     pub(crate) scheme: SchemeName,
@@ -71,9 +95,10 @@ pub(crate) struct RefineArguments {
     /// Give no more triangles
     ///
     /// What was reached by then is written, and the exit code is 3; the stepwise methods stop before the step that
-    /// would give more. The default keeps memory below about 10 gigabytes.
-    #[arg(long, value_name = "N", default_value_t = 50_000_000, value_parser = values::positive)]
-    pub(crate) max_triangles: usize,
+    /// would give more. Default: 30000000 for exact, 50000000 for the others, which keep memory below about 10
+    /// gigabytes.
+    #[arg(long, value_name = "N", value_parser = values::positive)]
+    max_triangles: Option<usize>,
 
     #[command(flatten)]
     pub(crate) features: FeatureArguments,
@@ -104,30 +129,23 @@ pub(crate) struct RefineArguments {
     #[arg(long, value_enum, help_heading = STEPWISE)]
     pub(crate) seam: Option<Seam>,
 
-    /// Direction of sight, from the viewer into the scene: parallel projection
-    ///
-    /// Faces that look away are never divided, those on the silhouette always, those that look at the viewer
-    /// where their normal leaves a cone of --dilatation times --angle.
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
-    #[arg(conflicts_with = "eye", help_heading = STEPWISE)]
-    pub(crate) view: Option<[f64; 3]>,
-
-    /// Eye point: as --view, with a direction of its own for each face
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true)]
-    #[arg(help_heading = STEPWISE)]
-    pub(crate) eye: Option<[f64; 3]>,
-
-    /// Factor on the angle of faces that look straight at the viewer [at least 0; default: 1]
-    ///
-    /// Larger values divide fewer of them; with --view or --eye only.
-    #[arg(long, value_name = "K", value_parser = values::factor, allow_hyphen_values = true)]
-    #[arg(help_heading = STEPWISE)]
-    pub(crate) dilatation: Option<f64>,
-
     /// Move the vertices to the limit surface of the last mesh at the end
     ///
     /// With --method uniform that is the limit surface of the input. The adaptive methods have drifted from it by
     /// then, and may come out farther from it than without this option.
     #[arg(long, help_heading = STEPWISE)]
     pub(crate) limit: bool,
+}
+
+impl RefineArguments {
+    /// The cap on triangles that holds.
+    pub(crate) fn max_triangles(&self) -> usize {
+        let most = if self.method == Method::Exact { MOST_EXACT } else { MOST_STEPWISE };
+        self.max_triangles.unwrap_or(most)
+    }
+
+    /// The file to write; a dry run has none.
+    pub(crate) fn output_name(&self) -> String {
+        self.output.as_ref().map_or(String::new(), |path| path.display().to_string())
+    }
 }

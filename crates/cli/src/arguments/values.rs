@@ -18,7 +18,7 @@ const MAX_THREADS: usize = 4096;
 const MAX_SIDE: u32 = 8192;
 
 /// A number that is finite.
-fn finite(text: &str) -> Result<f64, String> {
+pub(super) fn finite(text: &str) -> Result<f64, String> {
     let value = f64::from_str(text.trim()).map_err(|_| format!("'{text}' is not a number"))?;
     if value.is_finite() { Ok(value) } else { Err(format!("{value} is not a finite number")) }
 }
@@ -122,6 +122,32 @@ pub(super) fn exact_levels(text: &str) -> Result<usize, String> {
     bounded(text, 1, MAX_EXACT_LEVELS, "levels")
 }
 
+/// A number above 0.
+pub(super) fn above_zero(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if value > 0.0 { Ok(value) } else { Err(format!("{value} is out of range: it is above 0")) }
+}
+
+/// A number of bytes, perhaps with K, M, G or T for powers of 1024.
+pub(super) fn memory(text: &str) -> Result<usize, String> {
+    let text = text.trim();
+    let (digits, power) = match text.char_indices().next_back() {
+        Some((i, unit)) if unit.is_alphabetic() => {
+            let power = "KMGT".find(unit.to_ascii_uppercase());
+            let power =
+                power.ok_or_else(|| format!("'{text}': expected bytes, or a number with K, M, G or T"))?;
+            (&text[..i], power as i32 + 1)
+        }
+        _ => (text, 0),
+    };
+    let value = finite(digits)? * 1024f64.powi(power);
+    if value < 1.0 {
+        return Err(format!("{text} is too little: memory is at least one byte"));
+    }
+    // Beyond what can be addressed, the conversion gives the most that can.
+    Ok(value as usize)
+}
+
 /// A count of at least 1.
 pub(super) fn positive(text: &str) -> Result<usize, String> {
     bounded(text, 1, usize::MAX, "a count")
@@ -211,6 +237,18 @@ mod tests {
         for bad in ["0", "-0", "0%", "-1", "-0.1%", "NaN", "inf", "1e999", "1000%", "%", "", "0.1%%", "fine"]
         {
             assert!(tolerance(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn memory_is_read_with_its_unit() {
+        let pairs =
+            [("1", 1), ("2000", 2000), ("1K", 1024), ("1.5m", 1_572_864), ("2G", 1 << 31), ("1 T", 1 << 40)];
+        for (text, expected) in pairs {
+            assert_eq!(memory(text), Ok(expected), "{text}");
+        }
+        for bad in ["0", "-1G", "G", "2X", "2GB", "NaN", "", "0.1"] {
+            assert!(memory(bad).is_err(), "{bad}");
         }
     }
 

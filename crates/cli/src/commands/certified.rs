@@ -5,7 +5,7 @@ use limitmesh::measure::{Bounds, Bvh, CertifiedHausdorff, CertifiedOptions, cert
 
 use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
-use crate::words::{number, point, table};
+use crate::words::{counted, number, point, table};
 
 /// Rounding to six digits changes a number by at most this share of it.
 const SIX_DIGITS: f64 = 5e-6;
@@ -13,10 +13,10 @@ const SIX_DIGITS: f64 = 5e-6;
 /// Finds what makes no sense before any work is done.
 pub(super) fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
     if arguments.certified {
-        if arguments.limit_of.is_some() {
+        if arguments.reference_levels.is_some() {
             return usage(
-                "--certified bounds the distance between two meshes; against a limit surface (--limit-of) distances \
-                 are sampled",
+                "--reference-levels is for sampled distances; with --certified the limit surface is as fine as the \
+                 interval needs it",
             );
         }
     } else if arguments.gap.is_some() || arguments.max_work.is_some() {
@@ -42,15 +42,22 @@ pub(super) fn between(
     Ok(certified_hausdorff_between(&surface, &reference, &options)?)
 }
 
-/// How the command ends.
-pub(super) fn outcome(measured: &CertifiedHausdorff) -> Outcome {
+/// How the command ends; `capped` are the triangles of a mesh that could not be finer to stand for a limit surface.
+pub(super) fn outcome(measured: &CertifiedHausdorff, capped: Option<usize>) -> Outcome {
     if measured.converged() {
         return Outcome::Done;
     }
     Outcome::StoppedShort(format!(
-        "the interval, from {} to {}, is as certain but wider than asked for: the search was cut short; raise --max-work or --gap",
+        "the interval, from {} to {}, is as certain but wider than asked for: {}",
         at_least(measured.lower()),
-        at_most(measured.upper())
+        at_most(measured.upper()),
+        match capped {
+            None => "the search was cut short; raise --max-work or --gap".to_owned(),
+            Some(triangles) => format!(
+                "the mesh that stands for the limit surface has {} and may not have many more; raise --gap",
+                counted(triangles, "triangle", "triangles")
+            ),
+        }
     ))
 }
 

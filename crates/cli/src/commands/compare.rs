@@ -2,9 +2,12 @@
 
 use std::time::{Duration, Instant};
 
+use limitmesh::Mesh;
 use limitmesh::criterion::LimitNormal;
 use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between, triangle_quality};
-use limitmesh::refine::{Refinement, StepwiseOptions, Stop, UniformOptions, stepwise, uniform};
+use limitmesh::refine::{
+    Exact, ExactOptions, RefineError, StepwiseOptions, Stop, UniformOptions, exact, stepwise, uniform,
+};
 
 use crate::arguments::CompareArguments;
 use crate::comparison::{match_neighbour_angle, nearest_uniform_level};
@@ -13,8 +16,8 @@ use crate::input;
 use crate::output;
 use crate::progress::Progress;
 use crate::reference::{self, Reference, USUAL_LEVELS};
-use crate::report::{ComparedMethod, LimitReport};
-use crate::words::{counted, number, seconds, table, thousands};
+use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport};
+use crate::words::{counted, number, seconds, table, thousands, upper_bound};
 
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
@@ -29,7 +32,7 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     let tree = Bvh::new(reference.mesh.as_triangles())?;
     let judge = Judge { arguments, reference: &reference, tree: &tree };
 
-    let mut methods = Vec::with_capacity(4);
+    let mut methods = Vec::with_capacity(7);
     progress.stage("limit-normal");
     let options = StepwiseOptions::default().levels(arguments.levels).max_triangles(Some(MOST_TRIANGLES));
     let criterion = LimitNormal::new(arguments.angle.to_radians());
@@ -37,13 +40,21 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     let proposed = stepwise(&control, scheme, &criterion, &options)?;
     let took = start.elapsed();
     let (count, stop) = (proposed.mesh.face_count(), proposed.stop);
-    methods.push(judge.judge("limit-normal", Some(arguments.angle), &proposed, took)?);
+    let levels = proposed.steps.len();
+    methods.push(judge.judge(
+        ("limit-normal", Some(arguments.angle)),
+        (&proposed.mesh, levels),
+        None,
+        took,
+    )?);
     drop(proposed);
 
     progress.stage(format!("amresh: finding the angle for {} triangles", thousands(count)));
     let matched = match_neighbour_angle(&control, scheme, arguments.levels, count, arguments.angle)?;
     let angle = Some(matched.angle_degrees);
-    methods.push(judge.judge("amresh", angle, &matched.refinement, matched.duration)?);
+    let refinement = &matched.refinement;
+    let gives = (&refinement.mesh, refinement.steps.len());
+    methods.push(judge.judge(("amresh", angle), gives, None, matched.duration)?);
     drop(matched);
 
     let level = nearest_uniform_level(control.face_count(), count);
@@ -52,7 +63,29 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
         let options = UniformOptions::default().levels(level).limit(limit);
         let start = Instant::now();
         let refinement = uniform(&control, scheme, &options)?;
-        methods.push(judge.judge(name, None, &refinement, start.elapsed())?);
+        let took = start.elapsed();
+        methods.push(judge.judge((name, None), (&refinement.mesh, level), None, took)?);
+    }
+    let plain = ExactOptions::default().triangles(count);
+    let mut kinds = vec![("exact", plain.clone()), ("exact-balance", plain.clone().balance(true))];
+    if count <= MOST_OPTIMISED {
+        kinds.push(("exact-optimize", plain.optimize(true)));
+    }
+    for (name, options) in kinds {
+        progress.stage(name);
+        let start = Instant::now();
+        match exact(&control, scheme, &options) {
+            Ok(Exact { mesh, levels, error, .. }) => {
+                let took = start.elapsed();
+                let error = Some([error.lower, error.upper]);
+                methods.push(judge.judge((name, None), (&mesh, levels), error, took)?);
+            }
+            Err(why @ RefineError::NotExact { .. }) => {
+                progress.note(why.to_string());
+                break;
+            }
+            Err(error) => return Err(error.into()),
+        }
     }
     progress.clear();
     if arguments.json {
@@ -73,6 +106,9 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
 /// Triangles that a method may give: more would need more memory than most machines have.
 const MOST_TRIANGLES: usize = 20_000_000;
 
+/// Triangles up to which the optimised mesh is shown too: beyond, it would take minutes.
+const MOST_OPTIMISED: usize = 200_000;
+
 /// Measures every method against the same limit surface.
 struct Judge<'a> {
     arguments: &'a CompareArguments,
@@ -87,19 +123,21 @@ impl Judge<'_> {
             scheme: self.arguments.scheme,
             levels: self.reference.levels,
             chosen: true,
+            error: None,
             boundary: self.arguments.features.boundary.unwrap_or_default(),
             crease_angle_degrees: self.arguments.features.crease_angle,
         }
     }
 
+    /// Measures what a method with its angle gave: a mesh after some steps or levels, perhaps with proven bounds.
     fn judge(
         &self,
-        method: &'static str,
-        angle_degrees: Option<f64>,
-        refinement: &Refinement,
+        (method, angle_degrees): (&'static str, Option<f64>),
+        (mesh, levels): (&Mesh, usize),
+        certified: Option<[f64; 2]>,
         took: Duration,
     ) -> anyhow::Result<ComparedMethod> {
-        let surface = refinement.mesh.as_triangles();
+        let surface = mesh.as_triangles();
         let options = SamplingOptions::default().samples(self.arguments.samples);
         let distance = hausdorff_between(&Bvh::new(surface)?, self.tree, &options);
         let quality = triangle_quality(surface);
@@ -107,12 +145,18 @@ impl Judge<'_> {
         Ok(ComparedMethod {
             method,
             angle_degrees,
-            levels: refinement.steps.len(),
+            levels,
             triangles: surface.triangles.len(),
             symmetric: distance.symmetric(),
             symmetric_percent: distance.symmetric_percent(),
             mean_percent: percent * distance.forward.mean,
             rms_percent: percent * distance.forward.rms,
+            certified: certified.map(|[lower, upper]| CertifiedErrorReport {
+                lower,
+                upper,
+                lower_percent: percent * lower,
+                upper_percent: percent * upper,
+            }),
             samples: distance.forward.samples + distance.backward.samples,
             min_angle_degrees: quality.min_angle_degrees,
             mean_min_angle_degrees: quality.mean_min_angle_degrees,
@@ -124,7 +168,8 @@ impl Judge<'_> {
 }
 
 fn in_words(arguments: &CompareArguments, judge: &Judge<'_>, methods: &[ComparedMethod]) -> String {
-    let heads = ["method", "angle", "levels", "triangles", "distance %", "mean %", "least angle", "time"];
+    let heads =
+        ["method", "angle", "levels", "triangles", "distance %", "proven %", "mean %", "least angle", "time"];
     let mut rows = vec![heads.map(str::to_owned).to_vec()];
     for m in methods {
         rows.push(vec![
@@ -133,6 +178,7 @@ fn in_words(arguments: &CompareArguments, judge: &Judge<'_>, methods: &[Compared
             m.levels.to_string(),
             thousands(m.triangles),
             number(m.symmetric_percent),
+            m.certified.as_ref().map_or_else(|| "-".to_owned(), |c| upper_bound(c.upper_percent)),
             number(m.mean_percent),
             format!("{:.2}°", m.min_angle_degrees),
             seconds(m.seconds),
@@ -141,7 +187,7 @@ fn in_words(arguments: &CompareArguments, judge: &Judge<'_>, methods: &[Compared
     format!(
         "{}, against its limit surface ({}, {} levels)\n\n{}\n\
          Distances are symmetric Hausdorff distances in per cent of the limit surface's diagonal, sampled: lower \
-         bounds,\n{} samples a surface, or more where it has more vertices.\n",
+         bounds,\n{} samples a surface, or more where it has more vertices. What is proven is an upper bound.\n",
         arguments.input,
         counted(judge.reference.mesh.face_count(), "triangle", "triangles"),
         judge.reference.levels,

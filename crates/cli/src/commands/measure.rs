@@ -5,7 +5,7 @@ use std::time::Instant;
 use limitmesh::measure::{CertifiedHausdorff, Hausdorff, SamplingOptions, hausdorff};
 use limitmesh::{Mesh, Triangles};
 
-use super::{certified, heatmap};
+use super::{certified, certified_limit, heatmap};
 use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
 use crate::input::{self, Input};
@@ -14,24 +14,32 @@ use crate::progress::Progress;
 use crate::reference::{self, USUAL_LEVELS};
 use crate::report::measurement::MeasureSeconds;
 use crate::report::{DistanceReport, LimitReport, MeasureReport, SurfaceReport, VERSION};
-use crate::words::{counted, number, point, table, thousands};
+use crate::words::{counted, number, point, table, thousands, upper_bound};
 
 /// Measures one surface against another.
 pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     check(arguments)?;
     let start = Instant::now();
     let surface = input::load(&arguments.surface, &arguments.build.options(), progress)?;
-    let (reference, reference_report) = load_reference(arguments, progress)?;
+    let a = surface.mesh.as_triangles();
+    let (control, reference_report) = load_reference(arguments, progress)?;
     let prepare = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
-    let (a, b) = (surface.mesh.as_triangles(), reference.as_triangles());
-    progress.stage(format!(
-        "measuring {} against {}",
-        counted(a.triangles.len(), "triangle", "triangles"),
-        counted(b.triangles.len(), "triangle", "triangles")
-    ));
-    let measured = Distance::between(a, b, arguments)?;
+    let (reference, reference_report, measured) = match reference_report.limit {
+        Some(_) if arguments.certified => against_limit(a, &control, reference_report, arguments, progress)?,
+        _ => {
+            let b = control.as_triangles();
+            progress.stage(format!(
+                "measuring {} against {}",
+                counted(a.triangles.len(), "triangle", "triangles"),
+                counted(b.triangles.len(), "triangle", "triangles")
+            ));
+            let measured = Distance::between(a, b, arguments)?;
+            (control, reference_report, measured)
+        }
+    };
+    let b = reference.as_triangles();
     let report = MeasureReport {
         version: VERSION,
         surface: describe(&surface),
@@ -55,13 +63,14 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
 /// The distance as it was asked for.
 enum Distance {
     Sampled(Hausdorff),
-    Certified(CertifiedHausdorff),
+    /// Perhaps with the triangles of a mesh that could not be finer to stand for a limit surface.
+    Certified(CertifiedHausdorff, Option<usize>),
 }
 
 impl Distance {
     fn between(a: Triangles<'_>, b: Triangles<'_>, arguments: &MeasureArguments) -> anyhow::Result<Self> {
         if arguments.certified {
-            return Ok(Self::Certified(certified::between(a, b, arguments)?));
+            return Ok(Self::Certified(certified::between(a, b, arguments)?, None));
         }
         Ok(Self::Sampled(hausdorff(a, b, &SamplingOptions::default().samples(arguments.samples))?))
     }
@@ -69,26 +78,47 @@ impl Distance {
     fn report(&self) -> DistanceReport {
         match self {
             Self::Sampled(measured) => DistanceReport::Sampled(measured.into()),
-            Self::Certified(measured) => DistanceReport::Certified(measured.into()),
+            Self::Certified(measured, _) => DistanceReport::Certified(measured.into()),
         }
     }
 
     fn reference_diagonal(&self) -> f64 {
         match self {
             Self::Sampled(measured) => measured.reference_diagonal,
-            Self::Certified(measured) => measured.reference_diagonal,
+            Self::Certified(measured, _) => measured.reference_diagonal,
         }
     }
 
     fn outcome(&self) -> Outcome {
         match self {
             Self::Sampled(_) => Outcome::Done,
-            Self::Certified(measured) => certified::outcome(measured),
+            Self::Certified(measured, capped) => certified::outcome(measured, *capped),
         }
     }
 }
 
-/// The second surface: a mesh as it is, or one that stands for a limit surface.
+/// Bounds the distance to the limit surface of a control mesh; gives also the mesh that stands for it.
+fn against_limit(
+    surface: Triangles<'_>,
+    control: &Mesh,
+    report: SurfaceReport,
+    arguments: &MeasureArguments,
+    progress: &Progress,
+) -> anyhow::Result<(Mesh, SurfaceReport, Distance)> {
+    let found = certified_limit::measure(surface, control, arguments, progress)?;
+    let limit =
+        report.limit.map(|limit| LimitReport { levels: found.levels, error: Some(found.error), ..limit });
+    let report = SurfaceReport {
+        vertices: found.reference.vertex_count(),
+        triangles: found.reference.face_count(),
+        limit,
+        ..report
+    };
+    Ok((found.reference, report, Distance::Certified(found.measured, found.capped)))
+}
+
+/// The second surface: a mesh as it is, or one that stands for a limit surface; the control mesh itself, where the
+/// distance to its limit surface is to be certified.
 fn load_reference(
     arguments: &MeasureArguments,
     progress: &Progress,
@@ -101,28 +131,33 @@ fn load_reference(
         return Ok((input.mesh, report));
     };
     let input = input::load(control, &build, progress)?;
-    let levels = arguments
-        .reference_levels
-        .unwrap_or_else(|| reference::affordable_levels(input.mesh.face_count(), USUAL_LEVELS));
-    progress.stage(format!("refining {control} by {levels} levels to stand for its limit surface"));
     let scheme = arguments.scheme.unwrap_or_default();
     let report = describe(&input);
-    let control = arguments.features.apply(input.mesh)?;
-    let reference = reference::at_level(&control, scheme.scheme(), levels)?;
+    let mesh = arguments.features.apply(input.mesh)?;
+    let (mesh, levels) = if arguments.certified {
+        (mesh, 0)
+    } else {
+        let levels = arguments
+            .reference_levels
+            .unwrap_or_else(|| reference::affordable_levels(mesh.face_count(), USUAL_LEVELS));
+        progress.stage(format!("refining {control} by {levels} levels to stand for its limit surface"));
+        (reference::at_level(&mesh, scheme.scheme(), levels)?.mesh, levels)
+    };
     let limit = LimitReport {
         scheme,
-        levels: reference.levels,
+        levels,
+        error: None,
         chosen: arguments.reference_levels.is_none(),
         boundary: arguments.features.boundary.unwrap_or_default(),
         crease_angle_degrees: arguments.features.crease_angle,
     };
     let report = SurfaceReport {
-        vertices: reference.mesh.vertex_count(),
-        triangles: reference.mesh.face_count(),
+        vertices: mesh.vertex_count(),
+        triangles: mesh.face_count(),
         limit: Some(limit),
         ..report
     };
-    Ok((reference.mesh, report))
+    Ok((mesh, report))
 }
 
 fn describe(input: &Input) -> SurfaceReport {
@@ -140,7 +175,7 @@ fn in_words(report: &MeasureReport, measured: &Distance) -> String {
     text.push_str(&format!("to    {}\n\n", surface_in_words(&report.reference)));
     text.push_str(&match measured {
         Distance::Sampled(measured) => sampled_in_words(measured),
-        Distance::Certified(measured) => certified::in_words(measured),
+        Distance::Certified(measured, _) => certified::in_words(measured),
     });
     text
 }
@@ -183,6 +218,10 @@ fn surface_in_words(surface: &SurfaceReport) -> String {
     let triangles = counted(surface.triangles, "triangle", "triangles");
     let mut text = match &surface.limit {
         None => format!("{}: {triangles}", surface.path),
+        Some(LimitReport { error: Some(error), .. }) => {
+            let error = upper_bound(*error);
+            format!("limit surface of {}: {triangles}, certainly within {error} of it", surface.path)
+        }
         Some(limit) => {
             let chosen = if limit.chosen { ", chosen to suit its size" } else { "" };
             let levels = counted(limit.levels, "level", "levels");

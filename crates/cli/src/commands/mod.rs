@@ -1,6 +1,7 @@
 //! The commands, one file each: arguments in, files and text out.
 
 mod certified;
+mod certified_limit;
 pub(crate) mod compare;
 mod heatmap;
 pub(crate) mod info;

@@ -7,11 +7,11 @@ use super::measurement::LimitReport;
 /// One method at its triangle count.
 #[derive(Debug, Serialize)]
 pub(crate) struct ComparedMethod {
-    /// `limit-normal`, `amresh`, `uniform` or `uniform-limit`.
+    /// `limit-normal`, `amresh`, `uniform`, `uniform-limit`, `exact`, `exact-balance` or `exact-optimize`.
     pub(crate) method: &'static str,
-    /// The angle used; null for uniform refinement.
+    /// The angle used; null for uniform and exact refinement.
     pub(crate) angle_degrees: Option<f64>,
-    /// Steps done.
+    /// Steps done, or levels of the most divided part.
     pub(crate) levels: usize,
     pub(crate) triangles: usize,
     /// Symmetric Hausdorff distance to the limit surface, sampled: a lower bound, in the mesh's units.
@@ -22,6 +22,8 @@ pub(crate) struct ComparedMethod {
     pub(crate) mean_percent: f64,
     /// Root mean square of that distance, in the same per cent.
     pub(crate) rms_percent: f64,
+    /// Bounds of the distance that are proven; null for methods that have none.
+    pub(crate) certified: Option<CertifiedErrorReport>,
     /// Samples of both directions together.
     pub(crate) samples: usize,
     pub(crate) min_angle_degrees: f64,
@@ -31,4 +33,15 @@ pub(crate) struct ComparedMethod {
     /// What stands for the limit surface.
     pub(crate) reference: LimitReport,
     pub(crate) reference_triangles: usize,
+}
+
+/// The true distance to the limit surface lies between these.
+#[derive(Debug, Serialize)]
+pub(crate) struct CertifiedErrorReport {
+    /// In the mesh's units.
+    pub(crate) lower: f64,
+    pub(crate) upper: f64,
+    /// In per cent of the diagonal of the limit surface's bounding box.
+    pub(crate) lower_percent: f64,
+    pub(crate) upper_percent: f64,
 }

@@ -44,10 +44,13 @@ pub(crate) struct SurfaceReport {
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct LimitReport {
     pub(crate) scheme: SchemeName,
-    /// Levels of uniform refinement, all vertices moved to the limit.
+    /// Levels of uniform refinement, all vertices moved to the limit; for certified distances, of the most divided part
+    /// of exact refinement.
     pub(crate) levels: usize,
     /// Whether the program chose the number of levels.
     pub(crate) chosen: bool,
+    /// How far the mesh that stands for the limit surface is from it at most; null where that is not proven.
+    pub(crate) error: Option<f64>,
     pub(crate) boundary: Boundary,
     pub(crate) crease_angle_degrees: Option<f64>,
 }

@@ -8,12 +8,13 @@ pub(crate) mod information;
 pub(crate) mod measurement;
 pub(crate) mod refinement;
 
-pub(crate) use comparison::ComparedMethod;
+pub(crate) use comparison::{CertifiedErrorReport, ComparedMethod};
+pub(crate) use diagnosis::DiagnosisReport;
 pub(crate) use information::{InformationReport, MeshInformation};
 pub(crate) use measurement::{DistanceReport, LimitReport, MeasureReport, SurfaceReport};
 pub(crate) use refinement::{
-    ErrorReport, ExactParametersReport, MethodReport, OutputReport, ParametersReport, RefineReport,
-    RoundEntry, SecondsReport, StepEntry, ViewReport,
+    CameraReport, ErrorReport, EstimateReport, ExactParametersReport, MethodReport, OutputReport,
+    ParametersReport, PredictionReport, RefineReport, RoundEntry, SecondsReport, StepEntry, ViewReport,
 };
 
 use serde::Serialize;

@@ -3,7 +3,7 @@
 use limitmesh::Mesh;
 use limitmesh::measure::{triangle_quality, watertightness};
 use limitmesh::mesh::Weld;
-use limitmesh::refine::{ErrorBounds, ExactProgress, ExactStop, StepReport, Stop};
+use limitmesh::refine::{Camera, ErrorBounds, ExactProgress, ExactStop, StepReport, Stop};
 use serde::Serialize;
 
 use super::InputReport;
@@ -60,6 +60,7 @@ pub(crate) fn exact_stop_name(stop: ExactStop) -> &'static str {
         ExactStop::Triangles => "triangles",
         ExactStop::TriangleCap => "triangle-cap",
         ExactStop::LevelCap => "level-cap",
+        ExactStop::MemoryCap => "memory-cap",
         _ => "other",
     }
 }
@@ -97,7 +98,7 @@ impl ParametersReport {
             limit: false,
             boundary: arguments.features.boundary.unwrap_or_default(),
             crease_angle_degrees: arguments.features.crease_angle,
-            max_triangles: arguments.max_triangles,
+            max_triangles: arguments.max_triangles(),
             weld: match arguments.build.options().weld {
                 Weld::Never => None,
                 Weld::Within(distance) => Some(distance),
@@ -117,7 +118,13 @@ pub(crate) struct ExactParametersReport {
     /// In per cent of the control mesh's diagonal.
     pub(crate) tolerance_percent: Option<f64>,
     pub(crate) triangles: Option<usize>,
+    pub(crate) pixels: Option<f64>,
+    pub(crate) cameras: Vec<CameraReport>,
+    pub(crate) balance: bool,
+    pub(crate) optimize: bool,
     pub(crate) max_levels: usize,
+    /// In bytes.
+    pub(crate) max_memory: Option<usize>,
     pub(crate) provenance: bool,
 }
 
@@ -152,6 +159,44 @@ impl From<&StepReport> for StepEntry {
             seconds: step.duration.as_secs_f64(),
         }
     }
+}
+
+/// A camera that the distance in pixels is for.
+#[derive(Debug, Serialize)]
+pub(crate) struct CameraReport {
+    pub(crate) eye: [f64; 3],
+    pub(crate) target: [f64; 3],
+    pub(crate) up: [f64; 3],
+    pub(crate) fov_degrees: f64,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+}
+
+impl From<&Camera> for CameraReport {
+    fn from(camera: &Camera) -> Self {
+        let &Camera { eye, target, up, fov_degrees, width, height } = camera;
+        Self { eye, target, up, fov_degrees, width, height }
+    }
+}
+
+/// The report of a dry run.
+#[derive(Debug, Serialize)]
+pub(crate) struct PredictionReport {
+    pub(crate) version: &'static str,
+    pub(crate) input: InputReport,
+    pub(crate) diagnosis: DiagnosisReport,
+    pub(crate) parameters: ParametersReport,
+    pub(crate) estimate: EstimateReport,
+}
+
+/// What a refinement would come to.
+#[derive(Debug, Serialize)]
+pub(crate) struct EstimateReport {
+    pub(crate) triangles: usize,
+    /// At most, about.
+    pub(crate) memory_bytes: usize,
+    /// Whether the triangles were counted rather than extrapolated.
+    pub(crate) counted: bool,
 }
 
 /// What one round of the exact method did.

@@ -6,6 +6,7 @@ use limitmesh_render::svg::{Drawing, Label, Pen};
 pub(super) const PAPER: [u8; 3] = [0, 114, 178];
 pub(super) const AMRESH: [u8; 3] = [213, 94, 0];
 pub(super) const UNIFORM: [u8; 3] = [0, 158, 115];
+pub(super) const EXACT: [u8; 3] = [204, 121, 167];
 pub(super) const INK: [u8; 3] = [29, 39, 51];
 pub(super) const PALE: [u8; 3] = [120, 131, 144];
 pub(super) const GRID: [u8; 3] = [223, 228, 234];

@@ -3,7 +3,8 @@
 use limitmesh::Mesh;
 use limitmesh::criterion::{Criterion, LimitNormal};
 use limitmesh::refine::{
-    RefineError, Refinement, SeamRule, StepwiseOptions, UniformOptions, stepwise, uniform,
+    Exact, ExactOptions, RefineError, Refinement, SeamRule, StepwiseOptions, UniformOptions, exact, stepwise,
+    uniform,
 };
 use limitmesh::scheme::Loop;
 
@@ -25,6 +26,11 @@ pub(super) fn adaptive(
     seam: SeamRule,
 ) -> Result<Refinement, RefineError> {
     stepwise(control, &Loop, criterion, &StepwiseOptions::default().levels(steps).seam(seam))
+}
+
+/// Exact refinement: the best mesh with at most so many faces, its vertices on the limit surface of `control`.
+pub(super) fn exact_with(control: &Mesh, faces: usize) -> Result<Exact, RefineError> {
+    exact(control, &Loop, &ExactOptions::default().triangles(faces))
 }
 
 /// Uniform refinement, vertices as the scheme leaves them.

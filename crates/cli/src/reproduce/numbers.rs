@@ -57,7 +57,7 @@ pub(super) fn signed(x: f64, decimals: usize) -> String {
 }
 
 /// The header of table1.csv.
-pub(super) const TABLE_1_COLUMNS: [&str; 9] = [
+pub(super) const TABLE_1_COLUMNS: [&str; 11] = [
     "model",
     "angle_degrees",
     "faces",
@@ -67,10 +67,12 @@ pub(super) const TABLE_1_COLUMNS: [&str; 9] = [
     "ratio_percent",
     "uniform_limit_faces",
     "uniform_limit_shd_percent",
+    "exact_faces",
+    "exact_shd_percent",
 ];
 
 /// The cells of a row of Table 1, as in the CSV and on the page.
-pub(super) fn table_1_cells(row: &Row) -> [String; 9] {
+pub(super) fn table_1_cells(row: &Row) -> [String; 11] {
     [
         row.model.to_owned(),
         row.angle_degrees.to_string(),
@@ -81,6 +83,8 @@ pub(super) fn table_1_cells(row: &Row) -> [String; 9] {
         ratio(row.ratio_percent),
         row.uniform_limit.faces.to_string(),
         shd(row.uniform_limit.shd_percent),
+        row.exact.faces.to_string(),
+        shd(row.exact.shd_percent),
     ]
 }
 

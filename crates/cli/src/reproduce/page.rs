@@ -101,9 +101,15 @@ fn models(results: &Results, portraits: &[Picture]) -> String {
 
 fn table_1(results: &Results) -> String {
     let over = "<tr class=\"over\"><th colspan=\"2\"></th><th colspan=\"2\">limit normal (paper)</th>\
-                <th colspan=\"2\">Amresh</th><th></th><th colspan=\"2\">uniform, limit vertices</th></tr>\n";
-    let head =
-        header(&["model", "angle", "faces", "SHD %", "faces", "SHD %", "ratio %", "faces", "SHD %"], &[]);
+                <th colspan=\"2\">Amresh</th><th></th><th colspan=\"2\">uniform, limit vertices</th>\
+                <th colspan=\"2\">exact, at equal triangles</th></tr>\n";
+    let head = header(
+        &[
+            "model", "angle", "faces", "SHD %", "faces", "SHD %", "ratio %", "faces", "SHD %", "faces",
+            "SHD %",
+        ],
+        &[],
+    );
     let groups: Vec<Vec<Vec<String>>> = results
         .table_1
         .iter()
@@ -117,7 +123,10 @@ fn table_1(results: &Results) -> String {
          surface, in per cent of the diagonal of the limit surface's bounding box. Amresh's method divides a face \
          whose normal differs from an edge neighbour's; its threshold is searched for the same number of faces. \
          Ratio: the paper's method by Amresh's. Beside them, uniform refinement with its vertices moved to the limit \
-         surface, at the level whose face count is nearest in ratio."
+         surface, at the level whose face count is nearest in ratio, and exact refinement, this project's own method: \
+         it refines the limit surface of the control mesh itself, so that no step drifts from it; all vertices lie on \
+         that surface, and the places with the greatest distance are divided first, until there are as many faces as \
+         the paper's method has."
     );
     let chart = Picture::new(
         "table1.svg",
@@ -138,14 +147,14 @@ fn table_1(results: &Results) -> String {
 }
 
 /// A row of Table 1 with its counts in groups of three digits and its ratio marked.
-fn table_1_row(cells: [String; 9], ratio_percent: f64) -> Vec<String> {
+fn table_1_row(cells: [String; 11], ratio_percent: f64) -> Vec<String> {
     let class = match against(ratio_percent) {
         Against::Below => " class=\"below\"",
         Against::Equal => "",
         Against::Above => " class=\"above\"",
     };
     let mut row = cells.to_vec();
-    for column in [2, 4, 7] {
+    for column in [2, 4, 7, 9] {
         row[column] = row[column].parse().map_or_else(|_| row[column].clone(), thousands);
     }
     row[1].push('°');

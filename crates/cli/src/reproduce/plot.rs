@@ -4,7 +4,7 @@
 use limitmesh_render::svg::{Drawing, Pen};
 use limitmesh_render::{Align, RenderError};
 
-use super::ink::{AMRESH, GRID, PALE, PAPER, UNIFORM, dot, plain, small, thin};
+use super::ink::{AMRESH, EXACT, GRID, PALE, PAPER, UNIFORM, dot, plain, small, thin};
 use super::study::{DriftPoint, Row};
 
 /// A logarithmic axis: from values to pixels, over whole decades or halves of them.
@@ -63,7 +63,8 @@ pub(super) fn table_1(rows: &[Row]) -> Result<String, RenderError> {
     let models = rows.chunk_by(|a, b| a.model == b.model).count();
     let bottom = top + rows.len() as f64 * step + models as f64 * gap;
     let mut drawing = Drawing::new(760.0, bottom + 44.0)?;
-    let values = rows.iter().flat_map(|r| [&r.paper, &r.amresh, &r.uniform_limit]).map(|m| m.shd_percent);
+    let values =
+        rows.iter().flat_map(|r| [&r.paper, &r.amresh, &r.uniform_limit, &r.exact]).map(|m| m.shd_percent);
     let axis = LogAxis::new(values, left, right);
     for tick in axis.ticks() {
         let x = axis.at(tick);
@@ -77,6 +78,7 @@ pub(super) fn table_1(rows: &[Row]) -> Result<String, RenderError> {
         (PAPER, "limit normal (paper)"),
         (AMRESH, "Amresh"),
         (UNIFORM, "uniform, limit vertices (nearest count)"),
+        (EXACT, "exact"),
     ];
     legend(&mut drawing, left, 24.0, &entries);
     let mut y = top;
@@ -98,11 +100,10 @@ pub(super) fn table_1(rows: &[Row]) -> Result<String, RenderError> {
 }
 
 fn dots(drawing: &mut Drawing, row: &Row, axis: &LogAxis, y: f64) {
-    let [paper, amresh, uniform] =
-        [&row.paper, &row.amresh, &row.uniform_limit].map(|m| axis.at(m.shd_percent));
-    let (low, high) = (paper.min(amresh).min(uniform), paper.max(amresh).max(uniform));
+    let all = [&row.uniform_limit, &row.amresh, &row.paper, &row.exact].map(|m| axis.at(m.shd_percent));
+    let (low, high) = (all.into_iter().fold(f64::MAX, f64::min), all.into_iter().fold(f64::MIN, f64::max));
     drawing.line([low, y], [high, y], &thin(PALE).opacity(0.6));
-    for (x, colour) in [(uniform, UNIFORM), (amresh, AMRESH), (paper, PAPER)] {
+    for (x, colour) in all.into_iter().zip([UNIFORM, AMRESH, PAPER, EXACT]) {
         dot(drawing, [x, y], 5.0, colour);
     }
 }

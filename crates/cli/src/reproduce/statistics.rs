@@ -39,6 +39,10 @@ pub(super) struct Table1Statistics<'a> {
     pub(super) uniform_nearer_and_smaller: usize,
     /// Least, median and greatest factor from its distance to the paper's method's.
     pub(super) uniform_factors: [f64; 3],
+    /// Rows in which exact refinement is nearer to the limit surface than the paper's method, with no more faces.
+    pub(super) exact_nearer: usize,
+    /// Least, median and greatest factor from its distance to the paper's method's.
+    pub(super) exact_factors: [f64; 3],
     /// Rows whose Amresh count is more than 1 % off, with the difference in per cent.
     pub(super) unmatched: Vec<(&'a Row, f64)>,
     /// Greatest difference of the counts, in per cent.
@@ -64,6 +68,13 @@ impl<'a> Table1Statistics<'a> {
                 .filter(|r| r.uniform_limit.faces <= r.paper.faces)
                 .count(),
             uniform_factors: spread(rows.iter().map(factor)),
+            exact_nearer: rows
+                .iter()
+                .filter(|r| r.exact.shd_percent < r.paper.shd_percent && r.exact.faces <= r.paper.faces)
+                .count(),
+            exact_factors: spread(
+                rows.iter().map(|r| r.paper.shd_percent / r.exact.shd_percent.max(f64::MIN_POSITIVE)),
+            ),
             unmatched: rows.iter().map(|&r| (r, off(r))).filter(|(_, off)| off.abs() > 1.0).collect(),
             worst_match: rows.iter().map(|r| off(r).abs()).fold(0.0, f64::max),
             rows,

@@ -45,6 +45,10 @@ pub(super) struct Row {
     pub(super) ratio_percent: f64,
     pub(super) uniform_limit: Measured,
     pub(super) uniform_limit_level: usize,
+    /// Exact refinement with at most as many faces as the paper's method.
+    pub(super) exact: Measured,
+    /// Upper bound of its distance, which is proven.
+    pub(super) exact_upper_percent: f64,
 }
 
 /// One step count of the paper's method, and uniform refinement with limit vertices at as many levels.
@@ -159,6 +163,13 @@ impl<'a> Bench<'a> {
         Self { model, control, reference, level, settings, uniform: vec![None; level], paper: Vec::new() }
     }
 
+    /// A length in per cent of the diagonal of the limit surface's bounding box.
+    fn percent(&self, length: f64) -> f64 {
+        let [low, high] = self.reference.bounding_box();
+        let diagonal = (0..3).map(|axis| (high[axis] - low[axis]).powi(2)).sum::<f64>().sqrt();
+        100.0 * length / diagonal
+    }
+
     fn measure(&self, surface: &Mesh) -> anyhow::Result<Measured> {
         let tree = Bvh::new(surface.as_triangles())?;
         let options = SamplingOptions::default().samples(self.settings.samples);
@@ -208,6 +219,7 @@ impl<'a> Bench<'a> {
         let paper = self.paper(angle, steps, SEAMS[0])?;
         let matched = match_neighbour_angle(self.control, &Loop, steps, paper.faces, angle)?;
         let amresh = self.measure(&matched.refinement.mesh)?;
+        let exact = methods::exact_with(self.control, paper.faces)?;
         let uniform_limit_level = methods::nearest_level(self.control.face_count(), paper.faces);
         Ok(Row {
             model: self.model,
@@ -218,6 +230,8 @@ impl<'a> Bench<'a> {
             ratio_percent: ratio_percent(paper.shd_percent, amresh.shd_percent),
             uniform_limit: self.uniform_limit(uniform_limit_level)?,
             uniform_limit_level,
+            exact: self.measure(&exact.mesh)?,
+            exact_upper_percent: self.percent(exact.error.upper),
         })
     }
 

@@ -1,4 +1,6 @@
-//! `compare`: four methods at nearly equal triangle counts.
+//! `compare`: seven methods at nearly equal triangle counts.
+
+use serde_json::Value;
 
 use crate::common::{has_keys, run};
 
@@ -7,7 +9,10 @@ fn methods_stand_side_by_side_at_nearly_equal_counts() {
     let list = run("compare builtin:head --json --samples 20000", &[]).expect(0).json();
     let list = list.as_array().expect("a list");
     let names: Vec<_> = list.iter().map(|m| m["method"].as_str().expect("a name")).collect();
-    assert_eq!(names, ["limit-normal", "amresh", "uniform", "uniform-limit"]);
+    assert_eq!(
+        names,
+        ["limit-normal", "amresh", "uniform", "uniform-limit", "exact", "exact-balance", "exact-optimize"]
+    );
     for method in list {
         has_keys(
             method,
@@ -20,10 +25,23 @@ fn methods_stand_side_by_side_at_nearly_equal_counts() {
     let triangles = |i: usize| list[i]["triangles"].as_f64().expect("a count");
     assert!((triangles(0) - triangles(1)).abs() <= 0.02 * triangles(0), "{list:?}");
     let levels = list[2]["levels"].as_u64().expect("a count");
-    for uniform in &list[2..] {
+    for uniform in &list[2..4] {
         assert_eq!(uniform["triangles"].as_u64(), Some(142 * 4u64.pow(levels as u32)));
         assert!(uniform["angle_degrees"].is_null());
     }
+    // At no more triangles, the exact method is nearer to the limit surface than all others, and its bound holds.
+    let exact = &list[4];
+    assert!(triangles(4) <= triangles(0) && triangles(4) > 0.9 * triangles(0));
+    let percent = |method: &Value| method["symmetric_percent"].as_f64().expect("a number");
+    assert!(percent(exact) < percent(&list[0]) && percent(exact) < percent(&list[1]));
+    has_keys(exact, "certified.lower certified.upper certified.lower_percent certified.upper_percent");
+    assert!(percent(exact) <= 1.02 * exact["certified"]["upper_percent"].as_f64().expect("a number"));
+    let proven = |method: &Value| method["certified"]["upper"].as_f64().expect("a number");
+    for better in &list[5..] {
+        assert!(better["triangles"].as_f64() <= Some(triangles(0)));
+        assert!(percent(better) < percent(&list[0]) && proven(better) < proven(exact), "{better}");
+    }
+    assert!(list[..4].iter().all(|method| method["certified"].is_null()));
     for other in [levels.saturating_sub(1), levels + 1] {
         let miss = |level: u64| (142.0 * 4f64.powi(level as i32) - triangles(0)).abs();
         assert!(miss(levels) <= miss(other));
@@ -51,7 +69,7 @@ fn the_table_is_aligned() {
     let text = run("compare builtin:torus --samples 20000", &[]).expect(0).stdout;
     let rows: Vec<&str> =
         text.lines().skip_while(|line| !line.starts_with("method")).take_while(|l| !l.is_empty()).collect();
-    assert_eq!(rows.len(), 5, "{text}");
+    assert_eq!(rows.len(), 8, "{text}");
     let widths: Vec<usize> = rows.iter().map(|row| row.chars().count()).collect();
     assert!(widths.iter().all(|&width| width == widths[0]), "{text}");
 }

@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 use crate::common::{claimed, counts, file, folder, has_keys, run, soup};
 
 const CONTRACT: &str = "parameters.method parameters.exact.tolerance parameters.exact.tolerance_percent
-    parameters.exact.triangles parameters.exact.max_levels parameters.exact.provenance rounds steps levels stop
+    parameters.exact.triangles parameters.exact.pixels parameters.exact.cameras parameters.exact.balance
+    parameters.exact.max_memory parameters.exact.max_levels parameters.exact.provenance rounds steps levels stop
     error.lower error.upper error.lower_percent error.upper_percent error.diagonal error.at error.certified";
 
 /// Refines to an exit code and gives the report, after checking that it fits the file and itself.
@@ -47,8 +48,8 @@ fn a_thousandth_of_the_diagonal_is_kept_by_default() {
     let info = run("info builtin:cup --json", &[]).expect(0).json();
     let diagonal = number(&info["mesh"]["bounding_box"]["diagonal"]);
     let expected = json!({
-        "tolerance": 0.1 / 100.0 * diagonal, "tolerance_percent": 0.1, "triangles": null, "max_levels": 24,
-        "provenance": false
+        "tolerance": 0.1 / 100.0 * diagonal, "tolerance_percent": 0.1, "triangles": null, "pixels": null,
+        "cameras": [], "balance": false, "optimize": false, "max_levels": 24, "max_memory": null, "provenance": false
     });
     assert_eq!(report["parameters"]["exact"], expected);
     assert_eq!(report["parameters"]["levels"], Value::Null);
@@ -122,22 +123,142 @@ fn what_no_machine_can_meet_ends_in_a_conforming_mesh() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     for tolerance in ["1e-300", "1e-12%"] {
-        for (cap, stop) in [("--max-triangles 5000", "triangle-cap"), ("--max-levels 2", "level-cap")] {
+        let caps = [
+            ("--max-triangles 5000", "triangle-cap"),
+            ("--max-levels 2", "level-cap"),
+            ("--max-memory 2M", "memory-cap"),
+        ];
+        for (cap, stop) in caps {
             let options = format!("--tolerance {tolerance} {cap}");
             let report = refine(3, "builtin:cup", &output, &options);
             assert_eq!(report["stop"], stop, "{options}");
             assert_eq!(report["output"]["watertight"], true);
-            if stop == "triangle-cap" {
-                assert!(triangles(&report) <= 5000 && triangles(&report) > 2000);
-            } else {
-                assert_eq!(report["levels"], 2);
+            match stop {
+                "triangle-cap" => assert!(triangles(&report) <= 5000 && triangles(&report) > 2000),
+                "level-cap" => assert_eq!(report["levels"], 2),
+                // Each triangle takes more than the 86 bytes of its indices, twins, positions and normals.
+                _ => assert!(triangles(&report) < (2 << 20) / 86 && triangles(&report) > 700),
             }
             let told = run(&format!("refine builtin:cup -o {{}} -q {options}"), &[&output]).expect(3);
-            let cap = cap.replace("5000", "5,000");
+            let cap = cap.replace("5000", "5,000").replace("2M", "2.0 MiB");
             assert!(told.stderr.contains(&cap) && told.stderr.contains("before the tolerance of 1e-"));
             assert!(told.stderr.contains("was written with") && told.stderr.contains("certified"));
         }
     }
+}
+
+#[test]
+fn cameras_see_the_detail() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let camera = |eye: &str| format!("--camera {eye},0,0,0,0,1,0,40,800x600");
+    let front = refine(0, "builtin:sphere", &output, &format!("--pixels 0.5 {}", camera("0,0,5")));
+    assert_eq!(front["parameters"]["exact"]["pixels"], 0.5);
+    let seen = json!([{
+        "eye": [0.0, 0.0, 5.0], "target": [0.0, 0.0, 0.0], "up": [0.0, 1.0, 0.0], "fov_degrees": 40.0, "width": 800,
+        "height": 600
+    }]);
+    assert_eq!(front["parameters"]["exact"]["cameras"], seen);
+    assert_eq!(front["stop"], "met");
+    // Most of the detail is on the side of the camera.
+    let centres = soup(&output);
+    let in_front = centres
+        .faces
+        .iter()
+        .filter(|face| face.iter().map(|&v| centres.positions[v as usize][2]).sum::<f64>() > 0.0)
+        .count();
+    assert!(in_front * 2 > centres.faces.len() * 11 / 10, "{in_front} of {}", centres.faces.len());
+    // From farther away less is needed, for two cameras more than for one, of one pixel where nothing is said.
+    let far = refine(0, "builtin:sphere", &output, &format!("--pixels 0.5 {}", camera("0,0,50")));
+    assert!(triangles(&far) < triangles(&front));
+    let both = format!("--pixels 0.5 {} {}", camera("0,0,5"), camera("0,0,-5"));
+    let both = refine(0, "builtin:sphere", &output, &both);
+    assert!(triangles(&both) > triangles(&front));
+    assert_eq!(refine(0, "builtin:sphere", &output, &camera("0,0,5"))["parameters"]["exact"]["pixels"], 1.0);
+    // The same from a file.
+    let lines =
+        "# two cameras\n0,0,5, 0,0,0, 0,1,0, 40, 800x600 # the front\n\n0,0,-5,0,0,0,0,1,0,40,800x600\n";
+    let path = file(&folder, "path.txt", lines);
+    let words = "refine builtin:sphere -o {} --pixels 0.5 --camera-path {} --report -";
+    let report = run(words, &[&output, &path]).expect(0).json();
+    assert_eq!(triangles(&report), triangles(&both));
+}
+
+#[test]
+fn cameras_that_cannot_be_used_are_refused() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let path = file(&folder, "path.txt", "0,0,5,0,0,0,0,1,0,40,800x600\n0,0,5,0,0,0,0,0,0,40,800x600\n");
+    let words = "refine builtin:sphere -o {} --camera-path {}";
+    run(words, &[&output, &path]).expect(1).saying("path.txt, line 2").saying("no upward direction");
+    let empty = file(&folder, "empty.txt", "# nothing\n");
+    run(words, &[&output, &empty]).expect(1).saying("no camera in it");
+    run(words, &[&output, &folder.path().join("none.txt")]).expect(1).saying("none.txt cannot be read");
+    let inside = "refine builtin:sphere -o {} --camera 0,0,0.1,0,0,5,0,1,0,40,800x600";
+    run(inside, &[&output]).expect(2).saying("stands inside the mesh");
+    assert!(!output.exists());
+}
+
+#[test]
+fn a_view_makes_the_angle_depend_on_the_viewer() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let all = refine(0, "builtin:icosphere", &output, "--angle 3");
+    // Triangles of the half that looks away from a viewer who looks down from above.
+    let behind = || {
+        let soup = soup(&output);
+        let low = |face: &[u32]| face.iter().all(|&v| soup.positions[v as usize][2] < -0.5);
+        soup.faces.iter().filter(|face| low(face)).count()
+    };
+    let behind_all = behind();
+    let seen = refine(0, "builtin:icosphere", &output, "--angle 3 --view 0,0,-1 --dilatation 2");
+    assert!(behind() < behind_all, "{} {behind_all}", behind());
+    assert!(triangles(&all) > 1000);
+    assert_eq!(seen["parameters"]["view"]["dilatation"], 2.0);
+}
+
+#[test]
+fn balance_needs_fewer_triangles_for_the_same_tolerance() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let on_surface = refine(0, "builtin:cup", &output, "--tolerance 0.05%");
+    let balanced = refine(0, "builtin:cup", &output, "--tolerance 0.05% --balance");
+    assert_eq!(balanced["parameters"]["exact"]["balance"], true);
+    assert!(number(&balanced["error"]["upper_percent"]) <= 0.05);
+    assert!(triangles(&balanced) < triangles(&on_surface));
+}
+
+#[test]
+fn optimisation_needs_fewer_triangles_and_keeps_the_tolerance() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let plain = refine(0, "builtin:bumpy", &output, "--tolerance 0.3%");
+    let optimised = refine(0, "builtin:bumpy", &output, "--tolerance 0.3% --optimize --provenance");
+    assert!(number(&optimised["error"]["upper_percent"]) <= 0.3);
+    assert!(triangles(&optimised) * 10 < triangles(&plain) * 8, "{optimised:#}");
+    assert_eq!(optimised["output"]["euler_characteristic"], plain["output"]["euler_characteristic"]);
+    // Fewer triangles than the control mesh has are possible.
+    let few = refine(0, "builtin:bumpy", &output, "--triangles 300 --optimize");
+    assert!(triangles(&few) <= 300);
+}
+
+#[test]
+fn a_dry_run_predicts_and_writes_nothing() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    for tolerance in ["0.1%", "0.01%"] {
+        let words = format!("refine builtin:cup --tolerance {tolerance} --dry-run");
+        let predicted = run(&format!("{words} --report -"), &[]).expect(0).json();
+        has_keys(&predicted, "version input.path diagnosis.clean parameters.exact estimate.memory_bytes");
+        let estimate = number(&predicted["estimate"]["triangles"]);
+        let found = triangles(&refine(0, "builtin:cup", &output, &format!("--tolerance {tolerance}"))) as f64;
+        assert!((0.5..2.0).contains(&(estimate / found)), "{tolerance}: {estimate} {found}");
+        let text = run(&words, &[]).expect(0).stdout;
+        assert!(text.contains("triangles") && text.contains("nothing was written"), "{text}");
+    }
+    std::fs::remove_file(&output).expect("removable");
+    run("refine builtin:cup -o {} --dry-run", &[&output]).expect(0);
+    assert!(!output.exists());
 }
 
 #[test]

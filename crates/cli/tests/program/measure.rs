@@ -172,5 +172,51 @@ fn what_belongs_to_certified_distances_and_what_does_not() {
     run(&format!("{two} --max-work 5"), &[]).expect(2).saying("--certified");
     run(&format!("{two} --certified --gap -1"), &[]).expect(2).saying("at least 0");
     run(&format!("{two} --certified --samples 9"), &[]).expect(2).saying("--samples");
-    run("measure builtin:cup --limit-of builtin:cup --certified", &[]).expect(2).saying("two meshes");
+    run("measure builtin:cup --limit-of builtin:cup --certified --reference-levels 3", &[])
+        .expect(2)
+        .saying("sampled");
+}
+
+#[test]
+fn a_certified_interval_holds_the_distance_to_the_true_limit_surface() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let refined = run("refine builtin:cup -o {} --tolerance 0.5% --report -", &[&output]).expect(0).json();
+    let (lower, upper) = (number(&refined["error"]["lower"]), number(&refined["error"]["upper"]));
+    for options in ["", "--gap 0.05%"] {
+        let words = format!("measure {{}} --limit-of builtin:cup --certified --json {options}");
+        let report = run(&words, &[&output]).expect(0).json();
+        let h = &report["hausdorff"];
+        let (low, high) = (number(&h["lower"]), number(&h["upper"]));
+        // Two intervals for one distance overlap.
+        assert!(low <= upper && lower <= high, "{low} {high} {lower} {upper}");
+        let wide =
+            if options.is_empty() { 0.1 * low } else { 0.0005 * number(&refined["error"]["diagonal"]) };
+        assert!(high - low <= wide * (1.0 + 1e-9), "{low} {high}");
+        let limit = &report["reference"]["limit"];
+        assert!(number(&limit["error"]) > 0.0 && number(&limit["error"]) <= 0.5 * wide);
+        assert_eq!(h["converged"], true);
+    }
+    let text = run("measure {} --limit-of builtin:cup --certified", &[&output]).expect(0).stdout;
+    assert!(text.contains("limit surface of builtin:cup") && text.contains("certainly within"), "{text}");
+    let cut = "measure {} --limit-of builtin:cup --certified --gap 0.01% --max-work 1";
+    assert!(run(cut, &[&output]).expect(3).stdout.contains("at most"));
+    run("measure {} --limit-of builtin:cup --certified --reference-levels 3", &[&output]).expect(2);
+    run("measure {} --limit-of builtin:cup --certified --scheme butterfly", &[&output]).expect(2);
+}
+
+/// Uniform refinement and a sphere: distances to the limit surface that no exact refinement had a part in.
+#[test]
+fn the_distance_of_other_meshes_to_the_limit_surface_is_certified() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    for options in ["--method uniform --levels 2 --limit", "--method limit-normal --angle 8"] {
+        run(&format!("refine builtin:torus -o {{}} {options}"), &[&output]).expect(0);
+        let sampled = measure("{} --limit-of builtin:torus", &[&output]);
+        let h = certified("{} --limit-of builtin:torus", &[&output], 0);
+        let sampled = number(&sampled["hausdorff"]["symmetric"]);
+        let (low, high) = (number(&h["lower"]), number(&h["upper"]));
+        // The samples' own limit surface is a mesh as well: off by hundredths of this distance.
+        assert!(sampled <= 1.02 * high && sampled >= 0.9 * low, "{options}: {sampled} in {low}, {high}");
+    }
 }

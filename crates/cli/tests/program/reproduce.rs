@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::common::{file, folder, names, run};
 
 const COLUMNS: &str = "model,angle_degrees,faces,shd_percent,amresh_faces,amresh_shd_percent,ratio_percent,\
-                       uniform_limit_faces,uniform_limit_shd_percent";
+                       uniform_limit_faces,uniform_limit_shd_percent,exact_faces,exact_shd_percent";
 const MODELS: [&str; 6] = ["bunny", "teddy", "shark", "cup", "radish", "cusp"];
 
 fn read(folder: &Path, name: &str) -> String {
@@ -77,12 +77,14 @@ fn csv_is_sound(csv: &str) -> Vec<Vec<String>> {
     }
     for row in &rows {
         let numbers: Vec<f64> = row[1..].iter().map(|cell| cell.parse().expect("a number")).collect();
-        assert_eq!(numbers.len(), 8, "{row:?}");
+        assert_eq!(numbers.len(), 10, "{row:?}");
         assert!(numbers.iter().all(|x| x.is_finite() && *x > 0.0), "{row:?}");
         let [faces, shd, amresh_faces, amresh_shd, ratio] = [1, 2, 3, 4, 5].map(|i| numbers[i]);
         // The cells are rounded to four digits and to tenths of a per cent.
         assert!((ratio - 100.0 * shd / amresh_shd).abs() < 0.06 + 1e-3 * ratio, "{row:?}");
         assert!((amresh_faces / faces - 1.0).abs() < 0.05, "{row:?}");
+        // Exact refinement has no more faces than the paper's method, and is not farther away.
+        assert!(numbers[8] <= faces && numbers[8] > 0.8 * faces && numbers[9] <= shd, "{row:?}");
     }
     rows
 }
@@ -135,6 +137,12 @@ fn json_agrees(json: &str, rows: &[Vec<String>]) {
             ["shd_percent", "forward_percent", "backward_percent"].map(|key| paper[key].as_f64().expect(key));
         assert!((shd - forward.max(backward)).abs() < 1e-12 * shd, "equation (16): {paper}");
         assert!((shd - row[3].parse::<f64>().expect("a number")).abs() < 1e-3 * shd);
+    }
+    for row in studies.iter().flat_map(|study| study["rows"].as_array().expect("rows")) {
+        let [sampled, upper] = [&row["exact"]["shd_percent"], &row["exact_upper_percent"]]
+            .map(|x| x.as_f64().expect("a number"));
+        // The reference is itself a little off the limit surface.
+        assert!(sampled <= 1.1 * upper, "{row}");
     }
     // Uniform refinement of the sphere's 360 faces, twice, and fewer where the view matters.
     let sphere = &json["figure_9"]["models"][0];

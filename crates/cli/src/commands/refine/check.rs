@@ -10,8 +10,8 @@ use crate::failure::{UsageError, usage};
 use crate::input;
 use crate::output;
 
-/// Checks options and names of files; gives the format to write.
-pub(super) fn check(arguments: &RefineArguments) -> anyhow::Result<Format> {
+/// Checks options and names of files; gives the format to write, none for a dry run without a name.
+pub(super) fn check(arguments: &RefineArguments) -> anyhow::Result<Option<Format>> {
     match arguments.method {
         Method::Exact => stepwise_options(arguments)?,
         _ => exact_options(arguments)?,
@@ -20,9 +20,15 @@ pub(super) fn check(arguments: &RefineArguments) -> anyhow::Result<Format> {
         uniform(arguments)?;
     }
     let view = arguments.view.is_some() || arguments.eye.is_some();
-    if view && arguments.method != Method::LimitNormal {
+    if view && !matches!(arguments.method, Method::Exact | Method::LimitNormal) {
         return usage(
-            "--view and --eye make the limit-normal method depend on the viewer; they need --method limit-normal",
+            "--view and --eye make the angle from limit normals depend on the viewer; they need --method exact or \
+             limit-normal",
+        );
+    }
+    if view && arguments.method == Method::Exact && arguments.angle.is_none() {
+        return usage(
+            "--view and --eye make --angle depend on the viewer; with --method exact they need one",
         );
     }
     if arguments.dilatation.is_some() && !view {
@@ -30,12 +36,16 @@ pub(super) fn check(arguments: &RefineArguments) -> anyhow::Result<Format> {
             "--dilatation widens the angle of faces that look at a viewer; it needs --view or --eye",
         );
     }
-    let format = Format::from_path(&arguments.output).map_err(|unknown| UsageError(unknown.to_string()))?;
-    if arguments.exact.provenance && format != Format::Ply {
+    let format = arguments.output.as_deref().map(Format::from_path).transpose();
+    let format = format.map_err(|unknown| UsageError(unknown.to_string()))?;
+    if arguments.exact.provenance && format.is_some_and(|format| format != Format::Ply) {
         return usage(format!(
             "--provenance writes properties of PLY files; {} is none",
-            arguments.output.display()
+            arguments.output_name()
         ));
+    }
+    if arguments.exact.dry_run && arguments.picture.is_some() {
+        return usage("--dry-run gives no mesh that --picture could draw");
     }
     files(arguments)?;
     Ok(format)
@@ -54,6 +64,14 @@ fn stepwise_options(arguments: &RefineArguments) -> anyhow::Result<()> {
     if arguments.limit {
         return usage("--limit has no effect with --method exact, whose vertices lie on the limit surface");
     }
+    let exact = &arguments.exact;
+    let cameras = !exact.camera.is_empty() || !exact.camera_path.is_empty();
+    if exact.optimize && (arguments.angle.is_some() || cameras || exact.balance) {
+        return usage("--optimize keeps --tolerance and --triangles; not --angle, cameras or --balance");
+    }
+    if exact.pixels.is_some() && !cameras {
+        return usage("--pixels is what cameras see; it needs --camera or --camera-path");
+    }
     Ok(())
 }
 
@@ -63,6 +81,13 @@ fn exact_options(arguments: &RefineArguments) -> anyhow::Result<()> {
     let given = [
         ("--tolerance", exact.tolerance.is_some()),
         ("--triangles", exact.triangles.is_some()),
+        ("--pixels", exact.pixels.is_some()),
+        ("--camera", !exact.camera.is_empty()),
+        ("--camera-path", !exact.camera_path.is_empty()),
+        ("--balance", exact.balance),
+        ("--optimize", exact.optimize),
+        ("--max-memory", exact.max_memory.is_some()),
+        ("--dry-run", exact.dry_run),
         ("--max-levels", exact.max_levels.is_some()),
         ("--provenance", exact.provenance),
     ];
@@ -87,9 +112,13 @@ fn uniform(arguments: &RefineArguments) -> anyhow::Result<()> {
 
 /// Checks that what is to be written can be, replaces no input, and is written once.
 fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
-    output::check_folder(&arguments.output)?;
     let input = Path::new(&arguments.input);
-    let mut written = vec![arguments.output.as_path()];
+    let mut written = Vec::with_capacity(3);
+    if let Some(output) = arguments.output.as_deref() {
+        output::check_folder(output)?;
+        written.push(output);
+    }
+    let beside_mesh = written.len();
     if let Some(picture) = &arguments.picture {
         picture::check_name(picture)?;
         written.push(picture);
@@ -98,7 +127,7 @@ fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
         output::check_folder(report)?;
         written.push(report);
     }
-    if let Some(path) = written[1..].iter().find(|path| input::same_file(input, path)) {
+    if let Some(path) = written[beside_mesh..].iter().find(|path| input::same_file(input, path)) {
         return usage(format!("{} is the input; a report or picture would replace it", path.display()));
     }
     for (i, path) in written.iter().enumerate() {

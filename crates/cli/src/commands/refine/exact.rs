@@ -4,36 +4,56 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use limitmesh::Mesh;
-use limitmesh::refine::{Exact, ExactOptions, ExactProgress, ExactStop, RefineError, exact};
+use limitmesh::refine::{Camera, Exact, ExactOptions, ExactProgress, ExactStop, RefineError, exact};
 
-use super::Refined;
 use super::provenance::Provenance;
+use super::{Refined, cameras, view, view_report};
 use crate::arguments::{Extent, RefineArguments};
 use crate::failure::{Outcome, usage};
 use crate::progress::Progress;
 use crate::report::refinement::exact_stop_name;
-use crate::report::{ErrorReport, ExactParametersReport, MethodReport, ParametersReport, RoundEntry};
-use crate::words::{counted, thousands};
+use crate::report::{
+    CameraReport, ErrorReport, ExactParametersReport, MethodReport, ParametersReport, RoundEntry,
+};
+use crate::words::{bytes, counted, thousands};
 
 /// The tolerance where no goal is given: facets can hardly be seen then in a picture a thousand pixels wide.
 const USUAL_TOLERANCE: Extent = Extent::Percent(0.1);
 
+/// The distance in pixels where cameras are given without one.
+const USUAL_PIXELS: f64 = 1.0;
+
 /// The goals, with those that hold where none is given.
-#[derive(Clone, Copy)]
-struct Goals {
+pub(super) struct Goals {
     tolerance: Option<Extent>,
     /// Of the control mesh's bounding box.
     diagonal: f64,
     angle_degrees: Option<f64>,
     triangles: Option<usize>,
+    pixels: Option<f64>,
+    cameras: Vec<Camera>,
 }
 
 impl Goals {
-    fn new(arguments: &RefineArguments, diagonal: f64) -> Self {
+    /// # Errors
+    /// A file of cameras that cannot be read, or a camera inside the mesh.
+    pub(super) fn new(arguments: &RefineArguments, control: &Mesh) -> anyhow::Result<Self> {
         let exact = &arguments.exact;
-        let none = exact.tolerance.is_none() && exact.triangles.is_none() && arguments.angle.is_none();
+        let cameras = cameras::all(arguments)?;
+        cameras::check(&cameras, control, arguments)?;
+        let none = exact.tolerance.is_none()
+            && exact.triangles.is_none()
+            && arguments.angle.is_none()
+            && cameras.is_empty();
         let tolerance = exact.tolerance.or(none.then_some(USUAL_TOLERANCE));
-        Self { tolerance, diagonal, angle_degrees: arguments.angle, triangles: exact.triangles }
+        Ok(Self {
+            tolerance,
+            diagonal: control.diagonal(),
+            angle_degrees: arguments.angle,
+            triangles: exact.triangles,
+            pixels: (!cameras.is_empty()).then(|| exact.pixels.unwrap_or(USUAL_PIXELS)),
+            cameras,
+        })
     }
 
     /// The tolerance in the mesh's unit.
@@ -41,8 +61,18 @@ impl Goals {
         self.tolerance.map(|tolerance| tolerance.length(self.diagonal))
     }
 
-    fn options<'a>(&self, arguments: &RefineArguments) -> ExactOptions<'a> {
-        let mut options = ExactOptions::default().max_triangles(Some(arguments.max_triangles));
+    pub(super) fn options<'a>(&self, arguments: &RefineArguments) -> ExactOptions<'a> {
+        let mut options = ExactOptions::default()
+            .max_triangles(Some(arguments.max_triangles()))
+            .max_memory(arguments.exact.max_memory)
+            .balance(arguments.exact.balance)
+            .optimize(arguments.exact.optimize);
+        if let Some(pixels) = self.pixels {
+            options = options.pixels(pixels, self.cameras.clone());
+        }
+        if let Some(view) = view(arguments) {
+            options = options.view(view);
+        }
         if let Some(length) = self.length() {
             options = options.tolerance(length);
         }
@@ -65,7 +95,8 @@ impl Goals {
             Extent::Percent(percent) => format!("the tolerance of {} %", as_typed(percent)),
         });
         let angle = self.angle_degrees.map(|degrees| format!("the angle of {}°", as_typed(degrees)));
-        let goals: Vec<String> = [tolerance, angle].into_iter().flatten().collect();
+        let pixels = self.pixels.map(|pixels| format!("the {} pixels", as_typed(pixels)));
+        let goals: Vec<String> = [tolerance, angle, pixels].into_iter().flatten().collect();
         if goals.is_empty() { "the triangles asked for".to_owned() } else { goals.join(" and ") }
     }
 }
@@ -78,28 +109,25 @@ fn as_typed(x: f64) -> String {
 /// Refines until the goals are met or a cap is reached.
 pub(super) fn run(
     control: &Mesh,
+    goals: &Goals,
     arguments: &RefineArguments,
     progress: &Progress,
 ) -> anyhow::Result<Refined> {
-    let diagonal = control.diagonal();
-    let goals = Goals::new(arguments, diagonal);
     let rounds = Mutex::new(Vec::new());
     let observer = |round: &ExactProgress| {
         progress.stage(format!("refining: {}", counted(round.triangles, "triangle", "triangles")));
-        rounds.lock().unwrap_or_else(PoisonError::into_inner).push(RoundEntry::from(round));
+        let mut rounds = rounds.lock().unwrap_or_else(PoisonError::into_inner);
+        // Where refinement tries two ways, the second starts again; the report counts on.
+        let number = rounds.len() + 1;
+        rounds.push(RoundEntry { round: number, ..round.into() });
         ControlFlow::Continue(())
     };
     progress.stage(format!("refining {}", counted(control.face_count(), "triangle", "triangles")));
     let options = goals.options(arguments).observer(&observer);
-    let found = match exact(control, arguments.scheme.scheme(), &options) {
-        Err(why @ RefineError::NotExact { .. }) => {
-            return usage(format!("{why}; --method uniform, limit-normal and amresh take any"));
-        }
-        found => found?,
-    };
+    let found = exact(control, arguments.scheme.scheme(), &options).or_else(refused)?;
     let rounds = rounds.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let error = ErrorReport::new(&found.error, diagonal);
-    let outcome = outcome(&found, &goals, &error, arguments);
+    let error = ErrorReport::new(&found.error, goals.diagonal);
+    let outcome = outcome(&found, goals, &error, arguments);
     let Exact { mesh, normals, origins, parents, stop, levels, .. } = found;
     Ok(Refined {
         mesh,
@@ -119,17 +147,32 @@ pub(super) fn run(
     })
 }
 
+/// A scheme that exact refinement is not for is a matter of the command line.
+pub(super) fn refused<T>(why: RefineError) -> anyhow::Result<T> {
+    match why {
+        RefineError::NotExact { .. } => {
+            usage(format!("{why}; --method uniform, limit-normal and amresh take any"))
+        }
+        why => Err(why.into()),
+    }
+}
+
 /// What was asked for, defaults filled in.
-pub(super) fn parameters(arguments: &RefineArguments, diagonal: f64) -> ParametersReport {
-    let goals = Goals::new(arguments, diagonal);
+pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> ParametersReport {
     let options = goals.options(arguments);
     ParametersReport {
         angle_degrees: goals.angle_degrees,
+        view: view_report(arguments),
         exact: Some(ExactParametersReport {
             tolerance: goals.length(),
-            tolerance_percent: goals.length().map(|length| 100.0 * length / diagonal),
+            tolerance_percent: goals.length().map(|length| 100.0 * length / goals.diagonal),
             triangles: goals.triangles,
+            pixels: goals.pixels,
+            cameras: goals.cameras.iter().map(CameraReport::from).collect(),
+            balance: options.balance,
+            optimize: options.optimize,
             max_levels: options.max_levels,
+            max_memory: options.max_memory,
             provenance: arguments.exact.provenance,
         }),
         ..ParametersReport::common(arguments)
@@ -141,21 +184,26 @@ fn outcome(found: &Exact, goals: &Goals, error: &ErrorReport, arguments: &Refine
     let triangles = found.mesh.face_count();
     let written = format!(
         "{} was written with {}, {}",
-        arguments.output.display(),
+        arguments.output_name(),
         counted(triangles, "triangle", "triangles"),
         error.in_words()
     );
     let cap = match found.stop {
-        ExactStop::TriangleCap => format!("--max-triangles {}", thousands(arguments.max_triangles)),
+        ExactStop::TriangleCap => format!("--max-triangles {}", thousands(arguments.max_triangles())),
+        ExactStop::MemoryCap => {
+            format!("--max-memory {}", bytes(arguments.exact.max_memory.unwrap_or_default()))
+        }
         ExactStop::LevelCap => {
             format!("--max-levels {}", goals.options(arguments).max_levels)
         }
         ExactStop::Triangles if goals.triangles.is_some_and(|wanted| triangles > wanted) => {
             let wanted = goals.triangles.unwrap_or_default();
-            return Outcome::StoppedShort(format!(
-                "the control mesh has more than --triangles {} already; {written}",
-                thousands(wanted)
-            ));
+            let wanted = thousands(wanted);
+            return Outcome::StoppedShort(if arguments.exact.optimize {
+                format!("no more edges could be collapsed before --triangles {wanted}; {written}")
+            } else {
+                format!("the control mesh has more than --triangles {wanted} already; {written}")
+            });
         }
         _ => return Outcome::Done,
     };

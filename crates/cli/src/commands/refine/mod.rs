@@ -1,13 +1,17 @@
 //! `limitmesh refine`: reads a control mesh, refines it, writes the result, a report and a picture.
 
+mod cameras;
 mod check;
+mod estimate;
 mod exact;
 mod provenance;
 mod stepwise;
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use limitmesh::Mesh;
+use limitmesh::criterion::{Sight, View};
 use limitmesh::mesh::Tags;
 use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
@@ -19,9 +23,15 @@ use crate::input::{self, Input};
 use crate::interrupt;
 use crate::output;
 use crate::progress::Progress;
-use crate::report::{InputReport, MethodReport, OutputReport, RefineReport, SecondsReport, VERSION};
+use crate::report::{
+    InputReport, MethodReport, OutputReport, RefineReport, SecondsReport, VERSION, ViewReport,
+};
 use crate::words::{counted, seconds};
+use exact::Goals;
 use provenance::Provenance;
+
+/// The dilatant factor where none is given: the paper's in most of its experiments.
+const USUAL_DILATATION: f64 = 1.0;
 
 /// What a method gave, and what is said of it.
 struct Refined {
@@ -48,30 +58,41 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         left_out: input.left_out,
     };
     let Input { mesh: control, diagnosis, reading, building, .. } = input;
-    if let Some(note) = lost_tags(control.tags(), format) {
+    if let Some(note) = format.and_then(|format| lost_tags(control.tags(), format)) {
         progress.note(note);
     }
     let control = arguments.features.apply(control)?;
 
-    let parameters = match arguments.method {
-        Method::Exact => exact::parameters(arguments, control.diagonal()),
-        _ => stepwise::parameters(arguments),
+    let goals = match arguments.method {
+        Method::Exact => Some(Goals::new(arguments, &control)?),
+        _ => None,
+    };
+    let parameters = match &goals {
+        Some(goals) => exact::parameters(arguments, goals),
+        None => stepwise::parameters(arguments),
+    };
+    // Without a name to write to, this is a dry run: the arguments see to that.
+    let (Some(path), false) = (&arguments.output, arguments.exact.dry_run) else {
+        let goals = goals.map_or_else(|| Goals::new(arguments, &control), Ok)?;
+        let told = (input_report, (&diagnosis).into(), parameters);
+        estimate::run(&control, &goals, arguments, told, progress)?;
+        return Ok(Outcome::Done);
     };
     let start = Instant::now();
-    let refined = match arguments.method {
-        Method::Exact => exact::run(&control, arguments, progress)?,
-        _ => stepwise::run(control, arguments, format, progress)?,
+    let refined = match &goals {
+        Some(goals) => exact::run(&control, goals, arguments, progress)?,
+        None => stepwise::run(control, arguments, format, progress)?,
     };
     let refining = start.elapsed();
 
-    progress.stage(format!("writing {}", arguments.output.display()));
+    progress.stage(format!("writing {}", path.display()));
     let start = Instant::now();
-    write(arguments, &refined)?;
+    write(path, arguments.ascii, &refined)?;
     let writing = start.elapsed();
     progress.note(summary(arguments, &refined, refining));
 
     let Refined { mesh, normals, report, outcome, .. } = refined;
-    if let Some(path) = &arguments.report {
+    if let Some(report_path) = &arguments.report {
         progress.stage("examining the result");
         let report = RefineReport {
             version: VERSION,
@@ -79,11 +100,11 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
             diagnosis: (&diagnosis).into(),
             parameters,
             method: report,
-            output: OutputReport::of(arguments.output.display().to_string(), &mesh),
+            output: OutputReport::of(arguments.output_name(), &mesh),
             seconds: phases(reading, building, refining, writing),
         };
         progress.clear();
-        output::write_json(path, &report)?;
+        output::write_json(report_path, &report)?;
     }
     if let Some(path) = &arguments.picture {
         progress.stage(format!("drawing {}", path.display()));
@@ -111,10 +132,10 @@ fn lost_tags(tags: &Tags, format: Format) -> Option<String> {
     Some(format!("{}: followed, but left out of the output, whose format has none", found.join(" and ")))
 }
 
-fn write(arguments: &RefineArguments, refined: &Refined) -> anyhow::Result<()> {
+fn write(path: &Path, ascii: bool, refined: &Refined) -> anyhow::Result<()> {
     let Refined { mesh, normals, provenance, .. } = refined;
     let mut output = Output::new(mesh.as_triangles());
-    if let (Some(normals), Ok(Format::Ply)) = (normals, Format::from_path(&arguments.output)) {
+    if let (Some(normals), Ok(Format::Ply)) = (normals, Format::from_path(path)) {
         output = output.normals(normals);
     }
     let of_vertices = provenance.as_ref().map(Provenance::of_vertices);
@@ -123,9 +144,20 @@ fn write(arguments: &RefineArguments, refined: &Refined) -> anyhow::Result<()> {
         output = output.vertex_properties(vertices).face_properties(faces);
     }
     let output = output.creases(&mesh.tags().creases).corners(&mesh.tags().corners);
-    let options = WriteOptions::default().ascii(arguments.ascii);
-    interrupt::uninterrupted(|| limitmesh_io::write(&arguments.output, &output, &options))?;
+    let options = WriteOptions::default().ascii(ascii);
+    interrupt::uninterrupted(|| limitmesh_io::write(path, &output, &options))?;
     Ok(())
+}
+
+/// The view that makes the angle depend on the viewer.
+fn view(arguments: &RefineArguments) -> Option<View> {
+    let sight = arguments.view.map(Sight::Direction).or(arguments.eye.map(Sight::Eye))?;
+    Some(View { sight, dilatation: arguments.dilatation.unwrap_or(USUAL_DILATATION) })
+}
+
+fn view_report(arguments: &RefineArguments) -> Option<ViewReport> {
+    let dilatation = view(arguments)?.dilatation;
+    Some(ViewReport { direction: arguments.view, eye: arguments.eye, dilatation })
 }
 
 fn phases(read: Duration, repair: Duration, refine: Duration, write: Duration) -> SecondsReport {
@@ -146,7 +178,7 @@ fn summary(arguments: &RefineArguments, refined: &Refined, refining: Duration) -
     };
     format!(
         "{}: {}, {}, {edges}{} ({how}; refined in {})",
-        arguments.output.display(),
+        arguments.output_name(),
         counted(mesh.face_count(), "triangle", "triangles"),
         counted(mesh.vertex_count(), "vertex", "vertices"),
         achieved.as_ref().map_or(String::new(), |achieved| format!(", {achieved}")),

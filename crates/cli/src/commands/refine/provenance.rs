@@ -8,7 +8,7 @@ pub(super) struct Provenance {
     /// Of each vertex.
     faces: Vec<u32>,
     barycentric: [Vec<f64>; 3],
-    /// Of each triangle.
+    /// Of each triangle; none where triangles reach over several control faces.
     parents: Vec<u32>,
 }
 
@@ -35,7 +35,8 @@ impl Provenance {
     }
 
     /// Properties of the triangles.
-    pub(super) fn of_faces(&self) -> [Property<'_>; 1] {
-        [Property::integers("parent_face", &self.parents)]
+    pub(super) fn of_faces(&self) -> Vec<Property<'_>> {
+        let parents = Property::integers("parent_face", &self.parents);
+        if self.parents.is_empty() { Vec::new() } else { vec![parents] }
     }
 }

@@ -3,24 +3,21 @@
 use std::ops::ControlFlow;
 
 use limitmesh::Mesh;
-use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal, Sight, View};
+use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal};
 use limitmesh::limit::LimitTable;
 use limitmesh::refine::{Refinement, StepReport, StepwiseOptions, Stop, UniformOptions, stepwise, uniform};
 use limitmesh_io::Format;
 
-use super::Refined;
+use super::{Refined, view, view_report};
 use crate::arguments::{Method, RefineArguments, Seam};
 use crate::failure::Outcome;
 use crate::progress::Progress;
 use crate::report::refinement::stop_name;
-use crate::report::{MethodReport, ParametersReport, StepEntry, ViewReport};
+use crate::report::{MethodReport, ParametersReport, StepEntry};
 use crate::words::{counted, thousands};
 
 /// The angle where none is given, in degrees: the paper's middle one.
 const USUAL_ANGLE: f64 = 10.0;
-
-/// The dilatant factor where none is given: the paper's in most of its experiments.
-const USUAL_DILATATION: f64 = 1.0;
 
 /// The number of steps where none is given: the paper's in most of its experiments.
 const USUAL_LEVELS: usize = 3;
@@ -33,7 +30,7 @@ fn levels(arguments: &RefineArguments) -> usize {
 pub(super) fn run(
     control: Mesh,
     arguments: &RefineArguments,
-    format: Format,
+    format: Option<Format>,
     progress: &Progress,
 ) -> anyhow::Result<Refined> {
     let Refinement { mesh, steps, stop, .. } = refine(&control, arguments, progress)?;
@@ -76,7 +73,7 @@ fn refine(control: &Mesh, arguments: &RefineArguments, progress: &Progress) -> a
         ControlFlow::Continue(())
     };
     let scheme = arguments.scheme.scheme();
-    let cap = Some(arguments.max_triangles);
+    let cap = Some(arguments.max_triangles());
     let angle = arguments.angle.unwrap_or(USUAL_ANGLE).to_radians();
     let criterion: Box<dyn Criterion> = match (arguments.method, view(arguments)) {
         (Method::Amresh, _) => Box::new(NeighbourNormal::new(angle)),
@@ -95,22 +92,17 @@ fn refine(control: &Mesh, arguments: &RefineArguments, progress: &Progress) -> a
     Ok(stepwise(control, scheme, criterion.as_ref(), &options)?)
 }
 
-fn view(arguments: &RefineArguments) -> Option<View> {
-    let sight = arguments.view.map(Sight::Direction).or(arguments.eye.map(Sight::Eye))?;
-    Some(View { sight, dilatation: arguments.dilatation.unwrap_or(USUAL_DILATATION) })
-}
-
 /// Takes limit normals where the output or the picture shows them, then moves the vertices to the limit if asked.
 ///
 /// In this order: the normals of the moved vertices are those of the limit surface that they now lie on.
 fn finish(
     mesh: Mesh,
     arguments: &RefineArguments,
-    format: Format,
+    format: Option<Format>,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, Option<Vec<[f64; 3]>>)> {
     let scheme = arguments.scheme.scheme();
-    let wanted = format == Format::Ply || arguments.picture.is_some();
+    let wanted = format == Some(Format::Ply) || arguments.picture.is_some();
     let normals = match wanted.then(|| LimitTable::new(scheme).normals(&mesh)) {
         Some(Err(why)) => {
             progress.note(format!("no limit normals: {why}"));
@@ -133,11 +125,7 @@ pub(super) fn parameters(arguments: &RefineArguments) -> ParametersReport {
         angle_degrees: adaptive.then(|| arguments.angle.unwrap_or(USUAL_ANGLE)),
         levels: Some(levels(arguments)),
         seam: adaptive.then(|| arguments.seam.unwrap_or(Seam::All)),
-        view: view(arguments).map(|view| ViewReport {
-            direction: arguments.view,
-            eye: arguments.eye,
-            dilatation: view.dilatation,
-        }),
+        view: view_report(arguments),
         limit: arguments.limit,
         ..ParametersReport::common(arguments)
     }
@@ -150,8 +138,8 @@ fn outcome(arguments: &RefineArguments, mesh: &Mesh, steps: &[StepReport], stop:
         steps.len() + 1,
         levels(arguments),
         counted(needed, "triangle", "triangles"),
-        thousands(arguments.max_triangles),
-        arguments.output.display(),
+        thousands(arguments.max_triangles()),
+        arguments.output_name(),
         counted(mesh.face_count(), "triangle", "triangles"),
     ))
 }
