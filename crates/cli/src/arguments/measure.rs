@@ -66,8 +66,8 @@ pub(crate) struct MeasureArguments {
 
     /// How wide the interval may be: a length, or per cent of the reference's diagonal such as 0.01%
     ///
-    /// Default: 1 % of the distance, with --limit-of 10 %; or 0.0001% of the diagonal where that is more. With
-    /// --certified only.
+    /// With --limit-of, of the control mesh's diagonal. Default: 1 % of the distance, with --limit-of 10 %; or 0.0001% of
+    /// the diagonal where that is more. With --certified only.
     #[arg(long, value_name = "G", value_parser = values::extent, allow_hyphen_values = true)]
     pub(crate) gap: Option<Extent>,
 
