@@ -21,10 +21,15 @@
 //! at most the angles of T′ at e and at most half of what the angles of T at e leave of π, so that T and its three
 //! flaps are convex together ([`Deviation::slope`]). For the other way take the pieces of T and its neighbours, each
 //! projected on its own plane, and turn the latter into the plane of T. Along the shared curve the two projections
-//! differ by at most |h| sin θ + g(1 − cos θ). The outer curves do not reach over T as long as no curve crosses
-//! another edge of its own triangle, which is checked; so what is covered winds round each q in T, and the point
-//! that covers it stands within |h|(1 + σ²/2) + σg, h and g being those of T or of the neighbour. Edges at the boundary
-//! of the mesh have no neighbour and count on their own.
+//! differ by at most |h| sin θ + g(1 − cos θ), and a strip of straight lines joins them. The outer curves do not reach
+//! over T as long as no curve crosses another edge of its own triangle, which is checked; so what is covered, strips
+//! included, winds round each q in T, and the point that covers it stands within |h|(1 + σ²/2) + σg, h and g being
+//! those of T or of the neighbour. For a point of a strip take g to be negative inside e. Its curve point is within |h|
+//! of one end and, where it stands outside T′ by g′ > 0, within |h′| + σg′ of the other. Where it stands inside both, no
+//! farther from it than e is, it stands between the two triangles or beside both, at the distance r from e with
+//! max(|h|, |h′|) ≥ r cos(θ/2): 1/cos(θ/2) ≤ 1 + σ²/2 as long as σ² ≤ 2√3. Sharper folds, where both triangles may
+//! reach beyond a surface that is near their planes, count on their own, as do edges at the boundary of the mesh, sharp
+//! ones, and those whose other triangle does: its own bound holds the distance of the curve from e.
 //!
 //! So the greatest of the least of both bounds over all triangles bounds the distance of mesh and surface, both
 //! ways. θ and the neighbours' angles are those of the mesh as it is emitted.

@@ -15,8 +15,8 @@ pub(crate) enum Centre {
     Smooth { sharp: Option<usize> },
     /// Smooth along the sharp or boundary curve that the fan starts and ends at.
     Crease,
-    /// Keeps its place; the fan is open where `open`.
-    Corner { open: bool },
+    /// Keeps its place; the fan is open where `open`, and may have one sharp edge where not.
+    Corner { open: bool, sharp: Option<usize> },
 }
 
 /// A vertex with its neighbours, counter-clockwise, on the side of one of its faces.
@@ -32,7 +32,7 @@ pub(crate) struct Fan {
 impl Fan {
     /// Whether the fan ends at two sharp or boundary edges.
     pub(crate) fn is_open(&self) -> bool {
-        matches!(self.centre, Centre::Crease | Centre::Corner { open: true })
+        matches!(self.centre, Centre::Crease | Centre::Corner { open: true, .. })
     }
 
     /// The neighbour `offset` slots on from the face's next corner.
@@ -43,7 +43,7 @@ impl Fan {
     /// Whether the edge to the neighbour in `slot` is sharp or a boundary.
     fn is_sharp(&self, slot: usize) -> bool {
         match self.centre {
-            Centre::Smooth { sharp } => sharp == Some(slot),
+            Centre::Smooth { sharp } | Centre::Corner { open: false, sharp } => sharp == Some(slot),
             _ => self.is_open() && (slot == 0 || slot + 1 == self.neighbours.len()),
         }
     }

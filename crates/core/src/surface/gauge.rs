@@ -11,6 +11,10 @@ pub(crate) type Borders = [u8; 3];
 /// The edge lies inside the triangle's piece of surface.
 pub(crate) const INSIDE: u8 = 3;
 
+/// The square of the greatest chord of the angle between neighbours that help each other, 2√3: 137°. Where they meet in
+/// a sharper fold, both may reach beyond the surface (see [`super::bound`]).
+const SHARPEST: f64 = 3.464;
+
 /// How far a triangle and its piece of the surface can be from each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Deviation {
@@ -39,7 +43,7 @@ impl Deviation {
     /// is the greatest that is allowed.
     #[inline]
     pub(crate) fn bound(&self, chord: f64, slope: f64) -> f64 {
-        if self.slope <= slope {
+        if self.slope <= slope && chord * chord <= SHARPEST {
             self.own.min(self.height * (1.0 + 0.5 * chord * chord) + chord * self.drift)
         } else {
             self.own

@@ -39,9 +39,10 @@ pub(crate) fn sector_of(topology: &Topology, sharpness: &Sharpness<'_>, h: HalfE
 
 fn centre(shape: RingShape) -> Centre {
     match (shape.corner, shape.open) {
-        (true, open) => Centre::Corner { open },
+        (true, true) => Centre::Corner { open: true, sharp: None },
         (false, true) => Centre::Crease,
-        // The sector of a dart starts at its sharp edge.
+        // The sector of a vertex with one sharp edge starts there.
+        (true, false) => Centre::Corner { open: false, sharp: shape.dart.then_some(0) },
         (false, false) => Centre::Smooth { sharp: shape.dart.then_some(0) },
     }
 }

@@ -35,8 +35,9 @@ impl Growth<'_> {
     /// The bound of a leaf.
     pub(super) fn settled(&self, emission: &Emission, leaf: u32) -> f64 {
         let deviation = self.deviations[leaf as usize];
-        if deviation.drift == 0.0 && deviation.slope == 0.0 {
-            return deviation.bound(0.0, 0.0);
+        // Neighbours can't help.
+        if deviation.own <= deviation.height {
+            return deviation.own;
         }
         let first = emission.leaves.starts[leaf as usize];
         let count = 1 + self.forest.split_edges(leaf).count_ones();

@@ -1,0 +1,188 @@
+//! Random control meshes that are hard on a certificate: any valence, boundaries, sharp edges, slivers, folds, thin sheets
+//! with holes, flat ones, tiny, huge and far from the origin.
+
+use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
+use limitmesh::{Mesh, PolygonSoup};
+
+use crate::support::{Point, Random, lumpy, octahedron, sheet, torus};
+
+/// A random cage and what it is.
+pub(crate) struct Cage {
+    pub(crate) mesh: Mesh,
+    pub(crate) what: String,
+}
+
+/// The cage of a seed.
+pub(crate) fn cage(seed: u64) -> Cage {
+    let mut random = Random::new(seed);
+    let (mut positions, mut triangles, mut what) = base(&mut random, seed);
+    if random.below(3) == 0 {
+        flip(&mut triangles, &mut random);
+        what += ", flipped";
+    }
+    if random.below(4) == 0 && triangles.len() > 4 {
+        let removed = 1 + random.below(triangles.len() / 4);
+        for _ in 0..removed {
+            triangles.swap_remove(random.below(triangles.len()));
+        }
+        what += ", holes";
+    }
+    deform(&mut positions, &mut random, &mut what);
+    let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
+    triangles.iter().for_each(|triangle| soup.faces.push(triangle));
+    let mesh = Mesh::from_soup(&soup, &Default::default()).unwrap().0;
+    let mesh = tagged(mesh, &mut random, &mut what);
+    Cage { mesh, what }
+}
+
+type Raw = (Vec<Point>, Vec<[u32; 3]>, String);
+
+fn base(random: &mut Random, seed: u64) -> Raw {
+    let raw = |mesh: Mesh, what: String| (mesh.positions().to_vec(), mesh.triangles().to_vec(), what);
+    let size = |random: &mut Random| 3 + random.below(4) as u32;
+    match random.below(9) {
+        0 => raw(octahedron(), "octahedron".into()),
+        1 => raw(lumpy(1 + random.below(30), seed), "lumpy".into()),
+        2 => raw(torus(size(random), size(random)), "torus".into()),
+        3 => raw(sheet(1 + random.below(5) as u32, 1 + random.below(5) as u32, seed), "sheet".into()),
+        4 => washer(3 + random.below(8) as u32, 0.02 * (1 + random.below(20)) as f64),
+        5 => bipyramid([3, 4, 5, 7, 8, 9, 10, 11, 12, 20, 40][random.below(11)]),
+        6 => fan([2, 3, 4, 6, 9, 20, 40][random.below(7)]),
+        7 => soup_of_tetrahedra(1 + random.below(3) as u32),
+        _ => pillow(3 + random.below(9) as u32),
+    }
+}
+
+/// A flat ring with a hole, closed: its rims bend both ways.
+fn washer(n: u32, thickness: f64) -> Raw {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for i in 0..n {
+        let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
+        for (radius, z) in [(1.0, 0.0), (1.5, thickness), (2.0, 0.0), (1.5, -thickness)] {
+            positions.push([radius * angle.cos(), radius * angle.sin(), z]);
+        }
+    }
+    let at = |i: u32, j: u32| 4 * (i % n) + j % 4;
+    for i in 0..n {
+        for j in 0..4 {
+            triangles.push([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
+            triangles.push([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
+        }
+    }
+    (positions, triangles, format!("washer of {n}"))
+}
+
+fn bipyramid(n: u32) -> Raw {
+    let mut positions = vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
+    let mut triangles = Vec::new();
+    for i in 0..n {
+        let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
+        positions.push([angle.cos(), angle.sin(), 0.0]);
+        let (a, b) = (2 + i, 2 + (i + 1) % n);
+        triangles.extend([[0, a, b], [1, b, a]]);
+    }
+    (positions, triangles, format!("bipyramid of {n}"))
+}
+
+fn fan(n: u32) -> Raw {
+    let mut positions = vec![[0.0, 0.0, 0.5]];
+    for i in 0..=n {
+        let angle = 5.0 * f64::from(i) / f64::from(n);
+        positions.push([angle.cos(), angle.sin(), 0.2 * f64::from(i % 3)]);
+    }
+    (positions, (1..=n).map(|i| [0, i, i + 1]).collect(), format!("fan of {n}"))
+}
+
+fn soup_of_tetrahedra(count: u32) -> Raw {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for i in 0..count {
+        let x = f64::from(i);
+        positions.extend([[x, 0.0, 0.0], [x + 1.0, 0.0, 0.1], [x, 1.0, 0.0], [x + 0.2, 0.3, 1.0]]);
+        let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        triangles.extend(faces.map(|face| face.map(|v: u32| 4 * i + v)));
+    }
+    (positions, triangles, format!("{count} tetrahedra"))
+}
+
+/// Two sheets joined along a star-shaped outline that bends both ways.
+fn pillow(n: u32) -> Raw {
+    let mut positions = vec![[0.0, 0.0, 0.1], [0.0, 0.0, -0.1]];
+    let mut triangles = Vec::new();
+    for i in 0..2 * n {
+        let angle = std::f64::consts::PI * f64::from(i) / f64::from(n);
+        let radius = if i % 2 == 0 { 1.0 } else { 0.4 };
+        positions.push([radius * angle.cos(), radius * angle.sin(), 0.0]);
+        let (a, b) = (2 + i, 2 + (i + 1) % (2 * n));
+        triangles.extend([[0, a, b], [1, b, a]]);
+    }
+    (positions, triangles, format!("star pillow of {n}"))
+}
+
+/// Turns random edges in the quadrilaterals around them, unless that would make an edge twice.
+fn flip(triangles: &mut [[u32; 3]], random: &mut Random) {
+    for _ in 0..2 * triangles.len() {
+        let (f, i) = (random.below(triangles.len()), random.below(3));
+        let [a, b, c] = [0, 1, 2].map(|k| triangles[f][(i + k) % 3]);
+        let beyond = triangles.iter().position(|t| (0..3).any(|k| (t[k], t[(k + 1) % 3]) == (b, a)));
+        let Some(g) = beyond else { continue };
+        let d = triangles[g].into_iter().find(|&v| v != a && v != b).unwrap();
+        let joined = triangles.iter().any(|t| t.contains(&c) && t.contains(&d));
+        if c != d && !joined {
+            (triangles[f], triangles[g]) = ([c, a, d], [d, b, c]);
+        }
+    }
+}
+
+/// Noise, stretching, shearing, flattening, scale and place.
+fn deform(positions: &mut [Point], random: &mut Random, what: &mut String) {
+    let noise = [0.0, 0.02, 0.3, 1.5][random.below(4)];
+    for p in positions.iter_mut() {
+        *p = p.map(|x| x + noise * random.signed());
+    }
+    *what += &format!(", noise {noise}");
+    if random.below(2) == 0 {
+        let factors: Point = std::array::from_fn(|_| 10f64.powf(-4.0 * random.signed().max(0.0)));
+        let shear = [0.0, 0.0, 3.0, 30.0][random.below(4)];
+        for p in positions.iter_mut() {
+            *p = [p[0] * factors[0] + shear * p[1], p[1] * factors[1], p[2] * factors[2]];
+        }
+        *what += &format!(", stretched {factors:?}, sheared {shear}");
+    }
+    if random.below(12) == 0 {
+        positions.iter_mut().for_each(|p| p[2] = 0.0);
+        *what += ", flat";
+    }
+    if random.below(4) == 0 {
+        let scale = 10f64.powf(12.0 * random.signed());
+        positions.iter_mut().for_each(|p| *p = p.map(|x| scale * x));
+        *what += &format!(", times {scale:e}");
+    } else if random.below(4) == 0 {
+        let place: Point = std::array::from_fn(|_| 1e6 * random.signed());
+        positions.iter_mut().for_each(|p| *p = std::array::from_fn(|i| p[i] + place[i]));
+        *what += ", far away";
+    }
+}
+
+/// Infinitely sharp edges and vertices.
+fn tagged(mesh: Mesh, random: &mut Random, what: &mut String) -> Mesh {
+    let share = [0, 0, 5, 30, 100][random.below(5)];
+    if share == 0 {
+        return mesh;
+    }
+    let mut tags = Tags::default();
+    for triangle in mesh.triangles() {
+        for i in 0..3 {
+            let vertices = [triangle[i], triangle[(i + 1) % 3]];
+            if random.below(200) < share {
+                tags.creases.push(CreaseTag { vertices, sharpness: INFINITELY_SHARP });
+            }
+        }
+    }
+    for vertex in 0..mesh.vertex_count() as u32 {
+        if random.below(800) < share {
+            tags.corners.push(CornerTag { vertex, sharpness: INFINITELY_SHARP });
+        }
+    }
+    *what += &format!(", {} creases and {} corners", tags.creases.len(), tags.corners.len());
+    mesh.with_tags(tags).unwrap()
+}
