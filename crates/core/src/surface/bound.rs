@@ -2,8 +2,8 @@
 //!
 //! Let S be the limit surface over a domain triangle D and T the triangle that stands for it, its corners on those of S.
 //! Hull points are points whose convex hull holds a piece of S or of one of its boundary curves: Bézier points of
-//! regular pieces, control points of small ones at irregular vertices. Functions that are convex are greatest over the
-//! hull at one of its points. Two bounds are taken.
+//! regular pieces, images of the characteristic map's at irregular vertices. Functions that are convex are greatest over
+//! the hull at one of its points. Two bounds are taken.
 //!
 //! **On its own** ([`Deviation::own`]). The distance to the convex set T is convex, so the hull points bound how far S is
 //! from T. For the other way let δ bound the distances of the boundary curves to the edges that stand for them and h the
@@ -31,17 +31,40 @@
 //! reach beyond a surface that is near their planes, count on their own, as do edges at the boundary of the mesh, sharp
 //! ones, and those whose other triangle does: its own bound holds the distance of the curve from e.
 //!
+//! **Pieces at irregular vertices.** Let a piece be Ŝ + ρ with |ρ| ≤ R, both functions of the same parameter. With Ŝ
+//! in place of S the above holds as it stands, but for gaps of Ŝ where two pieces meet: at S(x) one ends at a(x), the
+//! other at b(x), both within R of S(x). So does the segment from a to b, being in the ball; it is no higher than its
+//! ends, and filling the gaps with such segments closes what is covered again. Each point of Ŝ and of the fills has S
+//! within R: heights and own bounds grow by R, drifts and slopes do not. Two such Ŝ are taken.
+//!
+//! Inside the surface, at a vertex of valence k with the characteristic map χ ([`super::characteristic`]), the control
+//! points are Pᵢ = p + t₁χᵢ₁ + t₂χᵢ₂ + rᵢ, p being the limit position and t₁, t₂ = (2/k) Σ cos(2πj/k) rⱼ, (2/k) Σ
+//! sin(2πj/k) rⱼ the tangents. Weights of control points are at least 0 and their sum is 1, so Ŝ = p + t₁χ₁ + t₂χ₂ and
+//! R = max |rᵢ|, which falls by about four from level to level. Ŝ is an affine image, its hull points those of χ: a
+//! cone at the vertex, so that slopes stay bounded there. (Any p and t would do.)
+//!
+//! Elsewhere Ŝ is the point of T nearest to S, and for curves the nearest of the edge: then R is the own bound, nothing
+//! drifts, and there is no slope. That holds for any piece, and helps where slopes are too great. The own bound is then
+//! that of a sphere round a corner of T that holds the control points.
+//!
 //! So the greatest of the least of both bounds over all triangles bounds the distance of mesh and surface, both
 //! ways. θ and the neighbours' angles are those of the mesh as it is emitted.
 
+use super::characteristic::{Characteristic, Sector};
 use super::facet::Facet;
 use super::gauge::{Borders, Deviation, Gauge, INSIDE};
 use super::net::Net;
 use super::patch::{Patch, RefinedPatch};
 use super::rules::Rules;
+use super::spoke::Spoke;
+use crate::vector::DVec3;
 
 /// Levels that a piece at an irregular vertex is split at most: it has shrunk by 2⁻⁴⁰ then, below rounding.
 const DEEPEST: usize = 40;
+
+/// Pieces that reach this many times as far as the target will not pass; bounds of others stay tight, so that they are
+/// told apart even if they may not be split.
+const HOPELESS: f64 = 1.5;
 
 /// The whole piece stands for the triangle.
 const ALL: Borders = [0, 1, 2];
@@ -123,7 +146,7 @@ impl<'a> Pieces<'a> {
                 let net = self.net.get_or_insert_with(|| Net::of(points));
                 bound.net_part(net, part, ALL);
             }
-            (Patch::Irregular(_), _) => bound.irregular(self.patch, part, ALL, 0),
+            (Patch::Irregular(_) | Patch::Spoke(_), _) => bound.irregular(self.patch, part, ALL, 0),
         }
         bound.found
     }
@@ -143,7 +166,7 @@ impl Bound<'_> {
                 self.part(&patch.refined(self.rules).part(child), Part::Whole, borders, depth + 1);
             }
             (Patch::Regular(points), _) => self.net_part(&Net::of(points), part, borders),
-            (Patch::Irregular(_), _) => self.irregular(patch, part, borders, depth),
+            (Patch::Irregular(_) | Patch::Spoke(_), _) => self.irregular(patch, part, borders, depth),
         }
     }
 
@@ -159,15 +182,28 @@ impl Bound<'_> {
         }
     }
 
-    fn is_enough(&self, deviation: &Deviation) -> bool {
-        deviation.bound(self.effort.chord, self.effort.slope) <= self.effort.target
+    /// What a deviation comes to.
+    fn value(&self, deviation: &Deviation) -> f64 {
+        deviation.bound(self.effort.chord, self.effort.slope)
+    }
+
+    /// The value that is good enough for what is left: less than what stands already adds nothing.
+    fn aim(&self) -> f64 {
+        self.effort.target.max(self.value(&self.found))
+    }
+
+    fn add(&mut self, deviation: Deviation) {
+        // A slope that is too great must not spoil what others are good for.
+        let alone = deviation.slope > self.effort.slope;
+        self.found = self.found.max(if alone { Deviation::alone(deviation.own) } else { deviation });
     }
 
     fn net(&mut self, net: &Net, borders: Borders, halvings: usize) {
         let (deviation, attained) = self.gauge.net(net, borders);
-        // What is too far away for sure stays so however it is divided.
-        if halvings == 0 || attained > self.effort.target || self.is_enough(&deviation) {
-            self.found = self.found.max(deviation);
+        // What is much too far away for sure stays so however it is divided.
+        let is_hopeless = attained > HOPELESS * self.effort.target;
+        if halvings == 0 || is_hopeless || self.value(&deviation) <= self.aim() {
+            self.add(deviation);
             return;
         }
         // The longest edge, so that the pieces stay as round as they can be.
@@ -183,40 +219,104 @@ impl Bound<'_> {
         }
     }
 
-    /// The greatest distance over the control points of a piece.
-    fn hull(&self, patch: &Patch, borders: Borders) -> f64 {
-        let mut greatest = 0.0f64;
-        patch.for_each_hull_point(|point| {
-            greatest = greatest.max(self.gauge.facet.squared(point));
-            for border in borders.into_iter().filter(|&border| border != INSIDE) {
-                greatest = greatest.max(self.gauge.facet.squared_to_edge(border as usize, point));
-            }
-        });
-        greatest.sqrt()
-    }
-
+    /// A piece at an irregular vertex: as it is if that is enough, else refined.
     fn irregular(&mut self, patch: &Patch, part: Part, borders: Borders, depth: usize) {
-        let hull = self.hull(patch, borders);
-        // Less than what stands already adds nothing.
-        if hull <= self.effort.target.max(self.found.height) || depth >= DEEPEST {
-            let found = Deviation { own: hull, height: hull, ..Deviation::default() };
-            self.found = self.found.max(found);
+        if let Some(deviation) = self.held(patch, part, borders, depth)
+            && (depth >= DEEPEST || self.value(&deviation) <= self.aim())
+        {
+            self.add(deviation);
             return;
         }
         let refined = patch.refined(self.rules);
         match part {
+            Part::Whole => {
+                let inner = |part: usize| {
+                    let mut sides = borders;
+                    sides[(part + 1) % 3] = INSIDE;
+                    (part, Part::Whole, sides)
+                };
+                self.pieces(&refined, [inner(0), inner(1), inner(2), (3, Part::Whole, [INSIDE; 3])], depth);
+            }
+            Part::Child(child) => self.pieces(&refined, [(child, Part::Whole, borders)], depth),
             Part::Half { edge, second } => self.half(&refined, edge, second, borders, depth),
             Part::Quarter { edge, at_end } => self.quarter(&refined, edge, at_end, borders, depth),
-            Part::Whole | Part::Child(_) => {
-                let corners = [0, 1, 2].map(|corner| {
-                    let mut sides = borders;
-                    sides[(corner + 1) % 3] = INSIDE;
-                    (corner, Part::Whole, sides)
-                });
-                let middle = (3, Part::Whole, [INSIDE; 3]);
-                self.pieces(&refined, [middle, corners[0], corners[1], corners[2]], depth);
-            }
         }
+    }
+
+    /// What a piece is good for without being refined; `None` if nothing is known, or nothing that helps.
+    fn held(&self, patch: &Patch, part: Part, borders: Borders, depth: usize) -> Option<Deviation> {
+        if let Patch::Spoke(spoke) = patch
+            && let Some(map) = self.rules.characteristic(spoke.ring.len())
+            && depth < DEEPEST
+        {
+            return match part {
+                Part::Whole => self.affine(spoke, map, &map.sectors[0], borders),
+                Part::Half { edge, second } if edge == (spoke.corner + 1) % 3 => {
+                    self.affine(spoke, map, &map.sectors[1 + usize::from(second)], borders)
+                }
+                _ => None,
+            };
+        }
+        Some(Deviation::alone(self.hull(patch, borders)))
+    }
+
+    /// The bound by an affine image of the characteristic map's sector, if what the piece differs from it is little.
+    fn affine(
+        &self,
+        spoke: &Spoke,
+        map: &Characteristic,
+        sector: &Sector,
+        borders: Borders,
+    ) -> Option<Deviation> {
+        let valence = spoke.ring.len();
+        let sums = spoke.ring.iter().zip(&map.control.ring).fold([DVec3::ZERO; 3], |sums, (&point, at)| {
+            [sums[0] + point, sums[1] + at.x * point, sums[2] + at.y * point]
+        });
+        let weight = 0.375 / self.rules.beta(valence);
+        let limit = (weight * spoke.at + sums[0]) / (weight + valence as f64);
+        let tangents = [1, 2].map(|i| sums[i] * (2.0 / valence as f64));
+        let image = |at: DVec3| limit + at.x * tangents[0] + at.y * tangents[1];
+        let rest = spoke.points().zip(map.control.points());
+        let rest = rest.map(|(point, at)| point.distance_squared(image(at))).fold(0.0, f64::max).sqrt();
+        if rest > self.aim() {
+            return None;
+        }
+        let mut curves = [(0, DVec3::ZERO); 13];
+        let mut count = 0;
+        let mut curve = |border: u8, at: DVec3| {
+            if border != INSIDE {
+                curves[count] = (border as usize, image(at));
+                count += 1;
+            }
+        };
+        let [starts, rim, ends] = [0, 1, 2].map(|edge| borders[(spoke.corner + edge) % 3]);
+        curve(starts, sector.start);
+        curve(ends, sector.end);
+        sector.rim.iter().for_each(|&at| curve(rim, at));
+        // Where only one of the edges at the vertex is the triangle's, the vertex lies on that edge.
+        match (starts, ends) {
+            (INSIDE, on) | (on, INSIDE) => curve(on, DVec3::ZERO),
+            (first, second) if first == second => curve(first, DVec3::ZERO),
+            _ => {}
+        }
+        let is_inside = starts == INSIDE && ends == INSIDE;
+        let vertex = is_inside.then_some(DVec3::ZERO);
+        let inner = sector.hull.iter().copied().chain(vertex).map(image);
+        let deviation = self.gauge.points(inner, &curves[..count]);
+        Some(Deviation { own: deviation.own + rest, height: deviation.height + rest, ..deviation })
+    }
+
+    /// The greatest distance of the control points from the triangle, and from the edges in `borders`.
+    fn hull(&self, patch: &Patch, borders: Borders) -> f64 {
+        let facet = self.gauge.facet;
+        let mut greatest = 0.0f64;
+        patch.for_each_hull_point(|point| {
+            greatest = greatest.max(facet.squared(point));
+            for border in borders.into_iter().filter(|&border| border != INSIDE) {
+                greatest = greatest.max(facet.squared_to_edge(border as usize, point));
+            }
+        });
+        greatest.sqrt()
     }
 
     /// The pieces that make up a half; see [`Part::Half`].

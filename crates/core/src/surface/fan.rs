@@ -6,6 +6,7 @@
 
 use super::lattice::{self, Points};
 use super::rules::Rules;
+use super::spoke::Spoke;
 use crate::vector::DVec3;
 
 /// What becomes of a fan's centre.
@@ -101,6 +102,20 @@ impl Fans {
         let [a, b, c] = &self.0;
         let rings = [a.regular_ring()?, b.regular_ring()?, c.regular_ring()?];
         Some(lattice::assemble([a.at, b.at, c.at], &rings))
+    }
+
+    /// The face as that of one irregular vertex inside the surface, if the other two corners are regular.
+    pub(crate) fn spoke(&self) -> Option<Spoke> {
+        let corner = self.0.iter().position(|fan| fan.regular_ring().is_none())?;
+        let [fan, first, second] = [0, 1, 2].map(|i| &self.0[(corner + i) % 3]);
+        if fan.centre != (Centre::Smooth { sharp: None }) || fan.neighbours.len() < 3 {
+            return None;
+        }
+        let [_, _, _, before, past_first, between] = first.regular_ring()?;
+        let [_, _, _, past_second, after, _] = second.regular_ring()?;
+        let mut ring = fan.neighbours.clone();
+        ring.rotate_left(fan.slot);
+        Some(Spoke { corner, at: fan.at, ring, outer: [before, past_first, between, past_second, after] })
     }
 
     /// All points, corners first; some more than once.

@@ -39,6 +39,11 @@ impl Deviation {
         }
     }
 
+    /// That of a piece which is as far from the triangle, its curves from their edges, and counts on its own.
+    pub(crate) fn alone(own: f64) -> Self {
+        Self { own, height: own, drift: 0.0, slope: 0.0 }
+    }
+
     /// The bound where the neighbours' planes are turned by angles with this chord (2 sin(θ/2)) at most, and `slope`
     /// is the greatest that is allowed.
     #[inline]
@@ -114,6 +119,18 @@ impl Greatest {
     }
 }
 
+impl Greatest {
+    /// What that comes to; `None` if the points have to be looked at one by one.
+    fn deviation(self, facet: &Facet) -> Option<Deviation> {
+        let Self { height, squared, side, drift, slope, .. } = self;
+        // Squares of tiny lengths vanish.
+        let own = if squared > 1e-280 { squared.sqrt() } else { height.hypot(side) };
+        // A curve that swings less than the least angle opens crosses no other edge.
+        let is_plain = !self.beyond && self.swing <= facet.least_slope();
+        is_plain.then_some(Deviation { own, height, drift, slope })
+    }
+}
+
 impl Gauge<'_> {
     /// The deviation of a net's points, and a height that the piece itself attains.
     pub(crate) fn net(&self, net: &Net, borders: Borders) -> (Deviation, f64) {
@@ -143,14 +160,34 @@ impl Gauge<'_> {
                 Corner::Inside => greatest.inner(facet, offsets[at], heights[at]),
             }
         }
-        // A curve that swings less than the least angle opens crosses no other edge.
-        if greatest.beyond || greatest.swing > facet.least_slope() {
-            return (self.each_of_net(net, borders), attained(&heights));
+        let deviation = greatest.deviation(facet).unwrap_or_else(|| self.each_of_net(net, borders));
+        (deviation, attained(&heights))
+    }
+
+    /// The deviation of points of the surface, and of curves over edges.
+    pub(crate) fn points(
+        &self,
+        inner: impl Iterator<Item = DVec3> + Clone,
+        curves: &[(usize, DVec3)],
+    ) -> Deviation {
+        let facet = self.facet;
+        if !facet.is_flat() && self.open == [false; 3] {
+            let mut greatest = Greatest::default();
+            for offset in inner.clone().map(|point| facet.seen_from_first(point)) {
+                greatest.inner(facet, offset, facet.height_from_first(offset));
+            }
+            for &(edge, point) in curves {
+                let offset = facet.seen_from_first(point);
+                greatest.curve(facet, edge, offset, facet.height_from_first(offset));
+            }
+            if let Some(deviation) = greatest.deviation(facet) {
+                return deviation;
+            }
         }
-        let Greatest { height, squared, side, drift, slope, .. } = greatest;
-        // Squares of tiny lengths vanish.
-        let own = if squared > 1e-280 { squared.sqrt() } else { height.hypot(side) };
-        (Deviation { own, height, drift, slope }, attained(&heights))
+        let mut deviation = Deviation::default();
+        inner.for_each(|point| self.inner_point(point, &mut deviation));
+        curves.iter().for_each(|&(edge, point)| self.curve_point(edge, point, &mut deviation));
+        deviation
     }
 
     /// The deviation of a net's points, one by one, for any triangle.

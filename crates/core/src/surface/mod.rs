@@ -6,6 +6,7 @@
 //! can be from the piece that it stands for.
 
 mod bound;
+mod characteristic;
 mod facet;
 mod fan;
 mod gauge;
@@ -14,6 +15,7 @@ mod net;
 mod patch;
 mod root;
 mod rules;
+mod spoke;
 
 pub(crate) use bound::{Effort, Part, Pieces};
 pub(crate) use facet::Facet;

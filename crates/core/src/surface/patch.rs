@@ -3,6 +3,7 @@
 use super::fan::{Fans, RefinedFans};
 use super::lattice::{Points, Refined};
 use super::rules::Rules;
+use super::spoke::{RefinedSpoke, Spoke};
 use crate::vector::{DVec3, unit_or_zero};
 
 /// The limit surface over one face.
@@ -12,6 +13,8 @@ use crate::vector::{DVec3, unit_or_zero};
 pub(crate) enum Patch {
     /// All corners have six edges, or mirror images beyond a crease make it so.
     Regular(Points),
+    /// One corner inside the surface has another number of edges, the others are regular.
+    Spoke(Box<Spoke>),
     /// Anything else.
     Irregular(Box<Fans>),
 }
@@ -41,15 +44,20 @@ impl LimitPoint {
 pub(crate) enum RefinedPatch<'a> {
     /// Of a regular patch.
     Regular(Refined),
-    /// Of an irregular one.
+    /// Of one with an irregular corner.
+    Spoke(RefinedSpoke),
+    /// Of another irregular one.
     Irregular(RefinedFans<'a>),
 }
 
 impl Patch {
     /// The simplest form of a piece.
     pub(crate) fn of(fans: Fans) -> Self {
-        match fans.regular() {
-            Some(points) => Self::Regular(points),
+        if let Some(points) = fans.regular() {
+            return Self::Regular(points);
+        }
+        match fans.spoke() {
+            Some(spoke) => Self::Spoke(Box::new(spoke)),
             None => Self::Irregular(Box::new(fans)),
         }
     }
@@ -58,6 +66,7 @@ impl Patch {
     pub(crate) fn refined(&self, rules: &Rules) -> RefinedPatch<'_> {
         match self {
             Self::Regular(points) => RefinedPatch::Regular(Refined::of(points)),
+            Self::Spoke(spoke) => RefinedPatch::Spoke(spoke.refined(rules.beta(spoke.ring.len()))),
             Self::Irregular(fans) => RefinedPatch::Irregular(fans.refined(rules)),
         }
     }
@@ -66,6 +75,7 @@ impl Patch {
     pub(crate) fn for_each_hull_point(&self, mut visit: impl FnMut(DVec3)) {
         match self {
             Self::Regular(points) => points.iter().for_each(|&point| visit(point)),
+            Self::Spoke(spoke) => spoke.points().for_each(visit),
             Self::Irregular(fans) => fans.points().for_each(visit),
         }
     }
@@ -78,6 +88,7 @@ impl RefinedPatch<'_> {
     pub(crate) fn part(&self, part: usize) -> Patch {
         match self {
             Self::Regular(refined) => Patch::Regular(refined.part(part)),
+            Self::Spoke(refined) => refined.part(part),
             Self::Irregular(refined) => Patch::of(refined.part(part)),
         }
     }
@@ -87,6 +98,10 @@ impl RefinedPatch<'_> {
     pub(crate) fn middle(&self, edge: usize) -> LimitPoint {
         match self {
             Self::Regular(refined) => {
+                let (at, ring) = refined.middle(edge);
+                LimitPoint::regular(at, &ring)
+            }
+            Self::Spoke(refined) => {
                 let (at, ring) = refined.middle(edge);
                 LimitPoint::regular(at, &ring)
             }

@@ -3,6 +3,9 @@
 //! They share the quartic box spline on regular pieces and the cubic B-spline on boundaries and creases, and all
 //! their masks are convex combinations, so that a piece lies in the hull of its points.
 
+use std::sync::OnceLock;
+
+use super::characteristic::Characteristic;
 use crate::ring::{EdgeShape, RingShape};
 use crate::scheme::{Scheme, Support};
 
@@ -13,13 +16,17 @@ const KEPT: usize = 32;
 pub(crate) struct Rules<'s> {
     scheme: &'s dyn Scheme,
     betas: [f64; KEPT],
+    characteristics: [OnceLock<Characteristic>; KEPT],
 }
 
 impl<'s> Rules<'s> {
     /// The rules of `scheme`; `None` if it is not of the family.
     pub(crate) fn of(scheme: &'s dyn Scheme) -> Option<Self> {
-        let rules =
-            Self { scheme, betas: core::array::from_fn(|k| if k < 2 { 0.0 } else { beta(scheme, k) }) };
+        let rules = Self {
+            scheme,
+            betas: core::array::from_fn(|k| if k < 2 { 0.0 } else { beta(scheme, k) }),
+            characteristics: [const { OnceLock::new() }; KEPT],
+        };
         let kept = (2..KEPT).all(|k| (0.0..=1.0 / k as f64).contains(&rules.betas[k]));
         (scheme.support() == Support::OneRing && kept && is_regular_loop(scheme)).then_some(rules)
     }
@@ -31,6 +38,14 @@ impl<'s> Rules<'s> {
             Some(&beta) => beta,
             None => beta(self.scheme, valence),
         }
+    }
+}
+
+impl Rules<'_> {
+    /// The characteristic map of a valence; `None` for those that are not kept.
+    pub(crate) fn characteristic(&self, valence: usize) -> Option<&Characteristic> {
+        let kept = self.characteristics.get(valence).filter(|_| valence >= 3)?;
+        Some(kept.get_or_init(|| Characteristic::of(valence)))
     }
 }
 

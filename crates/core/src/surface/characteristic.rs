@@ -1,0 +1,167 @@
+//! The characteristic map of an irregular vertex inside the surface: the shape that every piece there tends to, but for
+//! an affine map.
+//!
+//! It is the limit of the subdominant eigenvectors of refinement. For valence k, w = e^(2πi/k) and
+//! λ = 3/8 + cos(2π/k)/4 the ring stands at the powers of w and the vertex at 0; the vertex a opposite to it beyond
+//! the edge from 1 to w obeys λa = (3/8)(1 + w) + a/8, and the one b beyond 1 obeys
+//! λb = 10/16 + (w + w̄ + a + aw̄ + b)/16. The map is mirrored by each edge and by each bisector, so that these run
+//! straight; it scales by λ from level to level, so that a sector is its outer three regular pieces, their copies
+//! shrunk by powers of λ, and 0: the hull of 0 and the outer pieces' Bézier points holds it all.
+
+use super::net::{EDGES, Net};
+use super::spoke::Spoke;
+use crate::vector::DVec3;
+
+/// The map over one face of a vertex, with points in the plane z = 0.
+#[derive(Clone, Debug)]
+pub(crate) struct Characteristic {
+    /// The control points as one refinement scales them by λ.
+    pub(crate) control: Spoke,
+    /// The face's sector, and its halves on either side of the bisector.
+    pub(crate) sectors: [Sector; 3],
+}
+
+/// Points that hold the map over a sector.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sector {
+    /// Their hull holds all of it but 0.
+    pub(crate) hull: Vec<DVec3>,
+    /// Their hull holds the rim, the edge opposite to the vertex.
+    pub(crate) rim: Vec<DVec3>,
+    /// From 0 to here runs the edge at which the sector starts, counter-clockwise.
+    pub(crate) start: DVec3,
+    /// The same for the edge at which it ends.
+    pub(crate) end: DVec3,
+}
+
+impl Characteristic {
+    /// The map for a valence of at least 3.
+    pub(crate) fn of(valence: usize) -> Self {
+        let turn = core::f64::consts::TAU / valence as f64;
+        let power = |j: f64| DVec3::new((turn * j).cos(), (turn * j).sin(), 0.0);
+        let eigenvalue = 0.375 + 0.25 * turn.cos();
+        let between = 0.375 * (power(0.0) + power(1.0)) / (eigenvalue - 0.125);
+        let rotated = |p: DVec3, j: f64| {
+            let by = power(j);
+            DVec3::new(p.x * by.x - p.y * by.y, p.x * by.y + p.y * by.x, 0.0)
+        };
+        let around = power(1.0) + power(-1.0) + between + rotated(between, -1.0);
+        let past = (0.625 * power(0.0) + 0.0625 * around) / (eigenvalue - 0.0625);
+        let control = Spoke {
+            corner: 0,
+            at: DVec3::ZERO,
+            ring: (0..valence).map(|j| power(j as f64)).collect(),
+            outer: [rotated(between, -1.0), past, between, rotated(past, 1.0), rotated(between, 1.0)],
+        };
+        // The vertex stays at 0 whatever its weights are.
+        let refined = control.refined(0.0);
+        let [first, second, middle] = [1, 2, 3].map(|part| Net::of(&refined.regular(part)));
+        let rim = |net: &Net| EDGES[1].map(|at| net.0[at]);
+        let directions = [power(0.0), power(0.5), power(1.0)];
+        let sector = |nets: &[&Net], rim: Vec<DVec3>, start: DVec3, end: DVec3| {
+            let points: Vec<DVec3> = nets.iter().flat_map(|net| net.0).collect();
+            let along = |direction: DVec3| {
+                let on_line = points.iter().filter(|p| direction.cross(**p).length() < ON_LINE);
+                on_line.map(|p| p.dot(direction)).fold(0.0, f64::max) * direction
+            };
+            Sector { start: along(start), end: along(end), rim, hull: hull(&points) }
+        };
+        let sectors = [
+            sector(
+                &[&first, &middle, &second],
+                [rim(&first), rim(&second)].concat(),
+                directions[0],
+                directions[2],
+            ),
+            sector(&[&first, &middle.half(1, true)], rim(&first).to_vec(), directions[0], directions[1]),
+            sector(&[&middle.half(1, false), &second], rim(&second).to_vec(), directions[1], directions[2]),
+        ];
+        Self { control, sectors }
+    }
+}
+
+/// Points of the map within this of a line through 0 lie on it, but for rounding.
+const ON_LINE: f64 = 1e-9;
+
+/// The corners of the hull of points in the plane and 0, without 0 (Andrew's monotone chain).
+fn hull(points: &[DVec3]) -> Vec<DVec3> {
+    let mut sorted: Vec<DVec3> = points.iter().copied().chain([DVec3::ZERO]).collect();
+    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let mut chain: Vec<DVec3> = Vec::new();
+    for turn in 0..2 {
+        let start = chain.len();
+        for at in 0..sorted.len() {
+            let next = sorted[if turn == 0 { at } else { sorted.len() - 1 - at }];
+            while let [.., a, b] = chain[start..]
+                && (b - a).cross(next - a).z <= 0.0
+            {
+                chain.pop();
+            }
+            chain.push(next);
+        }
+        chain.pop();
+    }
+    chain.retain(|&corner| corner != DVec3::ZERO);
+    chain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::patch::Patch;
+
+    /// Brute force: the eigenvector is refined by the masks alone.
+    #[test]
+    fn refinement_scales_the_control_points() {
+        for valence in 3..40 {
+            let map = Characteristic::of(valence);
+            let eigenvalue = 0.375 + 0.25 * (core::f64::consts::TAU / valence as f64).cos();
+            let Patch::Spoke(refined) = map.control.refined(0.0).part(0) else { panic!() };
+            for (fine, coarse) in refined.points().zip(map.control.points()) {
+                assert!(fine.distance(eigenvalue * coarse) < 1e-13, "valence {valence}");
+            }
+        }
+    }
+
+    /// Whether a point lies in the hull of 0 and the corners, which go round it.
+    fn holds(sector: &Sector, point: DVec3) -> bool {
+        let corners: Vec<DVec3> = [DVec3::ZERO].into_iter().chain(sector.hull.iter().copied()).collect();
+        let n = corners.len();
+        let mut turned = corners.clone();
+        // The chain starts at the least point; 0 may stand anywhere in it.
+        turned.sort_by(|a, b| {
+            let centre = corners.iter().sum::<DVec3>() / n as f64;
+            let angle = |p: &DVec3| (p.y - centre.y).atan2(p.x - centre.x);
+            angle(a).total_cmp(&angle(b))
+        });
+        (0..n).all(|i| (turned[(i + 1) % n] - turned[i]).cross(point - turned[i]).z > -1e-9)
+    }
+
+    #[test]
+    fn sectors_hold_the_map() {
+        for valence in 3..30 {
+            let map = Characteristic::of(valence);
+            let mut spoke = map.control.clone();
+            for _ in 0..6 {
+                let refined = spoke.refined(0.0);
+                for part in 1..4 {
+                    let net = Net::of(&refined.regular(part));
+                    let corners = net.corners();
+                    for corner in corners {
+                        assert!(holds(&map.sectors[0], corner), "valence {valence}");
+                        let [first, second] = [1, 2].map(|half| holds(&map.sectors[half], corner));
+                        assert!(first || second, "valence {valence}");
+                    }
+                }
+                let Patch::Spoke(next) = refined.part(0) else { panic!() };
+                spoke = *next;
+            }
+            // Edges and bisectors run straight, and the outer ends are the farthest points.
+            let [whole, first, second] = &map.sectors;
+            assert_eq!((whole.start, whole.end), (first.start, second.end));
+            assert!(first.end.distance(second.start) < 1e-12);
+            assert!(first.end.length() > 0.1 && first.start.y == 0.0);
+            assert!(whole.hull.len() < 16, "{}", whole.hull.len());
+        }
+    }
+}
