@@ -209,7 +209,8 @@ mod tests {
                             (expected.regular_middle(edge), found.middle(edge));
                         near(at, other);
                         let first = |p: &DVec3| p.distance(around[0]) < 1e-14;
-                        ring.rotate_left(ring.iter().position(first).unwrap());
+                        let start = ring.iter().position(first).unwrap();
+                        ring.rotate_left(start);
                         (0..6).for_each(|i| near(ring[i], around[i]));
                     }
                     let Patch::Spoke(next) = found.part(corner) else { panic!() };
