@@ -71,6 +71,11 @@ pub(super) struct Growth<'a> {
     marks: Vec<u8>,
     /// Leaves to be evaluated.
     wanted: Vec<u32>,
+    /// Nodes that were evaluated since the bounds were last taken among neighbours.
+    pub(super) unsettled: Vec<u32>,
+    /// Nodes whose values may be too much, and by node whether it is among them.
+    above: Vec<u32>,
+    is_above: Vec<bool>,
     /// Triangles that must not be exceeded.
     budget: usize,
     halvings: usize,
@@ -111,6 +116,9 @@ impl<'a> Growth<'a> {
             loose: vec![false; nodes],
             marks: vec![0; nodes],
             wanted: (0..nodes as u32).collect(),
+            unsettled: Vec::new(),
+            above: Vec::new(),
+            is_above: vec![false; nodes],
             scales: vec![0.0; nodes],
             budget: options.budget().0,
             halvings: HALVINGS,
@@ -143,18 +151,16 @@ impl<'a> Growth<'a> {
         let mut limit = if floor > 0.0 { floor } else { self.worst() };
         for round in 0.. {
             // With the neighbours as they are emitted, some bounds come out greater than was expected.
-            let mut emission = Emission::of(self);
             if self.options.balance && round < MOST_BALANCINGS {
+                let emission = Emission::of(self);
                 self.balance(&emission);
                 self.wanted = emission.leaves.order.clone();
                 self.evaluate(if floor > 0.0 { floor } else { BALANCED * limit })?;
-                // Diagonals may have changed.
-                emission = Emission::of(self);
                 limit = if floor > 0.0 { floor } else { limit.min(WORST_SHARE * self.worst()) };
             }
-            let fails = self.settle(&emission, limit);
+            let fails = self.settle(limit);
             if !fails && (round + 1 >= MOST_BALANCINGS || self.worst() <= limit || !self.options.balance) {
-                return Ok((stop, emission));
+                break;
             }
             if let Some(reason) = self.split_worst(limit)? {
                 return Ok((reason, Emission::of(self)));
@@ -176,7 +182,7 @@ impl<'a> Growth<'a> {
             self.evaluate(target)?;
             let worst = self.worst();
             if worst <= floor {
-                let met = self.leaf_nodes().all(|node| self.values[node as usize] <= floor);
+                let met = self.above().all(|node| self.values[node as usize] <= floor);
                 return Ok(if met { ExactStop::Met } else { ExactStop::LevelCap });
             }
             if target > floor {
@@ -193,30 +199,50 @@ impl<'a> Growth<'a> {
 
     /// The greatest value of a leaf that may be split.
     fn worst(&self) -> f64 {
-        let splittable = self.leaf_nodes().filter(|&node| self.forest.level(node) < self.options.max_levels);
+        let splittable = self.above().filter(|&node| self.forest.level(node) < self.options.max_levels);
         splittable.map(|node| self.values[node as usize]).fold(0.0, f64::max)
     }
 
     /// The greatest value of any leaf.
     pub(super) fn worst_value(&self) -> f64 {
-        self.leaf_nodes().map(|node| self.values[node as usize]).fold(0.0, f64::max)
+        let nodes = (0..self.forest.node_count() as u32).filter(|&node| self.forest.children(node).is_none());
+        nodes.map(|node| self.values[node as usize]).fold(0.0, f64::max)
     }
 
-    fn leaf_nodes(&self) -> impl Iterator<Item = u32> + '_ {
-        (0..self.forest.node_count() as u32).filter(|&node| self.forest.children(node).is_none())
+    /// The leaves that may fail: all that do are among them.
+    fn above(&self) -> impl Iterator<Item = u32> + '_ {
+        self.above.iter().copied().filter(|&node| self.forest.children(node).is_none())
+    }
+
+    /// Sets the value of a leaf, and keeps it in mind if that may be too much.
+    pub(super) fn set_value(&mut self, leaf: u32, value: f64) {
+        self.values[leaf as usize] = value;
+        let least = if self.demand.is_some() { 1.0 } else { 0.0 };
+        if value > least && !self.is_above[leaf as usize] {
+            self.is_above[leaf as usize] = true;
+            self.above.push(leaf);
+        }
     }
 
     /// Wants the leaves above the target whose values are not tight; whether there are any.
     fn want_loose(&mut self, target: f64) -> bool {
         let above = |&node: &u32| self.loose[node as usize] && self.values[node as usize] > target;
-        self.wanted = self.leaf_nodes().filter(above).collect();
+        self.wanted = self.above().filter(above).collect();
+        self.wanted.sort_unstable();
         !self.wanted.is_empty()
     }
 
     /// Splits the leaves above the target, worst first, as far as allowed. Says why if none could be.
     fn split_worst(&mut self, target: f64) -> Result<Option<ExactStop>, RefineError> {
+        let (forest, values, is_above) = (&self.forest, &self.values, &mut self.is_above);
+        let least = if self.demand.is_some() { 1.0 } else { 0.0 };
+        self.above.retain(|&node| {
+            let stays = forest.children(node).is_none() && values[node as usize] > least;
+            is_above[node as usize] = stays;
+            stays
+        });
         let mut failing: Vec<u32> =
-            self.leaf_nodes().filter(|&node| self.values[node as usize] > target).collect();
+            self.above().filter(|&node| self.values[node as usize] > target).collect();
         let value = |node: u32| self.values[node as usize];
         failing.sort_by(|&a, &b| value(b).total_cmp(&value(a)).then(a.cmp(&b)));
         let mut changes = Changes::default();
@@ -247,6 +273,7 @@ impl<'a> Growth<'a> {
         let roots = self.mark_wanted();
         let found = self.evaluation(target).run(&roots);
         let worst = self.take(found, target);
+        self.unsettled.extend_from_slice(&self.wanted);
         self.unmark_wanted();
         self.round += 1;
         let progress = ExactProgress { round: self.round, triangles: self.forest.triangle_count(), worst };
@@ -290,7 +317,7 @@ impl<'a> Growth<'a> {
         for block in found {
             for leaf in block.leaves {
                 let node = leaf.node as usize;
-                self.values[node] = leaf.value;
+                self.set_value(leaf.node, leaf.value);
                 self.deviations[node] = leaf.deviation;
                 self.scales[node] = (leaf.scale as f32).next_up();
                 self.diagonals[node] = leaf.diagonal_from_end;
@@ -359,6 +386,7 @@ impl<'a> Growth<'a> {
         self.scales.resize(nodes, 0.0);
         self.diagonals.resize(nodes, false);
         self.loose.resize(nodes, false);
+        self.is_above.resize(nodes, false);
         self.marks.resize(nodes, 0);
         self.points.resize(self.forest.vertex_count(), UNKNOWN);
         if !self.offsets.is_empty() {

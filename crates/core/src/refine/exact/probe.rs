@@ -5,6 +5,7 @@ use super::emit::Emission;
 use super::grow::Growth;
 use super::leaf::leaf_triangles;
 use super::options::ErrorBounds;
+use crate::parallel;
 use crate::refine::RefineError;
 use crate::surface::{Deviation, Facet};
 use crate::vector::DVec3;
@@ -21,6 +22,12 @@ const MOST_TIGHTENED: usize = 20_000;
 /// Levels below a leaf whose vertices are sampled: the greatest distance is met within some per cent.
 const SAMPLED_LEVELS: usize = 3;
 
+/// Bounds below this part of the greatest tell nothing about the mesh.
+const TELLING: f64 = 0.8;
+
+/// Leaves that one call takes together.
+const BLOCK: usize = 1024;
+
 /// A lower bound beyond this part of the upper one is good enough.
 const NARROW: f64 = 0.99;
 
@@ -36,11 +43,11 @@ impl Growth<'_> {
             let mut wanted: Vec<u32> = bounds[..slack].iter().map(|&(_, leaf)| leaf).collect();
             wanted.sort_unstable();
             let before: Vec<Deviation> = wanted.iter().map(|&leaf| self.deviations[leaf as usize]).collect();
-            let known: Vec<f64> = wanted.iter().map(|&leaf| self.settled(emission, leaf)).collect();
+            let known: Vec<f64> = wanted.iter().map(|&leaf| self.settled(leaf)).collect();
             self.tighten(wanted.clone(), best.lower)?;
             // Smaller pieces show steeper drifts, which may cost more than they gain.
             for ((&leaf, deviation), known) in wanted.iter().zip(before).zip(known) {
-                if self.settled(emission, leaf) > known {
+                if self.settled(leaf) > known {
                     self.deviations[leaf as usize] = deviation;
                 }
             }
@@ -51,10 +58,22 @@ impl Growth<'_> {
         Ok(best)
     }
 
-    /// The bounds of all leaves, the greatest first.
+    /// The bounds of the leaves that matter, the greatest first: those of others are less than [`TELLING`] times as
+    /// much.
     fn bounds(&self, emission: &Emission) -> Vec<(f64, u32)> {
-        let leaves = emission.leaves.order.iter();
-        let mut bounds: Vec<(f64, u32)> = leaves.map(|&leaf| (self.settled(emission, leaf), leaf)).collect();
+        let leaves = &emission.leaves.order;
+        let least = |leaf: u32| {
+            let deviation = self.deviations[leaf as usize];
+            deviation.own.min(deviation.height)
+        };
+        let enough = TELLING * leaves.iter().map(|&leaf| least(leaf)).fold(0.0, f64::max);
+        let found = parallel::blocks(leaves.len(), BLOCK, |block| {
+            let telling = |&leaf: &u32| self.deviations[leaf as usize].own > enough;
+            let leaves = leaves[block].iter().copied().filter(telling);
+            leaves.map(|leaf| (self.settled(leaf), leaf)).collect::<Vec<_>>()
+        });
+        let mut bounds: Vec<(f64, u32)> =
+            found.into_iter().flatten().filter(|&(bound, _)| bound >= enough).collect();
         bounds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         bounds
     }
@@ -65,7 +84,7 @@ impl Growth<'_> {
         // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
         let mut worst: Vec<u32> = bounds.iter().take(PROBED).map(|&(_, leaf)| leaf).collect();
         let height = |leaf: u32| self.deviations[leaf as usize].height;
-        let mut by_height: Vec<u32> = bounds.iter().map(|&(_, leaf)| leaf).collect();
+        let mut by_height = emission.leaves.order.clone();
         let probed = PROBED.min(by_height.len());
         if probed < by_height.len() {
             by_height

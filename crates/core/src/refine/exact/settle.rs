@@ -1,8 +1,9 @@
 //! The bounds of the leaves among their neighbours as they are emitted.
 
-use super::emit::Emission;
 use super::grow::Growth;
+use crate::emit::{Diagonal, Pattern, closure};
 use crate::mesh::NONE;
+use crate::parallel;
 use crate::vector::DVec3;
 
 /// A slope beyond all that can be met.
@@ -12,82 +13,146 @@ const STEEP: f64 = f64::MAX;
 /// neighbours.
 const UNSETTLED: (f64, f64) = (4.0, 0.0);
 
+/// Leaves that one call takes together.
+const BLOCK: usize = 1024;
+
 impl Growth<'_> {
-    /// Takes the bounds of all leaves with the angles between the emitted triangles; sets the values of those that
-    /// come out above `limit`, which they were not expected to. Whether there are any.
-    pub(super) fn settle(&mut self, emission: &Emission, limit: f64) -> bool {
+    /// Takes the bounds of the leaves that were evaluated since, and of their neighbours, with the angles between the
+    /// emitted triangles; sets the values of those that come out above `limit`, which they were not expected to.
+    /// Whether there are any.
+    pub(super) fn settle(&mut self, limit: f64) -> bool {
+        let unsettled = core::mem::take(&mut self.unsettled);
+        let nodes = self.forest.node_count();
+        let is_leaf = |&node: &u32| self.forest.children(node).is_none();
+        let mut changed = vec![2 * unsettled.len() > nodes; nodes];
+        if 2 * unsettled.len() <= nodes {
+            for leaf in unsettled.into_iter().filter(is_leaf) {
+                changed[leaf as usize] = true;
+                for (edge, second) in [(0, false), (1, false), (2, false), (0, true), (1, true), (2, true)] {
+                    if let Some((other, _)) = self.beyond(leaf, edge, second) {
+                        changed[other as usize] = true;
+                    }
+                }
+            }
+        }
+        let leaves: Vec<u32> =
+            (0..nodes as u32).filter(|&node| changed[node as usize]).filter(is_leaf).collect();
+        let failing = parallel::blocks(leaves.len(), BLOCK, |block| {
+            let values = leaves[block].iter().map(|&leaf| {
+                let scale = f64::from(self.scales[leaf as usize]);
+                // What holds without neighbours holds with them.
+                let is_plain = self.deviations[leaf as usize].own * scale <= limit;
+                (leaf, if is_plain { 0.0 } else { self.settled(leaf) * scale })
+            });
+            values.filter(|&(_, value)| value > limit).collect::<Vec<_>>()
+        });
         let mut fails = false;
-        for &leaf in &emission.leaves.order {
-            let scale = f64::from(self.scales[leaf as usize]);
-            // What holds without neighbours holds with them.
-            if self.deviations[leaf as usize].own * scale <= limit {
-                continue;
-            }
-            let value = self.settled(emission, leaf) * scale;
-            if value > limit {
-                self.values[leaf as usize] = value.max(self.values[leaf as usize]);
-                fails = true;
-            }
+        for (leaf, value) in failing.into_iter().flatten() {
+            let known = self.values[leaf as usize];
+            self.set_value(leaf, value.max(known));
+            fails = true;
         }
         fails
     }
 
     /// The bound of a leaf.
-    pub(super) fn settled(&self, emission: &Emission, leaf: u32) -> f64 {
+    pub(super) fn settled(&self, leaf: u32) -> f64 {
         let deviation = self.deviations[leaf as usize];
         // Neighbours can't help.
         if deviation.own <= deviation.height {
             return deviation.own;
         }
-        let first = emission.leaves.starts[leaf as usize];
-        let count = 1 + self.forest.split_edges(leaf).count_ones();
-        // Edges on sharp curves count on their own.
+        let (pattern, labels) = self.covering(leaf);
+        let at = labels.map(|vertex| if vertex == NONE { DVec3::ZERO } else { self.emitted(vertex) });
+        // By half-edge of the pattern, the corner opposite of the neighbour. Edges on sharp curves count on their own.
+        let mut opposite = [None; 12];
         let open = self.forest.open_edges(leaf);
-        let alone = [0, 1, 2].map(|edge| match open[edge] {
-            true => self.borders(&emission.leaves, leaf, edge),
-            false => [NONE; 2],
-        });
-        let alone = alone.as_flattened();
+        for edge in (0..3).filter(|&edge| !open[edge]) {
+            let [first, last] = pattern.border(edge);
+            for (h, second) in [(first, false), (last, true)] {
+                if first != last || !second {
+                    let vertex = self.beyond(leaf, edge, second).map(|(_, vertex)| vertex);
+                    opposite[h] = vertex.map(|vertex| self.emitted(vertex));
+                }
+            }
+        }
+        let triangles = pattern.triangles();
+        for (h, opposite) in opposite.iter_mut().enumerate().take(3 * triangles.len()) {
+            if let Some(twin) = pattern.twin(h) {
+                *opposite = Some(at[triangles[twin / 3][(twin + 2) % 3] as usize]);
+            }
+        }
         let (mut squared, mut slope) = (0.0f64, STEEP);
-        for triangle in first..first + count {
-            let (turn, room) = self.around(emission, triangle, alone);
+        for (triangle, opposite) in triangles.iter().zip(opposite.as_chunks::<3>().0) {
+            let (turn, room) = around(triangle.map(|corner| at[corner as usize]), opposite);
             squared = squared.max(turn);
             slope = slope.min(room);
         }
         deviation.bound(squared.sqrt(), slope)
     }
 
-    /// The greatest squared chord of the angles between the planes of a triangle and its neighbours, and the greatest
-    /// slope at which points may drift over them; half-edges in `alone` do not count.
-    fn around(&self, emission: &Emission, triangle: u32, alone: &[u32]) -> (f64, f64) {
-        let at = |vertex: u32| self.emitted(vertex);
-        let own = emission.triangles[triangle as usize].map(at);
-        let edges = [own[1] - own[0], own[2] - own[1], own[0] - own[2]];
-        let Some((normal, area)) = plane(edges[0], edges[1]) else { return UNSETTLED };
-        let lengths = edges.map(DVec3::length);
-        // Half of what the angle at a corner leaves of π, at most π/2: its tangent is the cotangent of half the angle.
-        let free = [0, 1, 2].map(|corner| {
-            let before = (corner + 2) % 3;
-            (lengths[corner] * lengths[before] - edges[corner].dot(edges[before])) / area
-        });
-        let (mut squared, mut slope) = (0.0f64, STEEP);
-        for (edge, h) in (3 * triangle..).take(3).enumerate() {
-            let twin = emission.twins[h as usize];
-            if twin == NONE || alone.contains(&h) {
-                continue;
-            }
-            let opposite = emission.triangles[twin as usize / 3][(twin as usize + 2) % 3];
-            let out = at(opposite) - own[edge];
-            // The neighbour runs along the edge the other way.
-            let Some((other, area)) = plane(out, edges[edge]) else { return UNSETTLED };
-            squared = squared.max(normal.distance_squared(other));
-            // Tangents of the neighbour's angles at both ends: the lesser is that of the greater product.
-            let at_start = out.dot(edges[edge]);
-            let product = at_start.max(lengths[edge] * lengths[edge] - at_start);
-            slope = slope.min(free[edge]).min(free[(edge + 1) % 3]).min(area / product);
-        }
-        (squared, slope)
+    /// How a leaf is covered, and the vertices that its corners and middles are.
+    fn covering(&self, leaf: u32) -> (&'static Pattern, [u32; 6]) {
+        let [a, b, c] = self.forest.corners(leaf);
+        let middles = [0, 1, 2].map(|edge| self.forest.middle(leaf, edge));
+        let split = (0..3).fold(0, |bits, edge| bits | u8::from(middles[edge].is_some()) << edge);
+        let diagonal = if self.diagonals[leaf as usize] { Diagonal::FromEnd } else { Diagonal::FromStart };
+        let [d, e, f] = middles.map(|middle| middle.unwrap_or(NONE));
+        (closure(split, diagonal), [a, b, c, d, e, f])
     }
+
+    /// The leaf beyond an edge of a leaf, or beyond its second half where it is split, and the vertex opposite of the
+    /// triangle there; `None` at the boundary.
+    fn beyond(&self, leaf: u32, edge: usize, second: bool) -> Option<(u32, u32)> {
+        let forest = &self.forest;
+        let (other, half_edge) = match forest.twin(leaf, edge) {
+            Some(twin) => {
+                let (other, side) = (twin / 3, twin as usize % 3);
+                let other = match forest.children(other) {
+                    None => other,
+                    Some(first) if second => first + side as u32,
+                    Some(first) => first + (side as u32 + 1) % 3,
+                };
+                (other, self.covering(other).0.border(side)[0])
+            }
+            // The neighbour is greater: beyond the parent's edge, of which this is a half.
+            None => {
+                let (parent, place) = forest.parent(leaf)?;
+                let twin = forest.twin(parent, edge)?;
+                let (other, side) = (twin / 3, twin as usize % 3);
+                (other, self.covering(other).0.border(side)[usize::from(place == edge)])
+            }
+        };
+        let (pattern, labels) = self.covering(other);
+        let corner = pattern.triangles()[half_edge / 3][(half_edge + 2) % 3];
+        Some((other, labels[corner as usize]))
+    }
+}
+
+/// The greatest squared chord of the angles between the planes of a triangle and its neighbours, given by their corners
+/// opposite, and the greatest slope at which points may drift over them.
+fn around(own: [DVec3; 3], opposite: &[Option<DVec3>; 3]) -> (f64, f64) {
+    let edges = [own[1] - own[0], own[2] - own[1], own[0] - own[2]];
+    let Some((normal, area)) = plane(edges[0], edges[1]) else { return UNSETTLED };
+    let lengths = edges.map(DVec3::length);
+    // Half of what the angle at a corner leaves of π, at most π/2: its tangent is the cotangent of half the angle.
+    let free = [0, 1, 2].map(|corner| {
+        let before = (corner + 2) % 3;
+        (lengths[corner] * lengths[before] - edges[corner].dot(edges[before])) / area
+    });
+    let (mut squared, mut slope) = (0.0f64, STEEP);
+    for edge in 0..3 {
+        let Some(opposite) = opposite[edge] else { continue };
+        let out = opposite - own[edge];
+        // The neighbour runs along the edge the other way.
+        let Some((other, area)) = plane(out, edges[edge]) else { return UNSETTLED };
+        squared = squared.max(normal.distance_squared(other));
+        // Tangents of the neighbour's angles at both ends: the lesser is that of the greater product.
+        let at_start = out.dot(edges[edge]);
+        let product = at_start.max(lengths[edge] * lengths[edge] - at_start);
+        slope = slope.min(free[edge]).min(free[(edge + 1) % 3]).min(area / product);
+    }
+    (squared, slope)
 }
 
 /// The unit vector at right angles to two edges, and the area of their parallelogram; `None` if that is nothing, or
