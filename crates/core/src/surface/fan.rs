@@ -172,6 +172,11 @@ impl RefinedFans<'_> {
         (fan.at, ring)
     }
 
+    /// Whether a part is regular: new points are, old ones stay what they were.
+    pub(crate) fn is_regular(&self, part: usize) -> bool {
+        part == 3 || self.fans.0[part].regular_ring().is_some()
+    }
+
     /// The fans of a part; numbered as [`lattice::Refined::part`] does.
     pub(crate) fn part(&self, part: usize) -> Fans {
         // Around the middle of an edge the parts follow each other: the end's, the middle one, the start's.

@@ -110,12 +110,16 @@ impl Greatest {
         let outside = facet.outside_from_first(edge, offset);
         let room = facet.room_from_first(edge, offset);
         self.stands(height, outside);
-        if outside > facet.on_edge() {
+        if outside.abs() <= facet.on_edge() {
+            self.beyond |= room < -facet.on_edge();
+            return;
+        }
+        self.beyond |= room <= 0.0;
+        self.swing = self.swing.max(outside.abs() / room);
+        if outside > 0.0 {
             self.drift = self.drift.max(outside);
             self.slope = self.slope.max(outside / room);
         }
-        self.swing = self.swing.max(outside.abs() / room);
-        self.beyond |= room <= 0.0;
     }
 }
 

@@ -63,6 +63,7 @@ impl Patch {
     }
 
     /// The patch refined once.
+    #[inline]
     pub(crate) fn refined(&self, rules: &Rules) -> RefinedPatch<'_> {
         match self {
             Self::Regular(points) => RefinedPatch::Regular(Refined::of(points)),
@@ -82,6 +83,15 @@ impl Patch {
 }
 
 impl RefinedPatch<'_> {
+    /// Whether a part is regular.
+    pub(crate) fn is_regular(&self, part: usize) -> bool {
+        match self {
+            Self::Regular(_) => true,
+            Self::Spoke(refined) => refined.is_regular(part),
+            Self::Irregular(refined) => refined.is_regular(part),
+        }
+    }
+
     /// One of the four parts: 0 to 2 keep the corner of their number, at its place; corner `i` of part 3, the middle
     /// one, is the new vertex opposite corner `i`.
     #[inline]

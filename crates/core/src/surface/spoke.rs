@@ -81,6 +81,11 @@ impl RefinedSpoke {
         }
     }
 
+    /// Whether a part is regular: all but that at the irregular corner.
+    pub(crate) fn is_regular(&self, part: usize) -> bool {
+        self.local(part) != 0
+    }
+
     /// The number of a part as it counts from the irregular corner.
     fn local(&self, part: usize) -> usize {
         if part == 3 { 3 } else { (part + 3 - self.own.corner) % 3 }

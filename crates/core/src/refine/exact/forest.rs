@@ -123,7 +123,9 @@ impl Forest {
     /// Which edges of a leaf the neighbours have split, as bits.
     #[inline]
     pub(super) fn split_edges(&self, node: u32) -> u8 {
-        (0..3).fold(0, |bits, edge| bits | u8::from(self.middle(node, edge).is_some()) << edge)
+        let is_split =
+            |edge| self.twin(node, edge).is_some_and(|twin| self.children[twin as usize / 3] != NONE);
+        (0..3).fold(0, |bits, edge| bits | u8::from(is_split(edge)) << edge)
     }
 
     /// Which edges of a node lie on the boundary of the mesh or on a sharp edge.
