@@ -205,8 +205,11 @@ impl<'a> Growth<'a> {
 
     /// The greatest value of any leaf.
     pub(super) fn worst_value(&self) -> f64 {
-        let nodes = (0..self.forest.node_count() as u32).filter(|&node| self.forest.children(node).is_none());
-        nodes.map(|node| self.values[node as usize]).fold(0.0, f64::max)
+        self.leaf_nodes().map(|node| self.values[node as usize]).fold(0.0, f64::max)
+    }
+
+    fn leaf_nodes(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.forest.node_count() as u32).filter(|&node| self.forest.children(node).is_none())
     }
 
     /// The leaves that may fail: all that do are among them.
