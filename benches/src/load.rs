@@ -4,8 +4,9 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 
+use crate::clock::peak_bytes;
 use crate::mesh;
 
 /// Runs [`child`] in a process of its own, three times.
@@ -33,13 +34,4 @@ pub(crate) fn child(file: &Path) -> Result<()> {
         (peak - before) as f64 / loaded.face_count() as f64
     );
     Ok(())
-}
-
-/// The greatest resident memory this process has had (Linux).
-fn peak_bytes() -> Result<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").context("peak memory needs Linux's /proc")?;
-    let line =
-        status.lines().find(|line| line.starts_with("VmHWM:")).context("no VmHWM in /proc/self/status")?;
-    let kilobytes: u64 = line.split_whitespace().nth(1).context("no number after VmHWM")?.parse()?;
-    Ok(kilobytes * 1024)
 }

@@ -1,49 +1,88 @@
 //! Benchmarks, side by side with peers in the same run.
 //!
-//! `cargo run --release -p limitmesh-benches -- WORK [MODELS]` with WORK one of `uniform`, `stepwise`, `distance`,
-//! `certified`, `load` or `all`, and MODELS the folder of the shared models (default: the environment variable
-//! `LIMITMESH_MODELS`). Peers that are not installed are left out, and that is said.
+//! `cargo run --release -p limitmesh-benches -- WORK [MODELS]` with MODELS the folder of the shared models (default: the
+//! environment variable `LIMITMESH_MODELS`) and WORK one of
+//!
+//! * `uniform`, `stepwise`, `distance`, `certified`, `load`: speed beside peers; `speed` runs all of these;
+//! * `against-paper`, `against-uniform`, `against-optimum`, `against-simplified`, `certificate`: how good exact refinement
+//!   is, over many models; `quality` runs all of these;
+//! * `throughput`: its triangles per second and bytes per triangle;
+//! * `figures FOLDER`: the pictures of the README, from built-in models;
+//! * `all`: all but the figures.
+//!
+//! Peers that are not installed are left out, and that is said.
 
+mod clock;
 mod distance;
+mod figures;
 mod load;
 mod peers;
+mod quality;
 mod refinement;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use limitmesh::Mesh;
 
+/// All measurements of speed beside peers, in the order in which `speed` makes them.
+const SPEED: [&str; 5] = ["uniform", "stepwise", "distance", "certified", "load"];
+
+/// All measurements of quality, in the order in which `quality` makes them.
+const QUALITY: [&str; 5] =
+    ["against-paper", "against-uniform", "against-optimum", "against-simplified", "certificate"];
+
 fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1);
     let work = arguments.next().unwrap_or_else(|| "all".into());
-    let models = arguments
+    let folder = arguments
         .next()
         .map(PathBuf::from)
         .or_else(|| std::env::var_os("LIMITMESH_MODELS").map(PathBuf::from))
-        .context("name the folder of the models, or set LIMITMESH_MODELS")?;
-    let bunny = models.join("bunny_3674.obj");
+        .context("name the folder of the models, or of the figures, or set LIMITMESH_MODELS")?;
     match work.as_str() {
+        // Works in processes of their own, whose peaks of memory are then theirs.
+        "load-child" => load::child(&folder),
+        "throughput-child" => {
+            let tolerance = arguments.next().context("a tolerance is missing")?;
+            quality::throughput_child(&folder, tolerance.parse()?)
+        }
+        "figures" => figures::figures(&folder),
+        "speed" => SPEED.iter().try_for_each(|work| measure(work, &folder)),
+        "quality" => QUALITY.iter().try_for_each(|work| measure(work, &folder)),
+        "all" => {
+            let works = SPEED.iter().chain(&QUALITY).chain(&["throughput"]);
+            works.into_iter().try_for_each(|work| measure(work, &folder))
+        }
+        one => measure(one, &folder),
+    }
+}
+
+/// One measurement, on the models in `folder`.
+fn measure(work: &str, folder: &Path) -> Result<()> {
+    let bunny = folder.join("bunny_3674.obj");
+    match work {
         "uniform" => refinement::uniform(&bunny),
         "stepwise" => refinement::stepwise(&bunny),
         "distance" => distance::distance(&bunny),
         "certified" => distance::certified(&bunny),
-        "load" => load::load(&models.join("gcanyon_530k.ply")),
-        // Reading and building in a process of its own, whose peak of memory is then that work's.
-        "load-child" => load::child(&models),
-        "all" => {
-            refinement::uniform(&bunny)?;
-            refinement::stepwise(&bunny)?;
-            distance::distance(&bunny)?;
-            distance::certified(&bunny)?;
-            load::load(&models.join("gcanyon_530k.ply"))
-        }
-        other => bail!("no benchmark is called {other}: uniform, stepwise, distance, certified, load, all"),
+        "load" => load::load(&folder.join("gcanyon_530k.ply")),
+        "against-paper" => quality::against_paper(folder),
+        "against-uniform" => quality::against_uniform(folder),
+        "against-optimum" => quality::against_optimum(folder),
+        "against-simplified" => quality::against_simplified(folder),
+        "certificate" => quality::certificate(folder),
+        "throughput" => quality::throughput(folder),
+        other => bail!(
+            "no benchmark is called {other}: {}, speed, {}, quality, throughput, figures, all",
+            SPEED.join(", "),
+            QUALITY.join(", ")
+        ),
     }
 }
 
 /// The control mesh in a file.
-fn mesh(path: &std::path::Path) -> Result<Mesh> {
+fn mesh(path: &Path) -> Result<Mesh> {
     let soup = limitmesh_io::read(path)?;
     let (mesh, _) = Mesh::from_soup(&soup, &Default::default())?;
     Ok(mesh)

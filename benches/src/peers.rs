@@ -69,3 +69,62 @@ pub(crate) fn meshlab_distance(a: &Mesh, b: &Mesh, samples: usize) -> Result<Opt
     };
     Ok(Some(MeshLab { forward, backward, seconds }))
 }
+
+/// Programs that simplify meshes by quadrics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Simplifier {
+    MeshLab,
+    Meshoptimizer,
+}
+
+impl Simplifier {
+    pub(crate) const ALL: [Self; 2] = [Self::MeshLab, Self::Meshoptimizer];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::MeshLab => "MeshLab",
+            Self::Meshoptimizer => "meshoptimizer",
+        }
+    }
+
+    /// As `simplify.py` calls it; meshoptimizer's meshes are read and written by MeshLab.
+    fn modules(self) -> (&'static str, &'static str) {
+        match self {
+            Self::MeshLab => ("meshlab", "import pymeshlab, numpy"),
+            Self::Meshoptimizer => ("meshoptimizer", "import pymeshlab, numpy, meshoptimizer"),
+        }
+    }
+}
+
+/// A simplified mesh and the processor seconds of the collapses, without reading and writing.
+pub(crate) struct Simplified {
+    pub(crate) mesh: Mesh,
+    pub(crate) seconds: f64,
+}
+
+/// `mesh` with about so many triangles; `None` where Python lacks the modules.
+pub(crate) fn simplified(
+    simplifier: Simplifier,
+    mesh: &Mesh,
+    triangles: usize,
+) -> Result<Option<Simplified>> {
+    let (name, import) = simplifier.modules();
+    let found = Command::new("python3").args(["-c", import]).output();
+    if !found.is_ok_and(|output| output.status.success()) {
+        return Ok(None);
+    }
+    let folder_of_files = tempfile::tempdir()?;
+    let [fine, coarse] = ["fine.ply", "coarse.ply"].map(|name| folder_of_files.path().join(name));
+    let output = limitmesh_io::Output::new(mesh.as_triangles());
+    limitmesh_io::write(&fine, &output, &Default::default())?;
+    let output = Command::new("python3")
+        .arg(folder().join("simplify.py"))
+        .arg(name)
+        .args([&fine, &coarse])
+        .arg(triangles.to_string())
+        .output()?;
+    ensure!(output.status.success(), "{}: {}", simplifier.name(), String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout)?;
+    let line = text.lines().last().context("the script printed nothing")?;
+    Ok(Some(Simplified { mesh: crate::mesh(&coarse)?, seconds: line.trim().parse()? }))
+}
