@@ -61,6 +61,7 @@ pub(crate) fn exact_stop_name(stop: ExactStop) -> &'static str {
         ExactStop::TriangleCap => "triangle-cap",
         ExactStop::LevelCap => "level-cap",
         ExactStop::MemoryCap => "memory-cap",
+        ExactStop::Rounding => "rounding",
         _ => "other",
     }
 }

@@ -7,6 +7,9 @@ use crate::vector::{DVec3, unit_or_zero};
 /// up to 1e-16 over this.
 const FLAT: f64 = 1e-7;
 
+/// Triangles with a smaller sine are slivers, whose plane is straightened.
+const SLIVER: f64 = 1e-2;
+
 /// Squared lengths between these neither overflow nor vanish in what is computed from them.
 const SAFE: core::ops::Range<f64> = 1e-140..1e140;
 
@@ -30,9 +33,6 @@ pub(crate) struct Facet {
     least_slope: f64,
 }
 
-/// Distances below this part of a triangle's size are what rounding leaves of zero where points coincide.
-const ROUNDING: f64 = 1e-12;
-
 /// Where a point stands to an edge, within the triangle's plane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Beside {
@@ -43,6 +43,9 @@ pub(crate) struct Beside {
 }
 
 impl Facet {
+    /// Distances below this part of the coordinates' size are what rounding leaves of zero where points coincide.
+    pub(crate) const ROUNDING: f64 = 5e-14;
+
     /// The triangle with those corners.
     pub(crate) fn new(corners: [DVec3; 3]) -> Self {
         let [a, b, c] = corners;
@@ -57,7 +60,13 @@ impl Facet {
         };
         let across = along[0].cross(along[1]);
         let sine = across.length();
-        let normal = if sine > FLAT { across / sine } else { DVec3::ZERO };
+        let mut normal = if sine > FLAT { across / sine } else { DVec3::ZERO };
+        if sine < SLIVER && normal != DVec3::ZERO {
+            // Rounding must not tilt a sliver along its length.
+            let longest =
+                (1..3).fold(0, |longest, edge| if lengths[edge] > lengths[longest] { edge } else { longest });
+            normal = unit_or_zero(normal - normal.dot(along[longest]) * along[longest]);
+        }
         let outward = along.map(|edge| edge.cross(normal));
         let from_first = [DVec3::ZERO, edges[0], -edges[2]];
         // The tangent of an angle is the parallelogram's area over the product of its edges; the greatest product
@@ -72,7 +81,7 @@ impl Facet {
             along,
             lengths,
             normal,
-            on_edge: ROUNDING
+            on_edge: Self::ROUNDING
                 * edges.iter().chain(&corners).map(|v| v.abs().max_element()).fold(0.0, f64::max),
             outward,
             offsets: [0, 1, 2].map(|edge| outward[edge].dot(from_first[edge])),

@@ -44,6 +44,20 @@ impl Deviation {
         Self { own, height: own, drift: 0.0, slope: 0.0 }
     }
 
+    /// The same for a triangle whose corners were moved off the surface by up to `moved`, up to `aside` of that along
+    /// its plane.
+    ///
+    /// At such a corner the projections on the planes around it lie up to `aside` from it, and up to twice that apart;
+    /// whatever they leave uncovered near it is that far from the surface's corner's foot. Curves may reach by `aside` over
+    /// other edges there.
+    pub(crate) fn off(self, moved: f64, aside: f64) -> Self {
+        if moved == 0.0 {
+            return self;
+        }
+        let height = self.height.max(moved).hypot(2.0 * aside);
+        Self { own: self.own.max(moved), height, drift: self.drift + aside, ..self }
+    }
+
     /// The bound where the neighbours' planes are turned by angles with this chord (2 sin(θ/2)) at most, and `slope`
     /// is the greatest that is allowed.
     #[inline]

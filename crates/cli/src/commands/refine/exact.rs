@@ -205,6 +205,12 @@ fn outcome(found: &Exact, goals: &Goals, error: &ErrorReport, arguments: &Refine
                 format!("the control mesh has more than --triangles {wanted} already; {written}")
             });
         }
+        ExactStop::Rounding => {
+            return Outcome::StoppedShort(format!(
+                "{} is finer than rounding leaves certain; {written}",
+                goals.in_words()
+            ));
+        }
         _ => return Outcome::Done,
     };
     Outcome::StoppedShort(format!("{cap} was reached before {}; {written}", goals.in_words()))

@@ -11,6 +11,9 @@ use crate::vector::DVec3;
 /// angle.
 const LEAST_CONE: f64 = 1.0 / 16.0;
 
+/// Lengths below it have no reciprocal.
+const LEAST_TOLERANCE: f64 = 1e-300;
+
 /// The demands; without any, values are plain distances.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Demand {
@@ -25,11 +28,15 @@ pub(super) struct Demand {
 }
 
 impl Demand {
+    /// `rounding` is what rounding may do to a distance.
+    ///
     /// # Errors
     /// A camera or a view that shows nothing.
-    pub(super) fn of(options: &ExactOptions<'_>) -> Result<Self, MeshError> {
+    pub(super) fn of(options: &ExactOptions<'_>, rounding: f64) -> Result<Self, MeshError> {
         Ok(Self {
-            tolerance: options.tolerance,
+            // Bounds are increased by what rounding may have done. What is within that needs no more triangles; such
+            // tolerances are not called met.
+            tolerance: options.tolerance.map(|length| (length - rounding).max(rounding).max(LEAST_TOLERANCE)),
             angle: options.angle,
             view: options.view,
             pixels: options.pixels,

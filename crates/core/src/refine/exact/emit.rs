@@ -47,6 +47,9 @@ impl Growth<'_> {
         join_copies(&mut positions, &junctions.vertices);
         check_finite(&positions)?;
         let error = self.probe(&emission)?;
+        let failed = self.options.tolerance.filter(|&tolerance| error.upper > tolerance);
+        let stop = if stop == ExactStop::Met && failed.is_some() { ExactStop::Rounding } else { stop };
+        let beyond = failed.map_or(0.0, |tolerance| error.upper / tolerance);
         let (tags, sides) = (self.tags(&emission), self.sides(&emission));
         let Emission { triangles, twins, leaves } = emission;
         let parents = leaves.parents(&self.forest, |leaf| self.pattern(leaf));
@@ -60,7 +63,7 @@ impl Growth<'_> {
             origins,
             parents,
             error,
-            worst: if self.demand.is_some() { self.worst_value() } else { 0.0 },
+            worst: if self.demand.is_some() { self.worst_value().max(beyond) } else { 0.0 },
             stop,
             levels: (0..self.forest.node_count() as u32)
                 .map(|node| self.forest.level(node))

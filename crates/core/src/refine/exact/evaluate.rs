@@ -48,6 +48,8 @@ struct Value {
     /// What distances were multiplied by.
     scale: f64,
     deviation: Deviation,
+    /// The chord of the greatest angle between its normal and the limit normals at its corners.
+    tilt: f64,
 }
 
 /// What an evaluation looks at.
@@ -168,6 +170,7 @@ impl Evaluation<'_> {
         let mut best: Option<Leaf> = None;
         let is_choice = split.count_ones() == 2;
         let fixed = self.fixed.filter(|_| is_choice).map(|fixed| fixed[node as usize]);
+        let mut tilt = 0.0f64;
         // What the triangle comes to that both diagonals leave as it is.
         let mut cut_off: Option<Value> = None;
         for diagonal_from_end in [false, true] {
@@ -190,6 +193,7 @@ impl Evaluation<'_> {
                 if is_shared {
                     cut_off = Some(found);
                 }
+                tilt = tilt.max(found.tilt);
                 leaf.value = leaf.value.max(found.value);
                 leaf.scale = leaf.scale.max(found.scale);
                 leaf.deviation = leaf.deviation.max(found.deviation);
@@ -203,10 +207,10 @@ impl Evaluation<'_> {
         }
         // The surface's corners are that far from the triangles' own.
         let moved = self.moved(node);
-        found.leaves.extend(best.map(|leaf| {
-            let deviation =
-                leaf.deviation.max(Deviation { own: moved, height: moved, ..Deviation::default() });
-            Leaf { value: leaf.value.max(moved * leaf.scale), deviation, ..leaf }
+        found.leaves.extend(best.map(|leaf| Leaf {
+            value: leaf.value.max(moved * leaf.scale),
+            deviation: leaf.deviation.off(moved, moved * tilt),
+            ..leaf
         }));
     }
 
@@ -219,12 +223,14 @@ impl Evaluation<'_> {
         open: [bool; 3],
     ) -> Value {
         let facet = Facet::new(corners.map(|point| point.position));
-        let (chord, slope) = expected(&facet, &corners);
+        let (tilt, slope) = expected(&facet, &corners);
+        // The neighbour stands as far from the limit normals, on their other side.
+        let chord = 2.0 * tilt;
         let scale = self.demand.distance_scale(&facet, &corners);
         let effort = Effort { target: self.target / scale, halvings: self.halvings, open, chord, slope };
         let deviation = pieces.deviation(part, &facet, self.rules, effort);
         let value = (deviation.bound(chord, slope) * scale).max(self.demand.cone(&facet, &corners));
-        Value { value, scale, deviation }
+        Value { value, scale, deviation, tilt }
     }
 }
 
@@ -255,10 +261,9 @@ impl Evaluation<'_> {
     }
 }
 
-/// What is expected of the neighbours of a triangle: the chord of the angle between their planes, from the limit
+/// What the neighbours of a triangle are expected from: the greatest chord of the angles between its plane and the limit
 /// normals at its corners, and the greatest slope of a drift, from its own angles.
 fn expected(facet: &Facet, corners: &[LimitPoint; 3]) -> (f64, f64) {
-    // The neighbour stands as far from the limit normals, on their other side.
     let squares = corners.iter().map(|corner| corner.normal.distance_squared(facet.normal()));
-    (2.0 * squares.fold(0.0, f64::max).sqrt(), facet.least_slope())
+    (squares.fold(0.0, f64::max).sqrt(), facet.least_slope())
 }

@@ -5,6 +5,7 @@ use super::emit::Emission;
 use super::evaluate::{ABOVE_WANTED, Evaluation, Found, WANTED};
 use super::forest::{Changes, Forest};
 use super::options::{ExactOptions, ExactProgress, ExactStop};
+use super::probe::rounding;
 use crate::limit::{LimitTable, SidedNormals};
 use crate::mesh::{Mesh, Sharpness};
 use crate::refine::RefineError;
@@ -53,6 +54,8 @@ pub(super) struct Growth<'a> {
     pub(super) rules: &'a Rules<'a>,
     pub(super) options: &'a ExactOptions<'a>,
     pub(super) demand: Demand,
+    /// What rounding may do to a distance.
+    pub(super) rounding: f64,
     pub(super) forest: Forest,
     /// Limits of the vertices.
     pub(super) points: Vec<LimitPoint>,
@@ -63,7 +66,7 @@ pub(super) struct Growth<'a> {
     /// By node: the deviations as a leaf.
     pub(super) deviations: Vec<Deviation>,
     /// By node: what distances are multiplied by for the value.
-    pub(super) scales: Vec<f32>,
+    pub(super) scales: Vec<f64>,
     /// By node: whether a leaf's diagonal starts at the unsplit edge's end.
     pub(super) diagonals: Vec<bool>,
     /// By node: whether the value was not tightened, being below the target of its time.
@@ -96,6 +99,7 @@ impl<'a> Growth<'a> {
         join_copies(&mut positions, &control.junctions().vertices);
         let points = positions.into_iter().zip(sided.by_vertex());
         let sharpness = Sharpness::of(control);
+        let rounding = rounding(control, options.max_levels);
         let forest = Forest::new(control, &sharpness);
         let nodes = forest.node_count();
         Ok(Self {
@@ -103,7 +107,8 @@ impl<'a> Growth<'a> {
             sharpness,
             rules,
             options,
-            demand: Demand::of(options)?,
+            demand: Demand::of(options, rounding)?,
+            rounding,
             forest,
             points: points
                 .map(|(position, normal)| LimitPoint { position: vector(position), normal: vector(*normal) })
@@ -307,7 +312,7 @@ impl<'a> Growth<'a> {
 
     /// Evaluates leaves again with bounds as tight as they get, down to a length.
     pub(super) fn tighten(&mut self, wanted: Vec<u32>, length: f64) -> Result<(), RefineError> {
-        let scale = wanted.first().map_or(0.0, |&leaf| f64::from(self.scales[leaf as usize]));
+        let scale = wanted.first().map_or(0.0, |&leaf| self.scales[leaf as usize]);
         self.wanted = wanted;
         (self.halvings, self.is_emitted) = (MOST_HALVINGS, true);
         self.evaluate(length * scale)
@@ -322,7 +327,7 @@ impl<'a> Growth<'a> {
                 let node = leaf.node as usize;
                 self.set_value(leaf.node, leaf.value);
                 self.deviations[node] = leaf.deviation;
-                self.scales[node] = (leaf.scale as f32).next_up();
+                self.scales[node] = leaf.scale;
                 self.diagonals[node] = leaf.diagonal_from_end;
                 self.loose[node] = leaf.value <= target;
                 worst = worst.max(leaf.value);

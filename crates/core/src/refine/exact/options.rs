@@ -225,6 +225,8 @@ pub enum ExactStop {
     MemoryCap,
     /// What still fails has been divided as often as allowed.
     LevelCap,
+    /// The tolerance is below what rounding leaves certain.
+    Rounding,
 }
 
 /// An interval that holds the symmetric Hausdorff distance between a mesh and the limit surface.

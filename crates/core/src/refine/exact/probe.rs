@@ -5,6 +5,8 @@ use super::emit::Emission;
 use super::grow::Growth;
 use super::leaf::leaf_triangles;
 use super::options::ErrorBounds;
+use crate::index::VertexId;
+use crate::mesh::Mesh;
 use crate::parallel;
 use crate::refine::RefineError;
 use crate::surface::{Deviation, Facet};
@@ -27,6 +29,9 @@ const TELLING: f64 = 0.8;
 
 /// Leaves that one call takes together.
 const BLOCK: usize = 1024;
+
+/// Levels below which edges have no length left.
+const MOST_LEVELS: usize = 64;
 
 /// A lower bound beyond this part of the upper one is good enough.
 const NARROW: f64 = 0.99;
@@ -53,8 +58,8 @@ impl Growth<'_> {
             }
             bounds = self.bounds(emission);
         }
-        best.upper = bounds.first().map_or(0.0, |worst| worst.0) + self.rounding();
-        best.lower = (best.lower - self.rounding()).max(0.0);
+        best.upper = bounds.first().map_or(0.0, |worst| worst.0) + self.rounding;
+        best.lower = (best.lower - self.rounding).max(0.0);
         Ok(best)
     }
 
@@ -128,13 +133,16 @@ impl Growth<'_> {
         samples.sort_by(|a, b| b.0.total_cmp(&a.0));
         samples
     }
+}
 
-    /// What rounding can have done to a distance: positions are convex combinations of convex combinations, one for
-    /// each level, and each adds a few units in the last place of the coordinates' size.
-    fn rounding(&self) -> f64 {
-        let size = self.control.positions().iter().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
-        let levels =
-            (0..self.forest.node_count() as u32).map(|node| self.forest.level(node)).max().unwrap_or(0);
-        (32 + 8 * levels) as f64 * f64::EPSILON * size
-    }
+/// What rounding can have done to a distance: positions are convex combinations of convex combinations, one for
+/// each level, and each adds a few units in the last place of the coordinates' size; those of a control vertex add one for
+/// each neighbour. Points near an edge of a triangle count as on it ([`Facet::on_edge`]), on either side.
+pub(super) fn rounding(control: &Mesh, max_levels: usize) -> f64 {
+    let size = control.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
+    let topology = control.topology();
+    let valence = |v: u32| topology.valence_and_openness(VertexId(v)).0;
+    let most = (0..control.vertex_count() as u32).map(valence).max().unwrap_or(0);
+    let units = 32.0 + 8.0 * max_levels.min(MOST_LEVELS) as f64 + f64::from(most);
+    (units * f64::EPSILON + 4.0 * Facet::ROUNDING) * size
 }

@@ -39,7 +39,7 @@ impl Growth<'_> {
             (0..nodes as u32).filter(|&node| changed[node as usize]).filter(is_leaf).collect();
         let failing = parallel::blocks(leaves.len(), BLOCK, |block| {
             let values = leaves[block].iter().map(|&leaf| {
-                let scale = f64::from(self.scales[leaf as usize]);
+                let scale = self.scales[leaf as usize];
                 // What holds without neighbours holds with them.
                 let is_plain = self.deviations[leaf as usize].own * scale <= limit;
                 (leaf, if is_plain { 0.0 } else { self.settled(leaf) * scale })
