@@ -1,4 +1,4 @@
-//! Adaptive subdivision of triangle meshes by limit surface normals, with exact limits and measured error.
+//! Adaptive subdivision of triangle meshes to a tolerance, with exact limits and a proven distance.
 //!
 //! ```text
 //! soup ─▶ control mesh ─▶ limit surface ─▶ refinement ─▶ triangles
@@ -7,9 +7,8 @@
 //! ```
 //!
 //! ```
-//! use limitmesh::criterion::LimitNormal;
 //! use limitmesh::measure::{SamplingOptions, hausdorff, limit_reference};
-//! use limitmesh::refine::{StepwiseOptions, stepwise};
+//! use limitmesh::refine::{ExactOptions, exact};
 //! use limitmesh::scheme::Loop;
 //! use limitmesh::{Mesh, models};
 //!
@@ -18,16 +17,17 @@
 //! let (control, diagnosis) = Mesh::from_soup(&soup, &Default::default())?;
 //! assert!(diagnosis.is_clean());
 //!
-//! // Divide faces whose normal is more than 10° off a limit normal of their vertices, three times at most.
-//! let criterion = LimitNormal::new(10f64.to_radians());
-//! let refined = stepwise(&control, &Loop, &criterion, &StepwiseOptions::default().levels(3))?;
+//! // Triangles within 0.2 % of the limit surface, proven.
+//! let tolerance = 0.002 * control.diagonal();
+//! let refined = exact(&control, &Loop, &ExactOptions::default().tolerance(tolerance))?;
 //! assert_eq!(refined.mesh.topology().boundary_edge_count(), 0);
+//! assert!(refined.error.upper <= tolerance);
 //!
-//! // How far is it from the limit surface?
-//! let limit = limit_reference(&control, &Loop, 4)?;
+//! // Samples agree: they find no more than that.
+//! let limit = limit_reference(&control, &Loop, 5)?;
 //! let samples = SamplingOptions::default().samples(10_000);
 //! let distance = hausdorff(refined.mesh.as_triangles(), limit.as_triangles(), &samples)?;
-//! assert!(distance.symmetric_percent() < 1.0);
+//! assert!(distance.symmetric() <= refined.error.upper);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -37,8 +37,8 @@
 //! | [`scheme`] | subdivision schemes as masks on ring shapes |
 //! | [`limit`] | limit positions and normals of any scheme from its masks |
 //! | [`criterion`] | which faces are to be divided |
-//! | [`refine`] | uniform and stepwise adaptive refinement |
-//! | [`measure`] | distances, watertightness, triangle quality |
+//! | [`refine`] | exact refinement to a goal, edge collapse within a distance, uniform and the paper's stepwise refinement |
+//! | [`measure`] | distances, sampled and certified, watertightness, triangle quality |
 //! | [`models`] | built-in control meshes |
 
 pub mod criterion;
