@@ -18,6 +18,9 @@ const FINE_SHARE: f64 = 0.2;
 /// Triangles of the fine mesh for each triangle asked for: with half as many its own error is felt.
 const FINE_TIMES: usize = 16;
 
+/// Collapse that leaves more than this part of the fine triangles (one in so many) was not worth it.
+const FEW: usize = 6;
+
 /// Refines and collapses.
 pub(super) fn optimized(
     control: &Mesh,
@@ -39,6 +42,13 @@ pub(super) fn optimized(
     }
     let goals = OptimizeOptions::default().tolerance(allowance).triangles(options.triangles);
     let collapsed = optimize(&fine.mesh, &Features::default(), &goals)?;
+    // Where the proof failed again and again little is collapsed; then refinement alone needs fewer triangles.
+    if options.tolerance.is_some() && collapsed.mesh.face_count() > fine.mesh.face_count() / FEW {
+        let plain = exact(control, scheme, &ExactOptions { optimize: false, ..options.clone() })?;
+        if plain.stop == ExactStop::Met && plain.mesh.face_count() <= collapsed.mesh.face_count() {
+            return Ok(plain);
+        }
+    }
     let (lower, at) = farthest(&fine.mesh, &collapsed.mesh)?;
     let upper = collapsed.bound.unwrap_or(f64::INFINITY) + fine.error.upper;
     let count = collapsed.mesh.face_count();
