@@ -192,9 +192,10 @@ impl<'a> Growth<'a> {
             }
             if target > floor {
                 target = floor.max((WORST_SHARE * worst).min(target));
-                if self.want_loose(target) {
-                    continue;
-                }
+            }
+            // Under a higher target they were not tightened.
+            if self.want_loose(target) {
+                continue;
             }
             if let Some(stop) = self.split_worst(target)? {
                 return Ok(stop);
