@@ -4,12 +4,11 @@
 
 mod support;
 
-use std::collections::HashMap;
-
 use limitmesh::measure::{SamplingOptions, hausdorff, limit_reference};
 use limitmesh::refine::{Camera, ExactOptions, ExactStop, exact, exact_estimate};
-use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
+use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 use limitmesh::{Mesh, models};
+use support::vertices_are_of_uniform_refinement;
 
 fn model(name: &str) -> Mesh {
     Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0
@@ -25,28 +24,7 @@ fn vertices_lie_where_uniform_refinement_has_its_limits() {
             let result =
                 exact(&control, scheme, &ExactOptions::default().tolerance(0.004 * diagonal)).unwrap();
             result.mesh.validate().unwrap();
-            let levels = result.levels.min(5);
-            let reference = limit_reference(&control, scheme, levels).unwrap();
-            let scale = 1e-9 * diagonal;
-            let key = |p: &[f64; 3]| p.map(|x| (x / scale / 1000.0).round() as i64);
-            let mut near: HashMap<[i64; 3], Vec<[f64; 3]>> = HashMap::new();
-            for p in reference.positions() {
-                near.entry(key(p)).or_default().push(*p);
-            }
-            let finest = 1.0 / (1u64 << levels) as f64;
-            for (p, origin) in result.mesh.positions().iter().zip(&result.origins) {
-                if origin.barycentric.iter().any(|b| b % finest != 0.0) {
-                    continue;
-                }
-                let [x, y, z] = key(p);
-                let cells = (-1..=1)
-                    .flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |k| [x + i, y + j, z + k])));
-                let found = cells
-                    .filter_map(|cell| near.get(&cell))
-                    .flatten()
-                    .any(|q| (0..3).all(|i| (p[i] - q[i]).abs() < scale));
-                assert!(found, "{name}, {}: {p:?} from {origin:?}", scheme.name());
-            }
+            vertices_are_of_uniform_refinement(&control, scheme, &result, name);
         }
     }
 }
@@ -295,11 +273,4 @@ fn cut_sheets_stay_together() {
     let edges = &result.mesh.junctions().edges;
     assert!(edges.len() >= 4, "the edge was divided {} times", edges.len());
     assert!(edges.iter().all(|copies| copies.len() == 3));
-}
-
-#[test]
-fn schemes_of_other_families_are_refused() {
-    let control = model("cube");
-    let error = exact(&control, &ModifiedButterfly, &ExactOptions::default().tolerance(0.1)).unwrap_err();
-    assert!(error.to_string().contains("butterfly"), "{error}");
 }

@@ -6,7 +6,7 @@
 //! distance to the limit surface (the triangle inequality, in either direction).
 
 use limitmesh::measure::{Bounds, Bvh, CertifiedHausdorff, CertifiedOptions, certified_hausdorff_between};
-use limitmesh::refine::{ExactOptions, ExactStop, RefineError, exact};
+use limitmesh::refine::{ExactOptions, ExactStop, exact, is_certified};
 use limitmesh::{Mesh, Triangles};
 
 use crate::arguments::MeasureArguments;
@@ -45,7 +45,7 @@ const MOST_TRIANGLES: usize = 6_000_000;
 /// Measures with finer and finer meshes until the interval is as narrow as asked for.
 ///
 /// # Errors
-/// The scheme is not one that exact refinement is for, or a surface cannot be measured.
+/// Exact refinement proves nothing for the scheme, or a surface cannot be measured.
 pub(super) fn measure(
     surface: Triangles<'_>,
     control: &Mesh,
@@ -53,6 +53,12 @@ pub(super) fn measure(
     progress: &Progress,
 ) -> anyhow::Result<Certified> {
     let scheme = arguments.scheme.unwrap_or_default().scheme();
+    if !is_certified(scheme) {
+        return usage(format!(
+            "nothing is certain about limit surfaces of the scheme {}; without --certified any can be measured against",
+            scheme.name()
+        ));
+    }
     let diagonal = control.diagonal();
     let asked = arguments.gap.map(|gap| gap.length(diagonal));
     let surface = Bvh::new(surface)?;
@@ -60,14 +66,7 @@ pub(super) fn measure(
     loop {
         progress.stage(format!("refining to within {} of the limit surface", number(tolerance)));
         let goals = ExactOptions::default().tolerance(tolerance).max_triangles(Some(MOST_TRIANGLES));
-        let stands = match exact(control, scheme, &goals) {
-            Err(why @ RefineError::NotExact { .. }) => {
-                return usage(format!(
-                    "{why}; without --certified any limit surface can be measured against"
-                ));
-            }
-            stands => stands?,
-        };
+        let stands = exact(control, scheme, &goals)?;
         let triangles = stands.mesh.face_count();
         progress.stage(format!("measuring against {}", counted(triangles, "triangle", "triangles")));
         let tree = Bvh::new(stands.mesh.as_triangles())?;

@@ -6,7 +6,7 @@ use limitmesh::Mesh;
 use limitmesh::criterion::LimitNormal;
 use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between, triangle_quality};
 use limitmesh::refine::{
-    Exact, ExactOptions, RefineError, StepwiseOptions, Stop, UniformOptions, exact, stepwise, uniform,
+    Exact, ExactOptions, StepwiseOptions, Stop, UniformOptions, exact, stepwise, uniform,
 };
 
 use crate::arguments::CompareArguments;
@@ -74,18 +74,10 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     for (name, options) in kinds {
         progress.stage(name);
         let start = Instant::now();
-        match exact(&control, scheme, &options) {
-            Ok(Exact { mesh, levels, error, .. }) => {
-                let took = start.elapsed();
-                let error = Some([error.lower, error.upper]);
-                methods.push(judge.judge((name, None), (&mesh, levels), error, took)?);
-            }
-            Err(why @ RefineError::NotExact { .. }) => {
-                progress.note(why.to_string());
-                break;
-            }
-            Err(error) => return Err(error.into()),
-        }
+        let Exact { mesh, levels, error, .. } = exact(&control, scheme, &options)?;
+        let took = start.elapsed();
+        let proven = error.certified.then_some([error.lower, error.upper]);
+        methods.push(judge.judge((name, None), (&mesh, levels), proven, took)?);
     }
     progress.clear();
     if arguments.json {

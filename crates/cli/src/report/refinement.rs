@@ -220,7 +220,7 @@ impl From<&ExactProgress> for RoundEntry {
 pub(crate) struct ErrorReport {
     /// A distance that was found, in the mesh's unit.
     pub(crate) lower: f64,
-    /// A distance that is not exceeded; null where none is known.
+    /// A distance that is not exceeded, or where it is not certified an estimate; null where none is known.
     pub(crate) upper: Option<f64>,
     /// In per cent of `diagonal`.
     pub(crate) lower_percent: f64,
@@ -245,7 +245,7 @@ impl ErrorReport {
             upper_percent: upper.map(percent),
             diagonal,
             at: bounds.at,
-            certified: upper.is_some(),
+            certified: bounds.certified && upper.is_some(),
         }
     }
 
@@ -253,6 +253,11 @@ impl ErrorReport {
     pub(crate) fn in_words(&self) -> String {
         let least = format!("at least {} %", lower_bound(self.lower_percent));
         match (self.upper, self.upper_percent) {
+            (Some(upper), Some(percent)) if !self.certified => format!(
+                "about {} % ({}) from the limit surface by samples, not certified",
+                upper_bound(percent),
+                upper_bound(upper)
+            ),
             (Some(upper), Some(percent)) => format!(
                 "within {} % ({}) of the limit surface, certified; {least}",
                 upper_bound(percent),

@@ -336,3 +336,16 @@ fn vertices_and_triangles_know_where_they_came_from() {
     run("refine builtin:cube -o {} --tolerance 0.5% --provenance", &[&plain]).expect(0);
     assert_eq!(soup(&plain).positions, soup(&output).positions);
 }
+
+/// Where masks may be negative nothing is proven, and nothing is called so.
+#[test]
+fn estimates_are_not_called_certified() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let told = run("refine builtin:cube -o {} --scheme butterfly --tolerance 1% --report -", &[&output]);
+    let told = told.expect(0);
+    let error = &told.json()["error"];
+    assert_eq!(error["certified"], false);
+    assert!(error["upper_percent"].as_f64().expect("a number") <= 1.0);
+    assert!(told.stderr.contains("by samples, not certified"), "{}", told.stderr);
+}

@@ -77,7 +77,6 @@ fn options_out_of_range_are_refused_before_any_work() {
         ("--dry-run --picture p.png", "--dry-run"),
         ("--method uniform --dry-run", "--method exact"),
         ("--method limit-normal --balance", "--method exact"),
-        ("--scheme butterfly", "--method uniform"),
         ("--weld -1", "at least 0"),
         ("--weld near", "'none'"),
         ("--scheme catmull", "loop-warren"),

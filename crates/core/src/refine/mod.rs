@@ -14,7 +14,7 @@ mod uniform;
 
 pub use exact::{
     Camera, ErrorBounds, Estimate, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin,
-    exact, exact_estimate,
+    exact, exact_estimate, is_certified,
 };
 pub use stepwise::{SeamRule, StepwiseOptions, stepwise};
 pub use uniform::{UniformOptions, uniform};
@@ -40,12 +40,6 @@ pub enum RefineError {
     /// The result would not be a mesh, or an option is out of range.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// The scheme's limit surface is not made of the pieces that exact refinement is for.
-    #[error("exact refinement is for Loop's scheme and its variants, not for {scheme}")]
-    NotExact {
-        /// The scheme's name.
-        scheme: String,
-    },
     /// A distance could not be measured.
     #[error(transparent)]
     Measure(#[from] MeasureError),

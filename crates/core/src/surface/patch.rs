@@ -2,6 +2,7 @@
 
 use super::fan::{Fans, RefinedFans};
 use super::lattice::{Points, Refined};
+use super::local::{Local, RefinedLocal};
 use super::rules::Rules;
 use super::spoke::{RefinedSpoke, Spoke};
 use crate::vector::{DVec3, unit_or_zero};
@@ -15,8 +16,10 @@ pub(crate) enum Patch {
     Regular(Points),
     /// One corner inside the surface has another number of edges, the others are regular.
     Spoke(Box<Spoke>),
-    /// Anything else.
+    /// Any other without tags that fade, of Loop's family.
     Irregular(Box<Fans>),
+    /// Anything else.
+    Local(Local),
 }
 
 /// A point of the limit surface with its unit normal on the side it was asked for; zero without one.
@@ -48,6 +51,8 @@ pub(crate) enum RefinedPatch<'a> {
     Spoke(RefinedSpoke),
     /// Of another irregular one.
     Irregular(RefinedFans<'a>),
+    /// Of one without a form of its own.
+    Local(RefinedLocal<'a>),
 }
 
 impl Patch {
@@ -64,11 +69,12 @@ impl Patch {
 
     /// The patch refined once.
     #[inline]
-    pub(crate) fn refined(&self, rules: &Rules) -> RefinedPatch<'_> {
+    pub(crate) fn refined<'a>(&'a self, rules: &'a Rules<'a>) -> RefinedPatch<'a> {
         match self {
             Self::Regular(points) => RefinedPatch::Regular(Refined::of(points)),
             Self::Spoke(spoke) => RefinedPatch::Spoke(spoke.refined(rules.beta(spoke.ring.len()))),
             Self::Irregular(fans) => RefinedPatch::Irregular(fans.refined(rules)),
+            Self::Local(local) => RefinedPatch::Local(local.refined(rules)),
         }
     }
 
@@ -78,6 +84,7 @@ impl Patch {
             Self::Regular(points) => points.iter().for_each(|&point| visit(point)),
             Self::Spoke(spoke) => spoke.points().for_each(visit),
             Self::Irregular(fans) => fans.points().for_each(visit),
+            Self::Local(local) => local.points().for_each(visit),
         }
     }
 }
@@ -89,6 +96,7 @@ impl RefinedPatch<'_> {
             Self::Regular(_) => true,
             Self::Spoke(refined) => refined.is_regular(part),
             Self::Irregular(refined) => refined.is_regular(part),
+            Self::Local(refined) => matches!(refined.part(part), Patch::Regular(_)),
         }
     }
 
@@ -100,6 +108,7 @@ impl RefinedPatch<'_> {
             Self::Regular(refined) => Patch::Regular(refined.part(part)),
             Self::Spoke(refined) => refined.part(part),
             Self::Irregular(refined) => Patch::of(refined.part(part)),
+            Self::Local(refined) => refined.part(part),
         }
     }
 
@@ -119,6 +128,7 @@ impl RefinedPatch<'_> {
                 let (at, ring) = refined.regular_middle(edge);
                 LimitPoint::regular(at, &ring)
             }
+            Self::Local(refined) => refined.middle(edge),
         }
     }
 }

@@ -1,15 +1,26 @@
 //! The patch of a control face.
 
 use super::fan::{Centre, Fan, Fans};
+use super::local::{self, Local};
 use super::patch::Patch;
+use super::rules::Rules;
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sector, Sharpness, Topology};
 use crate::ring::RingShape;
 use crate::vector::{DVec3, vector};
 
-/// The limit surface over a control face. Tags that fade must have been dealt with before.
-pub(crate) fn root_patch(mesh: &Mesh, sharpness: &Sharpness<'_>, face: FaceId) -> Patch {
-    Patch::of(Fans([0, 1, 2].map(|corner| fan(mesh, sharpness, HalfEdgeId::of(face, corner)))))
+/// The limit surface over a control face.
+pub(crate) fn root_patch(mesh: &Mesh, sharpness: &Sharpness<'_>, face: FaceId, rules: &Rules<'_>) -> Patch {
+    let corners = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
+    if !rules.has_forms() || local::fades(mesh, sharpness, corners) {
+        return Patch::Local(Local::of(mesh, sharpness, face, rules));
+    }
+    patch_of(mesh, sharpness, corners)
+}
+
+/// The surface over a face, given its corners, for a scheme of Loop's family. No tag may fade there.
+pub(super) fn patch_of(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> Patch {
+    Patch::of(Fans(corners.map(|corner| fan(mesh, sharpness, corner))))
 }
 
 /// The fan of the origin of `h`, on the side of the face of `h`.

@@ -1,34 +1,77 @@
-//! Which schemes the exact pieces are for: those that are Loop's but for the weights of irregular vertices.
+//! What the pieces of a surface need to know of its scheme, and whether it is one of Loop's family: those that are Loop's
+//! but for the weights of irregular vertices.
 //!
-//! They share the quartic box spline on regular pieces and the cubic B-spline on boundaries and creases, and all
-//! their masks are convex combinations, so that a piece lies in the hull of its points.
+//! The family shares the quartic box spline on regular pieces and the cubic B-spline on boundaries and creases, and all
+//! its masks are convex combinations, so that a piece lies in the hull of its points.
 
 use std::sync::OnceLock;
 
 use super::characteristic::Characteristic;
+use crate::limit::LimitTable;
+use crate::refine::RefineError;
 use crate::ring::{EdgeShape, RingShape};
 use crate::scheme::{Scheme, Support};
 
 /// Valences whose weights are kept.
 const KEPT: usize = 32;
 
-/// The weights of a scheme of Loop's family.
+/// A scheme, and its weights if it is of Loop's family.
 pub(crate) struct Rules<'s> {
     scheme: &'s dyn Scheme,
+    table: LimitTable<'s>,
+    has_forms: bool,
+    /// What went wrong first.
+    failure: OnceLock<RefineError>,
     betas: [f64; KEPT],
     characteristics: [OnceLock<Characteristic>; KEPT],
 }
 
 impl<'s> Rules<'s> {
-    /// The rules of `scheme`; `None` if it is not of the family.
-    pub(crate) fn of(scheme: &'s dyn Scheme) -> Option<Self> {
-        let rules = Self {
+    /// The rules of `scheme`.
+    pub(crate) fn of(scheme: &'s dyn Scheme) -> Self {
+        let is_candidate = scheme.support() == Support::OneRing && is_regular_loop(scheme);
+        let betas = core::array::from_fn(|k| if k < 2 || !is_candidate { 0.0 } else { beta(scheme, k) });
+        Self {
             scheme,
-            betas: core::array::from_fn(|k| if k < 2 { 0.0 } else { beta(scheme, k) }),
+            table: LimitTable::new(scheme),
+            has_forms: is_candidate && (2..KEPT).all(|k| (0.0..=1.0 / k as f64).contains(&betas[k])),
+            failure: OnceLock::new(),
+            betas,
             characteristics: [const { OnceLock::new() }; KEPT],
-        };
-        let kept = (2..KEPT).all(|k| (0.0..=1.0 / k as f64).contains(&rules.betas[k]));
-        (scheme.support() == Support::OneRing && kept && is_regular_loop(scheme)).then_some(rules)
+        }
+    }
+
+    /// The scheme.
+    pub(crate) fn scheme(&self) -> &'s dyn Scheme {
+        self.scheme
+    }
+
+    /// The scheme's limit stencils.
+    pub(crate) fn table(&self) -> &LimitTable<'s> {
+        &self.table
+    }
+
+    /// Whether the scheme is of Loop's family: what does not fade has a form of its own, and bounds hold.
+    #[inline]
+    pub(crate) fn has_forms(&self) -> bool {
+        self.has_forms
+    }
+
+    /// The rings of faces around a face that decide the surface over it.
+    pub(crate) fn rings(&self) -> usize {
+        if self.has_forms { 1 } else { 2 }
+    }
+
+    /// Keeps a failure, for whoever looks at results: what is computed after it means nothing.
+    #[cold]
+    pub(crate) fn fail(&self, why: RefineError) {
+        // The first counts.
+        let _ = self.failure.set(why);
+    }
+
+    /// The failure, if there was one.
+    pub(crate) fn failure(&self) -> Option<&RefineError> {
+        self.failure.get()
     }
 
     /// The weight of each neighbour of a smooth vertex.
@@ -77,8 +120,9 @@ mod tests {
 
     #[test]
     fn the_family_is_recognised() {
-        assert!(Rules::of(&Loop).is_some_and(|rules| rules.beta(6) == 0.0625 && rules.beta(100) > 0.0));
-        assert!(Rules::of(&LoopWarren).is_some_and(|rules| rules.beta(3) == 0.1875));
-        assert!(Rules::of(&ModifiedButterfly).is_none());
+        let (rules, warren) = (Rules::of(&Loop), Rules::of(&LoopWarren));
+        assert!(rules.has_forms() && rules.beta(6) == 0.0625 && rules.beta(100) > 0.0);
+        assert!(warren.has_forms() && warren.beta(3) == 0.1875);
+        assert!(!Rules::of(&ModifiedButterfly).has_forms());
     }
 }

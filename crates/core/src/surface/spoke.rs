@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn refinement_is_that_of_the_fans() {
-        let rules = Rules::of(&Loop).unwrap();
+        let rules = Rules::of(&Loop);
         for valence in (3..12).filter(|&k| k != 6) {
             for corner in 0..3 {
                 let points = arbitrary(valence + 6, valence as f64);

@@ -106,32 +106,6 @@ fn tagged_refinement_is_the_other_implementation_s() {
     }
 }
 
-/// A mesh of triangles with tags, read as plainly as can be.
-fn tagged_obj(text: &str) -> Mesh {
-    let (mut positions, mut triangles, mut tags) = (Vec::new(), Vec::new(), Tags::default());
-    for line in text.lines() {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let number = |i: usize| words[i].parse::<f64>().unwrap();
-        match words.first() {
-            Some(&"v") => positions.push([number(1), number(2), number(3)]),
-            Some(&"f") => {
-                let corner = |i: usize| words[i].split('/').next().unwrap().parse::<u32>().unwrap() - 1;
-                triangles.push([corner(1), corner(2), corner(3)]);
-            }
-            Some(&"t") if words[1] == "crease" => {
-                let vertices = [number(3) as u32, number(4) as u32];
-                tags.creases.push(CreaseTag { vertices, sharpness: number(5) });
-            }
-            Some(&"t") if words[1] == "corner" => {
-                tags.corners.push(CornerTag { vertex: number(3) as u32, sharpness: number(4) });
-            }
-            _ => {}
-        }
-    }
-    tags.corners.sort_by_key(|tag| tag.vertex);
-    Mesh::from_triangles(positions, triangles).unwrap().with_tags(tags).unwrap()
-}
-
 #[test]
 fn the_shared_models_with_tags_are_the_other_implementation_s() {
     let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(std::path::PathBuf::from) else {

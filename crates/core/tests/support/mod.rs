@@ -1,9 +1,13 @@
 //! Meshes for tests, and a brute-force Loop subdivision that shares no code with the library.
 #![allow(dead_code, missing_docs, unreachable_pub, clippy::unwrap_used)]
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use limitmesh::Mesh;
+use limitmesh::measure::limit_reference;
+use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
+use limitmesh::refine::Exact;
+use limitmesh::scheme::Scheme;
 
 pub type Point = [f64; 3];
 
@@ -198,4 +202,57 @@ pub fn unnumbered(mesh: &Mesh, digits: i32) -> Vec<[[i64; 3]; 3]> {
         .collect();
     all.sort_unstable();
     all
+}
+
+/// A mesh of triangles with tags, read as plainly as can be.
+pub fn tagged_obj(text: &str) -> Mesh {
+    let (mut positions, mut triangles, mut tags) = (Vec::new(), Vec::new(), Tags::default());
+    for line in text.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let number = |i: usize| words[i].parse::<f64>().unwrap();
+        match words.first() {
+            Some(&"v") => positions.push([number(1), number(2), number(3)]),
+            Some(&"f") => {
+                let corner = |i: usize| words[i].split('/').next().unwrap().parse::<u32>().unwrap() - 1;
+                triangles.push([corner(1), corner(2), corner(3)]);
+            }
+            Some(&"t") if words[1] == "crease" => {
+                let vertices = [number(3) as u32, number(4) as u32];
+                tags.creases.push(CreaseTag { vertices, sharpness: number(5) });
+            }
+            Some(&"t") if words[1] == "corner" => {
+                tags.corners.push(CornerTag { vertex: number(3) as u32, sharpness: number(4) });
+            }
+            _ => {}
+        }
+    }
+    tags.corners.sort_by_key(|tag| tag.vertex);
+    Mesh::from_triangles(positions, triangles).unwrap().with_tags(tags).unwrap()
+}
+
+/// Every vertex of an exact refinement is a vertex of the uniform refinement that is as deep (five levels at most), with its
+/// limit at the same place.
+pub fn vertices_are_of_uniform_refinement(control: &Mesh, scheme: &dyn Scheme, result: &Exact, name: &str) {
+    let levels = result.levels.min(5);
+    let reference = limit_reference(control, scheme, levels).unwrap();
+    let scale = 1e-9 * control.diagonal();
+    let key = |p: &Point| p.map(|x| (x / scale / 1000.0).round() as i64);
+    let mut near: HashMap<[i64; 3], Vec<Point>> = HashMap::new();
+    for p in reference.positions() {
+        near.entry(key(p)).or_default().push(*p);
+    }
+    let finest = 1.0 / (1u64 << levels) as f64;
+    for (p, origin) in result.mesh.positions().iter().zip(&result.origins) {
+        if origin.barycentric.iter().any(|b| b % finest != 0.0) {
+            continue;
+        }
+        let [x, y, z] = key(p);
+        let cells =
+            (-1..=1).flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |k| [x + i, y + j, z + k])));
+        let found = cells
+            .filter_map(|cell| near.get(&cell))
+            .flatten()
+            .any(|q| (0..3).all(|i| (p[i] - q[i]).abs() < scale));
+        assert!(found, "{name}, {}: {p:?} from {origin:?}", scheme.name());
+    }
 }

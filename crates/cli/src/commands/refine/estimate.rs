@@ -3,7 +3,7 @@
 use limitmesh::Mesh;
 use limitmesh::refine::{Estimate, exact_estimate};
 
-use super::exact::{Goals, refused};
+use super::exact::Goals;
 use crate::arguments::RefineArguments;
 use crate::output;
 use crate::progress::Progress;
@@ -22,7 +22,7 @@ pub(super) fn run(
 ) -> anyhow::Result<()> {
     progress.stage("estimating");
     let options = goals.options(arguments);
-    let found = exact_estimate(control, arguments.scheme.scheme(), &options).or_else(refused)?;
+    let found = exact_estimate(control, arguments.scheme.scheme(), &options)?;
     progress.clear();
     // A report on standard output is not mixed with text for people.
     if arguments.report.as_deref().is_none_or(|path| path.as_os_str() != output::STANDARD_OUTPUT) {

@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use limitmesh::Mesh;
-use limitmesh::refine::{Camera, Exact, ExactOptions, ExactProgress, ExactStop, RefineError, exact};
+use limitmesh::refine::{Camera, Exact, ExactOptions, ExactProgress, ExactStop, exact};
 
 use super::provenance::Provenance;
 use super::{Refined, cameras, view, view_report};
 use crate::arguments::{Extent, RefineArguments};
-use crate::failure::{Outcome, usage};
+use crate::failure::Outcome;
 use crate::progress::Progress;
 use crate::report::refinement::exact_stop_name;
 use crate::report::{
@@ -124,7 +124,7 @@ pub(super) fn run(
     };
     progress.stage(format!("refining {}", counted(control.face_count(), "triangle", "triangles")));
     let options = goals.options(arguments).observer(&observer);
-    let found = exact(control, arguments.scheme.scheme(), &options).or_else(refused)?;
+    let found = exact(control, arguments.scheme.scheme(), &options)?;
     let rounds = rounds.into_inner().unwrap_or_else(PoisonError::into_inner);
     let error = ErrorReport::new(&found.error, goals.diagonal);
     let outcome = outcome(&found, goals, &error, arguments);
@@ -145,16 +145,6 @@ pub(super) fn run(
         },
         outcome,
     })
-}
-
-/// A scheme that exact refinement is not for is a matter of the command line.
-pub(super) fn refused<T>(why: RefineError) -> anyhow::Result<T> {
-    match why {
-        RefineError::NotExact { .. } => {
-            usage(format!("{why}; --method uniform, limit-normal and amresh take any"))
-        }
-        why => Err(why.into()),
-    }
 }
 
 /// What was asked for, defaults filled in.

@@ -47,7 +47,7 @@ impl Growth<'_> {
             }
         }
         // Corners and darts inside a face's reach.
-        for vertex in self.sharpness.tagged_vertices() {
+        for vertex in self.lasting.tagged_vertices() {
             self.offsets[vertex.index()] = 0.0;
         }
     }

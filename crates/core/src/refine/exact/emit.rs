@@ -51,6 +51,7 @@ impl Growth<'_> {
         let stop = if stop == ExactStop::Met && failed.is_some() { ExactStop::Rounding } else { stop };
         let beyond = failed.map_or(0.0, |tolerance| error.upper / tolerance);
         let (tags, sides) = (self.tags(&emission), self.sides(&emission));
+        self.check_rules()?;
         let Emission { triangles, twins, leaves } = emission;
         let parents = leaves.parents(&self.forest, |leaf| self.pattern(leaf));
         let origins = self.origins();
@@ -195,8 +196,9 @@ impl Growth<'_> {
 
     /// The tags of the emitted mesh: creases along those of the control mesh, and its corners.
     pub(super) fn tags(&self, emission: &Emission) -> Tags {
-        let mut tags = Tags { corners: self.control.tags().corners.clone(), ..Tags::default() };
-        if self.sharpness.is_empty() {
+        let corners = self.control.tags().corners.iter().filter(|tag| tag.sharpness >= INFINITELY_SHARP);
+        let mut tags = Tags { corners: corners.copied().collect(), ..Tags::default() };
+        if self.lasting.is_empty() {
             return tags;
         }
         for &leaf in &emission.leaves.order {

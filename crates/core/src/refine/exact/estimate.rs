@@ -29,9 +29,7 @@ pub fn exact_estimate(
     options: &ExactOptions<'_>,
 ) -> Result<Estimate, RefineError> {
     options.check()?;
-    let Some(rules) = Rules::of(scheme) else {
-        return Err(RefineError::NotExact { scheme: scheme.name().to_owned() });
-    };
+    let rules = Rules::of(scheme);
     let of = |triangles: usize, is_counted| {
         let triangles = triangles.min(options.budget().0).max(control.face_count());
         Estimate { triangles, memory_bytes: triangles.saturating_mul(BYTES_PER_TRIANGLE), is_counted }

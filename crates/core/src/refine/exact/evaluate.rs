@@ -10,7 +10,7 @@ use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::SidedNormals;
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
-use crate::surface::{Deviation, Effort, Facet, LimitPoint, Part, Patch, Pieces, Rules, root_patch};
+use crate::surface::{Deviation, Effort, Facet, LimitPoint, Part, Patch, Pieces, Rules, Samples, root_patch};
 use crate::vector::{DVec3, vector};
 
 /// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
@@ -56,6 +56,8 @@ struct Value {
 pub(super) struct Evaluation<'a> {
     pub(super) control: &'a Mesh,
     pub(super) sharpness: &'a Sharpness<'a>,
+    /// Whether normals may differ from side to side.
+    pub(super) has_sides: bool,
     /// Limit normals of the control vertices.
     pub(super) sided: &'a SidedNormals,
     pub(super) rules: &'a Rules<'a>,
@@ -80,7 +82,7 @@ impl Evaluation<'_> {
         parallel::blocks(roots.len(), BLOCK, |block| {
             let mut found = Found::default();
             for &root in &roots[block] {
-                let patch = root_patch(self.control, self.sharpness, FaceId(root));
+                let patch = root_patch(self.control, self.sharpness, FaceId(root), self.rules);
                 let corners = [0, 1, 2].map(|corner| {
                     let h = HalfEdgeId::of(FaceId(root), corner);
                     let normal = vector(self.sided.at(self.control.topology(), h));
@@ -146,7 +148,7 @@ impl Evaluation<'_> {
             let computed = compute();
             found.points.push((vertex, computed));
             computed
-        } else if self.demand.needs_normals() || !self.sharpness.is_empty() {
+        } else if self.demand.needs_normals() || self.has_sides {
             LimitPoint { normal: compute().normal, ..known }
         } else {
             known
@@ -215,9 +217,9 @@ impl Evaluation<'_> {
     }
 
     /// The value of a triangle and its deviation from its part of the surface.
-    fn triangle(
-        &self,
-        pieces: &mut Pieces<'_>,
+    fn triangle<'p>(
+        &'p self,
+        pieces: &mut Pieces<'p>,
         part: Part,
         corners: [LimitPoint; 3],
         open: [bool; 3],
@@ -243,9 +245,12 @@ impl Evaluation<'_> {
             path.push(place);
             node = parent;
         }
-        let mut patch = root_patch(self.control, self.sharpness, FaceId(node));
+        let mut patch = root_patch(self.control, self.sharpness, FaceId(node), self.rules);
         for place in path.into_iter().rev() {
             patch = patch.refined(self.rules).part(place);
+        }
+        if let Patch::Local(local) = &patch {
+            return Samples::of(local, depth, self.rules).points();
         }
         let mut points = Vec::new();
         self.sample(&patch, depth, &mut points);

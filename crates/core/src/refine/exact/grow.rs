@@ -49,6 +49,8 @@ const UNKNOWN: LimitPoint = LimitPoint { position: DVec3::NAN, normal: DVec3::ZE
 pub(super) struct Growth<'a> {
     pub(super) control: &'a Mesh,
     pub(super) sharpness: Sharpness<'a>,
+    /// What is sharp in the limit: without what fades.
+    pub(super) lasting: Sharpness<'a>,
     /// Limit normals of the control vertices.
     pub(super) sided: SidedNormals,
     pub(super) rules: &'a Rules<'a>,
@@ -100,11 +102,13 @@ impl<'a> Growth<'a> {
         let points = positions.into_iter().zip(sided.by_vertex());
         let sharpness = Sharpness::of(control);
         let rounding = rounding(control, options.max_levels);
-        let forest = Forest::new(control, &sharpness);
+        let lasting = sharpness.lasting();
+        let forest = Forest::new(control, &lasting);
         let nodes = forest.node_count();
         Ok(Self {
             control,
             sharpness,
+            lasting,
             rules,
             options,
             demand: Demand::of(options, rounding)?,
@@ -281,6 +285,7 @@ impl<'a> Growth<'a> {
     fn evaluate(&mut self, target: f64) -> Result<(), RefineError> {
         let roots = self.mark_wanted();
         let found = self.evaluation(target).run(&roots);
+        self.check_rules()?;
         let worst = self.take(found, target);
         self.unsettled.extend_from_slice(&self.wanted);
         self.unmark_wanted();
@@ -294,10 +299,16 @@ impl<'a> Growth<'a> {
         }
     }
 
+    /// Refuses to go on where the scheme had no limit.
+    pub(super) fn check_rules(&self) -> Result<(), RefineError> {
+        self.rules.failure().map_or(Ok(()), |why| Err(why.clone()))
+    }
+
     pub(super) fn evaluation(&self, target: f64) -> Evaluation<'_> {
         Evaluation {
             control: self.control,
             sharpness: &self.sharpness,
+            has_sides: !self.lasting.is_empty(),
             sided: &self.sided,
             rules: self.rules,
             forest: &self.forest,

@@ -40,16 +40,14 @@ use grow::Growth;
 /// allowed, whichever comes first.
 ///
 /// # Errors
-/// A goal that is no positive number, a scheme that the exact pieces are not for, a control vertex without a limit,
+/// A goal that is no positive number, a vertex without a limit,
 /// more elements than can be numbered, or the observer's wish to stop.
 pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions<'_>) -> Result<Exact, RefineError> {
     options.check()?;
     if options.optimize {
         return optimized::optimized(control, scheme, options);
     }
-    let Some(rules) = Rules::of(scheme) else {
-        return Err(RefineError::NotExact { scheme: scheme.name().to_owned() });
-    };
+    let rules = Rules::of(scheme);
     let grown = |levels: usize| {
         let mut growth = Growth::new(control, scheme, &rules, options)?;
         growth.split_all(levels)?;
@@ -67,4 +65,10 @@ pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions<'_>) ->
             Ok(if is_better { evenly } else { worst_first })
         }
     }
+}
+
+/// Whether the distances that [`exact`] reports for a scheme are proven: those of Loop's scheme and its variants are, others
+/// are estimated from samples.
+pub fn is_certified(scheme: &dyn Scheme) -> bool {
+    Rules::of(scheme).has_forms()
 }

@@ -62,7 +62,7 @@ pub(super) fn optimized(
         origins: collapsed.vertices.iter().map(|&v| fine.origins[v as usize]).collect(),
         sides: Vec::new(),
         parents: Vec::new(),
-        error: ErrorBounds { lower, upper, at },
+        error: ErrorBounds { lower, upper, at, certified: fine.error.certified },
         worst: options.tolerance.map_or(0.0, |tolerance| upper / tolerance),
         stop,
         levels: fine.levels,

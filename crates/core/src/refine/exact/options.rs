@@ -229,14 +229,17 @@ pub enum ExactStop {
     Rounding,
 }
 
-/// An interval that holds the symmetric Hausdorff distance between a mesh and the limit surface.
+/// An interval for the symmetric Hausdorff distance between a mesh and the limit surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ErrorBounds {
     /// A distance that was found.
     pub lower: f64,
-    /// A distance that is not exceeded.
+    /// A distance that is not exceeded where [`Self::certified`] holds. Otherwise an estimate, the greatest distance of
+    /// the surface's points three levels below the triangles, which the true one may exceed by some per cent.
     pub upper: f64,
+    /// Whether `upper` is proven: so it is for Loop's scheme and its variants, whose masks are convex combinations.
+    pub certified: bool,
     /// A point of the limit surface at the distance `lower` from the mesh.
     pub at: [f64; 3],
 }

@@ -18,6 +18,9 @@ const PROBED: usize = 256;
 /// Samples whose distance to the whole mesh is measured.
 const MEASURED: usize = 160;
 
+/// Leaves whose samples are measured where nothing is certain.
+const MOST_MEASURED: usize = 2_000;
+
 /// Leaves that are evaluated again for a tighter upper bound.
 const MOST_TIGHTENED: usize = 20_000;
 
@@ -58,7 +61,12 @@ impl Growth<'_> {
             }
             bounds = self.bounds(emission);
         }
-        best.upper = bounds.first().map_or(0.0, |worst| worst.0) + self.rounding;
+        let upper = if best.certified {
+            bounds.first().map_or(0.0, |worst| worst.0)
+        } else {
+            self.measured(emission, &blocks, &bounds, &mut best)
+        };
+        best.upper = upper + self.rounding;
         best.lower = (best.lower - self.rounding).max(0.0);
         Ok(best)
     }
@@ -71,7 +79,9 @@ impl Growth<'_> {
             let deviation = self.deviations[leaf as usize];
             deviation.own.min(deviation.height)
         };
-        let enough = TELLING * leaves.iter().map(|&leaf| least(leaf)).fold(0.0, f64::max);
+        // Estimates need not be met by anything.
+        let telling = if self.rules.has_forms() { TELLING } else { 0.0 };
+        let enough = telling * leaves.iter().map(|&leaf| least(leaf)).fold(0.0, f64::max);
         let found = parallel::blocks(leaves.len(), BLOCK, |block| {
             let telling = |&leaf: &u32| self.deviations[leaf as usize].own > enough;
             let leaves = leaves[block].iter().copied().filter(telling);
@@ -98,7 +108,7 @@ impl Growth<'_> {
         worst.extend(&by_height[..probed]);
         worst.sort_unstable();
         worst.dedup();
-        let mut best = ErrorBounds { lower: 0.0, upper, at: [0.0; 3] };
+        let mut best = ErrorBounds { lower: 0.0, upper, at: [0.0; 3], certified: self.rules.has_forms() };
         for (_, point) in self.samples(&worst).into_iter().take(MEASURED) {
             if best.lower > NARROW * upper {
                 break;
@@ -111,17 +121,49 @@ impl Growth<'_> {
         best
     }
 
+    /// Where bounds are estimates: the greatest distance of samples over all leaves that may be worse than what was found;
+    /// after many of them the next estimate.
+    fn measured(
+        &self,
+        emission: &Emission,
+        blocks: &Blocks,
+        bounds: &[(f64, u32)],
+        best: &mut ErrorBounds,
+    ) -> f64 {
+        let evaluation = self.evaluation(0.0);
+        for (count, &(bound, leaf)) in bounds.iter().enumerate() {
+            if bound <= best.lower || count >= MOST_MEASURED {
+                return bound.max(best.lower);
+            }
+            let facets = self.facets(leaf);
+            for point in evaluation.samples(leaf, SAMPLED_LEVELS) {
+                let own = facets.iter().map(|facet| facet.squared(point)).fold(f64::INFINITY, f64::min);
+                if own > best.lower * best.lower {
+                    let distance = blocks.distance(self, emission, point);
+                    if distance > best.lower {
+                        (best.lower, best.at) = (distance, point.to_array());
+                    }
+                }
+            }
+        }
+        best.lower
+    }
+
+    /// The triangles of a leaf.
+    fn facets(&self, leaf: u32) -> Vec<Facet> {
+        let corners = self.forest.corners(leaf).map(|vertex| self.emitted(vertex));
+        let middles = [0, 1, 2].map(|edge| self.forest.middle(leaf, edge).map(|vertex| self.emitted(vertex)));
+        leaf_triangles(corners, middles, self.diagonals[leaf as usize])
+            .map(|triangle| Facet::new(triangle.corners))
+            .collect()
+    }
+
     /// Points of the surface over leaves, one for each, those highest over their triangles first.
     fn samples(&self, leaves: &[u32]) -> Vec<(f64, DVec3)> {
         let evaluation = self.evaluation(0.0);
         let mut samples: Vec<(f64, DVec3)> = Vec::new();
         for &leaf in leaves {
-            let corners = self.forest.corners(leaf).map(|vertex| self.emitted(vertex));
-            let middles =
-                [0, 1, 2].map(|edge| self.forest.middle(leaf, edge).map(|vertex| self.emitted(vertex)));
-            let facets: Vec<Facet> = leaf_triangles(corners, middles, self.diagonals[leaf as usize])
-                .map(|triangle| Facet::new(triangle.corners))
-                .collect();
+            let facets = self.facets(leaf);
             // Sideways the neighbours take over: the height over the nearest triangle tells more than the distance.
             let promise = |point: DVec3| {
                 let nearest = facets.iter().min_by(|a, b| a.squared(point).total_cmp(&b.squared(point)));

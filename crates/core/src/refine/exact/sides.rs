@@ -17,11 +17,11 @@ impl Growth<'_> {
     /// The normals of the corners of emitted triangles at vertices on sharp edges, by the half-edge that leaves the corner,
     /// ascending.
     pub(super) fn sides(&self, emission: &Emission) -> Vec<(u32, [f64; 3])> {
-        if self.sharpness.is_empty() {
+        if self.lasting.is_empty() {
             return Vec::new();
         }
         let mut is_sharp = vec![false; self.forest.vertex_count()];
-        self.sharpness.tagged_vertices().for_each(|vertex| is_sharp[vertex.index()] = true);
+        self.lasting.tagged_vertices().for_each(|vertex| is_sharp[vertex.index()] = true);
         for crease in &self.tags(emission).creases {
             crease.vertices.iter().for_each(|&vertex| is_sharp[vertex as usize] = true);
         }
@@ -43,7 +43,7 @@ impl Growth<'_> {
             let mut found = Vec::new();
             for root in block.filter(|&root| walk.above[root]) {
                 let face = FaceId(root as u32);
-                let patch = root_patch(self.control, &self.sharpness, face);
+                let patch = root_patch(self.control, &self.sharpness, face, self.rules);
                 let normal = |corner| self.sided.at(self.control.topology(), HalfEdgeId::of(face, corner));
                 walk.visit(root as u32, &patch, [0, 1, 2].map(|corner| vector(normal(corner))), &mut found);
             }

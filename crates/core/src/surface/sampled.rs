@@ -1,0 +1,144 @@
+//! Points of a piece of any limit surface, and how far a triangle is from them: an estimate where nothing is certain.
+//!
+//! The piece is refined a few times, and the limits of its vertices are taken. They stand on a lattice of barycentric
+//! coordinates, so that those over each part of the piece are known exactly.
+
+use super::bound::Part;
+use super::gauge::{Deviation, Gauge};
+use super::local::{Local, corners, limit_position, refined_around};
+use super::rules::Rules;
+use crate::index::{FaceId, HalfEdgeId};
+use crate::mesh::Mesh;
+use crate::vector::DVec3;
+
+/// Barycentric coordinates, multiplied by a power of 2.
+type Place = [i32; 3];
+
+/// Limit points of a piece.
+pub(crate) struct Samples {
+    /// Twice the sum of the coordinates of each place, a power of 2.
+    unit: i32,
+    points: Vec<(Place, DVec3)>,
+}
+
+fn middle(a: Place, b: Place) -> Place {
+    [0, 1, 2].map(|i| (a[i] + b[i]) / 2)
+}
+
+impl Samples {
+    /// The limits of all vertices `levels` below a piece, its corners left out.
+    pub(crate) fn of(piece: &Local, levels: usize, rules: &Rules<'_>) -> Self {
+        let unit = 1 << levels;
+        let mut faces: Vec<(HalfEdgeId, [Place; 3])> =
+            vec![(piece.first(), [[unit, 0, 0], [0, unit, 0], [0, 0, unit]])];
+        let mut mesh: Option<Mesh> = None;
+        for _ in 0..levels {
+            let seeds: Vec<HalfEdgeId> = faces.iter().map(|&(first, _)| first).collect();
+            let Some(refined) = refined_around(mesh.as_ref().unwrap_or(piece.mesh()), &seeds, rules) else {
+                break;
+            };
+            faces =
+                faces.iter().flat_map(|&(_, corners)| quartered(corners)).enumerate().map(numbered).collect();
+            mesh = Some(refined);
+        }
+        let mesh = mesh.as_ref().unwrap_or(piece.mesh());
+        let mut met = vec![false; mesh.vertex_count()];
+        let mut points = Vec::new();
+        for (first, places) in faces {
+            for (h, place) in corners(first).into_iter().zip(places) {
+                let vertex = mesh.topology().origin(h);
+                let is_corner = place.iter().filter(|&&x| x == 0).count() == 2;
+                if !is_corner && !core::mem::replace(&mut met[vertex.index()], true) {
+                    points.push((place, limit_position(mesh, vertex, rules)));
+                }
+            }
+        }
+        Self { unit, points }
+    }
+
+    /// The points alone.
+    pub(crate) fn points(self) -> Vec<DVec3> {
+        self.points.into_iter().map(|(_, point)| point).collect()
+    }
+
+    /// What the points over a part show of the deviation of the triangle that stands for it.
+    pub(crate) fn deviation(&self, part: Part, gauge: &Gauge<'_>) -> Deviation {
+        let corners = places_of(part, self.unit);
+        let mut deviation = Deviation::default();
+        for &(place, point) in &self.points {
+            let within = [0, 1, 2].map(|i| determinant([place, corners[(i + 1) % 3], corners[(i + 2) % 3]]));
+            if within.iter().any(|&x| x < 0) {
+                continue;
+            }
+            match within.map(|x| x == 0) {
+                [false, false, false] => gauge.inner_point(point, &mut deviation),
+                [false, false, true] => gauge.curve_point(0, point, &mut deviation),
+                [true, false, false] => gauge.curve_point(1, point, &mut deviation),
+                [false, true, false] => gauge.curve_point(2, point, &mut deviation),
+                // A corner.
+                _ => {}
+            }
+        }
+        deviation
+    }
+}
+
+/// The places of the corners of the four parts, as a step of refinement numbers them.
+fn quartered([a, b, c]: [Place; 3]) -> [[Place; 3]; 4] {
+    let [d, e, f] = [middle(a, b), middle(b, c), middle(c, a)];
+    [[a, d, f], [b, e, d], [c, f, e], [d, e, f]]
+}
+
+fn numbered((face, places): (usize, [Place; 3])) -> (HalfEdgeId, [Place; 3]) {
+    (HalfEdgeId::of(FaceId(face as u32), 0), places)
+}
+
+/// The places of the corners of a part.
+fn places_of(part: Part, unit: i32) -> [Place; 3] {
+    let whole = [[unit, 0, 0], [0, unit, 0], [0, 0, unit]];
+    let on = |edge: usize| middle(whole[edge % 3], whole[(edge + 1) % 3]);
+    let mut corners = whole;
+    match part {
+        Part::Whole => {}
+        Part::Half { edge, second } => corners[(edge + usize::from(!second)) % 3] = on(edge),
+        Part::Child(3) => corners = [on(1), on(2), on(0)],
+        Part::Child(child) => {
+            corners[(child + 1) % 3] = on(child);
+            corners[(child + 2) % 3] = on(child + 2);
+        }
+        Part::Quarter { edge, at_end } => {
+            let from = if at_end { edge + 1 } else { edge };
+            corners = [whole[from % 3], on(edge + 1), on(edge + 2)];
+        }
+    }
+    corners
+}
+
+fn determinant([a, b, c]: [Place; 3]) -> i64 {
+    let [a, b, c] = [a, b, c].map(|place| place.map(i64::from));
+    a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Parts are turned like the whole, and their areas add up as they should.
+    #[test]
+    fn parts_have_their_share_of_the_area() {
+        let whole = determinant(places_of(Part::Whole, 8));
+        let mut shares = Vec::new();
+        for i in 0..3 {
+            for flag in [false, true] {
+                shares.push((Part::Half { edge: i, second: flag }, 2));
+                shares.push((Part::Quarter { edge: i, at_end: flag }, 4));
+            }
+            shares.push((Part::Child(i), 4));
+        }
+        shares.push((Part::Child(3), 4));
+        for (part, share) in shares {
+            assert_eq!(share * determinant(places_of(part, 8)), whole, "{part:?}");
+        }
+    }
+}
