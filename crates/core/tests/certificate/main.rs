@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod cages;
+mod extremes;
 #[path = "../support/mod.rs"]
 mod support;
 

@@ -215,6 +215,43 @@ proptest! {
     }
 }
 
+/// Seen in its tilted plane, corners that stand on one line do so only but for rounding.
+#[test]
+fn corners_on_one_line_in_a_tilted_plane_are_no_twist() {
+    let points = [
+        [-5, 0],
+        [-6, -1],
+        [-3, -1],
+        [-2, -1],
+        [0, 0],
+        [-2, -3],
+        [0, -1],
+        [0, -3],
+        [0, -4],
+        [3, -6],
+        [6, -3],
+        [3, -1],
+        [5, 1],
+        [6, 2],
+        [5, 4],
+        [2, 4],
+        [1, 2],
+        [0, 5],
+        [-1, 3],
+        [-1, 2],
+        [-4, 6],
+        [-3, 4],
+        [-5, 3],
+        [-3, 1],
+        [-4, 1],
+    ]
+    .map(|point| point.map(f64::from));
+    let face: Vec<u32> = (0..points.len() as u32).collect();
+    let (mesh, diagnosis) = build_soup(&soup(&flat(&points), &[&face]));
+    assert!(diagnosis.is_clean());
+    assert_tiles(&points, mesh.triangles());
+}
+
 #[test]
 fn many_corners_take_little_time() {
     let n = 50_000u32;
