@@ -1,5 +1,5 @@
-//! Uniform refinement, the paper's method and exact refinement at nearly equal triangle counts: the meshes above, their
-//! distances to the limit surface below, in one colour scale.
+//! Uniform refinement, the paper's method, exact refinement and its optimisation at nearly equal triangle counts: the
+//! meshes above, their distances to the limit surface below, in one colour scale.
 
 use anyhow::Result;
 use limitmesh::Mesh;
@@ -12,25 +12,29 @@ use limitmesh_render::{
 };
 
 use super::methods;
-use crate::quality::{Judge, Reference, best, builtin};
+use crate::quality::{Judge, Reference, best, builtin, optimized};
 
-/// A model with flat, round and sharply bent parts.
-const MODEL: &str = "cup";
+/// A model with gently and with sharply bent parts.
+const MODEL: &str = "bunny";
 
 /// The uniform level whose count all methods get.
-const LEVEL: usize = 1;
+const LEVEL: usize = 2;
 
 /// Steps of the paper's method.
 const STEPS: usize = 3;
 
 /// From the front, a little from the right and above.
-const VIEW: ViewDirection = ViewDirection { sight: [-0.35, -0.45, -1.0], up: [0.0, 1.0, 0.0] };
+const VIEW: ViewDirection = ViewDirection { sight: [-0.45, -0.2, -1.0], up: [0.0, 1.0, 0.0] };
 
 /// Pixels of a panel.
-const SIZE: (u32, u32) = (400, 380);
+const SIZE: (u32, u32) = (216, 290);
 
 /// Into so many parts a triangle's side is cut for the colours inside of it to show.
-const PARTS: usize = 8;
+const PARTS: usize = 5;
+
+/// The colour scale ends at so many times the greatest distance of exact refinement: up to the paper's greatest, it would
+/// show little of the others.
+const REACH: f64 = 2.0;
 
 struct Column {
     mesh: Mesh,
@@ -47,32 +51,32 @@ pub(super) fn picture() -> Result<Vec<u8>> {
     let control = builtin(MODEL)?;
     let reference = Reference::new(&control)?;
     let judge = Judge::new(&reference)?;
-    let uniform = methods::uniform(&control, LEVEL, true)?;
+    let uniform = methods::uniform(&control, LEVEL, false)?;
     let triangles = uniform.face_count();
     let (angle, paper) = methods::paper_with(&control, triangles, STEPS)?;
-    let exact = best(&control, triangles, false)?;
     let columns = [
-        column(uniform, "uniform, vertices on the limit".to_owned(), &judge)?,
+        column(uniform, "uniform".to_owned(), &judge)?,
         column(paper, format!("the paper’s method, {angle:.1}°"), &judge)?,
-        column(exact, "exact".to_owned(), &judge)?,
+        column(best(&control, triangles, false)?, "exact".to_owned(), &judge)?,
+        column(optimized(&control, triangles)?, "exact, optimised".to_owned(), &judge)?,
     ];
     let camera = Camera::fit_tightly(reference.mesh.as_triangles(), VIEW, SIZE.0, SIZE.1)?;
-    let greatest = columns.iter().flat_map(|c| &c.distances).copied().fold(0.0, f64::max);
-    let scale = Scale::new(0.0, greatest);
+    let [_, _, exact, _] = &columns;
+    let scale = Scale::new(0.0, REACH * exact.symmetric);
     let mut panels = Vec::new();
     for (letter, column) in ('a'..).zip(&columns) {
         panels.push(Panel::new(mesh(column, &camera)?, format!("({letter}) {}", column.words)));
     }
-    for (letter, column) in ('d'..).zip(&columns) {
+    for (letter, column) in ('e'..).zip(&columns) {
         let caption = format!(
-            "({letter}) {} triangles, distance {:.2} %",
+            "({letter}) {} triangles, {:.3} %",
             crate::quality::count(column.mesh.face_count()),
             column.symmetric
         );
         panels.push(Panel::new(heat(column, &scale, &camera)?, caption));
     }
-    let style = GridStyle::default().gap(6).caption(TextStyle::default().size(16.0));
-    let bar = ColourBar::new(scale).title("distance").unit("%").text_size(15.0);
+    let style = GridStyle::default().columns(columns.len()).gap(8).caption(TextStyle::default().size(15.0));
+    let bar = ColourBar::new(scale).title("distance").unit("%, top: or more").text_size(13.0);
     Ok(bar.beside(&grid(&panels, &style)?, style.background)?.encode_png()?)
 }
 

@@ -13,7 +13,7 @@ use super::table::{self, count, digits, median};
 use crate::clock::{one_thread, peak_bytes, resident_bytes};
 
 /// Built-in models, and files.
-const MODELS: [&str; 6] = ["cup", "head", "bunny_1k.off", "bunny_3674.obj", "teddy.obj", "goathead_be.ply"];
+const MODELS: [&str; 4] = ["cup", "bunny_1k.off", "bunny_3674.obj", "teddy.obj"];
 
 /// Triangles for which a tolerance is looked for, nearly.
 const TRIANGLES: [usize; 4] = [500_000, 1_000_000, 2_000_000, 4_000_000];
