@@ -6,8 +6,8 @@
 //!
 //! Each collapse is judged by the distance that it would leave between the coarse mesh and the surface, in both
 //! directions and locally: the vertices that are gone are samples of the surface, each cared for by the face nearest to
-//! it ([`samples`]); points of the new faces are measured from the tangent planes of the samples around ([`probe`]); and
-//! where samples are few, the normals at the ends of an edge tell how far the surface bulges over it ([`ground`]). Where
+//! it (`samples.rs`); points of the new faces are measured from the tangent planes of the samples around (`probe.rs`); and
+//! where samples are few, the normals at the ends of an edge tell how far the surface bulges over it (`ground.rs`). Where
 //! the surface is curved more in one direction than in the other, long triangles come out of this by themselves.
 //!
 //! How good the result can be is known: a smooth surface with Gaussian curvature K needs about

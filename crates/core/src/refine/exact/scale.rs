@@ -1,0 +1,59 @@
+//! Very large and very small models, brought to a middling size by a power of two, which changes no digit.
+//!
+//! Distances are found by squares and products of squares; beyond coordinates of 1e±40 or so these overflow or vanish.
+
+use super::camera::Camera;
+use super::options::{ErrorBounds, Exact, ExactOptions};
+use crate::criterion::{Sight, View};
+use crate::mesh::Mesh;
+use crate::refine::RefineError;
+
+/// Sizes with binary exponents up to this are left as they are: their eighth powers are finite.
+const MIDDLING: i32 = 100;
+
+/// The power of two that brings a mesh's coordinates near 1; `None` where they are middling already.
+pub(super) fn factor(mesh: &Mesh) -> Option<f64> {
+    let greatest = mesh.positions().iter().flatten().fold(0.0f64, |greatest, x| greatest.max(x.abs()));
+    if greatest == 0.0 || !greatest.is_finite() {
+        return None;
+    }
+    let exponent = greatest.log2().floor() as i32;
+    // One step short of the ends of the range, where the factor itself would not be a number.
+    (exponent.abs() > MIDDLING).then(|| 2f64.powi((-exponent).clamp(-1020, 1020)))
+}
+
+/// A mesh with its coordinates multiplied.
+pub(super) fn mesh(mesh: &Mesh, factor: f64) -> Result<Mesh, RefineError> {
+    let positions = mesh.positions().iter().map(|p| p.map(|x| x * factor)).collect();
+    Ok(mesh.clone().with_positions(positions)?)
+}
+
+/// Goals for the multiplied mesh.
+pub(super) fn options<'a>(options: &ExactOptions<'a>, factor: f64) -> ExactOptions<'a> {
+    let point = |p: [f64; 3]| p.map(|x| x * factor);
+    let camera =
+        |camera: &Camera| Camera { eye: point(camera.eye), target: point(camera.target), ..*camera };
+    let view = |view: View| match view.sight {
+        Sight::Eye(eye) => View { sight: Sight::Eye(point(eye)), ..view },
+        Sight::Direction(_) => view,
+    };
+    ExactOptions {
+        // A tolerance that vanishes or overflows still is one.
+        tolerance: options.tolerance.map(|length| (length * factor).clamp(f64::MIN_POSITIVE, f64::MAX)),
+        cameras: options.cameras.iter().map(camera).collect(),
+        view: options.view.map(view),
+        ..options.clone()
+    }
+}
+
+/// The result at the size that was asked for.
+pub(super) fn result(result: Exact, factor: f64) -> Result<Exact, RefineError> {
+    let ErrorBounds { lower, upper, at, certified } = result.error;
+    let error = ErrorBounds {
+        lower: lower / factor,
+        upper: upper / factor,
+        at: at.map(|x| x / factor),
+        certified,
+    };
+    Ok(Exact { mesh: mesh(&result.mesh, 1.0 / factor)?, error, ..result })
+}
