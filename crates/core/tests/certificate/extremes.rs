@@ -95,7 +95,7 @@ fn tiny_and_huge_coordinates_give_the_same_triangles() {
         let tolerance = 1e-3 * control.diagonal();
         both_balances(|options| {
             let usual = refined(&control, &options.clone().tolerance(tolerance));
-            for power in [-140, -60, 60, 140] {
+            for power in [-900, -500, -140, -60, 60, 140, 500, 900] {
                 let factor = 2f64.powi(power);
                 let result =
                     refined(&scaled(&control, factor), &options.clone().tolerance(factor * tolerance));

@@ -2,6 +2,7 @@
 
 use super::grow::Growth;
 use super::options::{BYTES_PER_TRIANGLE, Estimate, ExactOptions, ExactStop};
+use super::scale;
 use crate::mesh::Mesh;
 use crate::refine::RefineError;
 use crate::scheme::Scheme;
@@ -29,6 +30,9 @@ pub fn exact_estimate(
     options: &ExactOptions<'_>,
 ) -> Result<Estimate, RefineError> {
     options.check()?;
+    if let Some(factor) = scale::factor(control) {
+        return exact_estimate(&scale::mesh(control, factor)?, scheme, &scale::options(options, factor));
+    }
     let rules = Rules::of(scheme);
     let of = |triangles: usize, is_counted| {
         let triangles = triangles.min(options.budget().0).max(control.face_count());

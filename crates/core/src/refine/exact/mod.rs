@@ -21,6 +21,7 @@ mod leaf;
 mod optimized;
 mod options;
 mod probe;
+mod scale;
 mod settle;
 mod sides;
 
@@ -44,6 +45,10 @@ use grow::Growth;
 /// more elements than can be numbered, or the observer's wish to stop.
 pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions<'_>) -> Result<Exact, RefineError> {
     options.check()?;
+    if let Some(factor) = scale::factor(control) {
+        let scaled = exact(&scale::mesh(control, factor)?, scheme, &scale::options(options, factor))?;
+        return scale::result(scaled, factor);
+    }
     if options.optimize {
         return optimized::optimized(control, scheme, options);
     }

@@ -31,8 +31,7 @@ pub(super) fn mesh(mesh: &Mesh, factor: f64) -> Result<Mesh, RefineError> {
 /// Goals for the multiplied mesh.
 pub(super) fn options<'a>(options: &ExactOptions<'a>, factor: f64) -> ExactOptions<'a> {
     let point = |p: [f64; 3]| p.map(|x| x * factor);
-    let camera =
-        |camera: &Camera| Camera { eye: point(camera.eye), target: point(camera.target), ..*camera };
+    let camera = |camera: &Camera| Camera { eye: point(camera.eye), target: point(camera.target), ..*camera };
     let view = |view: View| match view.sight {
         Sight::Eye(eye) => View { sight: Sight::Eye(point(eye)), ..view },
         Sight::Direction(_) => view,
@@ -49,11 +48,7 @@ pub(super) fn options<'a>(options: &ExactOptions<'a>, factor: f64) -> ExactOptio
 /// The result at the size that was asked for.
 pub(super) fn result(result: Exact, factor: f64) -> Result<Exact, RefineError> {
     let ErrorBounds { lower, upper, at, certified } = result.error;
-    let error = ErrorBounds {
-        lower: lower / factor,
-        upper: upper / factor,
-        at: at.map(|x| x / factor),
-        certified,
-    };
+    let error =
+        ErrorBounds { lower: lower / factor, upper: upper / factor, at: at.map(|x| x / factor), certified };
     Ok(Exact { mesh: mesh(&result.mesh, 1.0 / factor)?, error, ..result })
 }
