@@ -160,8 +160,12 @@ impl Cutter {
             self.cut_fan(corners);
             return false;
         }
-        // Turned into the plane, corners on one line may stand beside it by rounding; along an axis they don't.
-        if self.cut_ears(corners) || self.flatten_along_axis(positions, polygon) && self.cut_ears(corners) {
+        self.earcut.earcut_slice(&self.plane, &[], &mut self.indices);
+        self.orient();
+        if self.indices.len() / 3 < polygon.len() - 2 {
+            self.restore_straight_corners(corners);
+        }
+        if self.is_proper(corners) {
             self.refiner.refine(&mut self.indices, &self.plane);
             return true;
         }
@@ -171,16 +175,6 @@ impl Cutter {
             self.cut_fan(corners);
         }
         false
-    }
-
-    /// Cuts ears in the plane; whether they make up the polygon.
-    fn cut_ears(&mut self, corners: u32) -> bool {
-        self.earcut.earcut_slice(&self.plane, &[], &mut self.indices);
-        self.orient();
-        if self.indices.len() / 3 < corners as usize - 2 {
-            self.restore_straight_corners(corners);
-        }
-        self.is_proper(corners)
     }
 
     /// The triangulation of least area, by dynamic programming over the pairs of corners (G. T. Klincsek,
@@ -239,22 +233,6 @@ impl Cutter {
             [p.dot(u), p.dot(v)]
         }));
         Some(())
-    }
-
-    /// Projects the polygon along the axis that its normal is nearest to, seen from the side that the normal points to.
-    fn flatten_along_axis(&mut self, positions: &[[f64; 3]], polygon: &[u32]) -> bool {
-        let (origin, scale) = local_frame(positions, polygon);
-        let normal = newell(polygon.iter().map(|&v| (vector(positions[v as usize]) - origin) * scale));
-        let normal = normal.to_array();
-        let axis =
-            (1..3).fold(0, |most, axis| if normal[axis].abs() > normal[most].abs() { axis } else { most });
-        let (mut u, mut v) = ((axis + 1) % 3, (axis + 2) % 3);
-        if normal[axis] < 0.0 {
-            core::mem::swap(&mut u, &mut v);
-        }
-        self.plane.clear();
-        self.plane.extend(polygon.iter().map(|&w| [positions[w as usize][u], positions[w as usize][v]]));
-        true
     }
 
     /// Turns all triangles counter-clockwise if they are clockwise.

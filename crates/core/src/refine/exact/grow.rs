@@ -145,7 +145,8 @@ impl<'a> Growth<'a> {
             }
             self.grown(&changes);
         }
-        Ok(())
+        // There may be no round left that would tell these leaves apart.
+        if levels > 0 { self.evaluate(0.0) } else { Ok(()) }
     }
 
     /// Splits until the goals are met or nothing more is allowed.
