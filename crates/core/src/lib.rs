@@ -41,6 +41,7 @@
 //! | [`measure`] | distances, sampled and certified, watertightness, triangle quality |
 //! | [`models`] | built-in control meshes |
 
+mod certificate;
 pub mod criterion;
 pub mod emit;
 pub mod index;
@@ -50,10 +51,10 @@ pub mod measure;
 pub mod mesh;
 pub mod models;
 mod parallel;
+mod patch;
 pub mod refine;
 pub mod ring;
 pub mod scheme;
-mod surface;
 mod vector;
 
 pub use index::{FaceId, HalfEdgeId, VertexId};

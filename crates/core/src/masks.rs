@@ -2,7 +2,7 @@
 //!
 //! Takes a mesh and a scheme; gives points. Refinement and the limits of two-ring schemes build on it.
 
-mod spoke;
+mod incident_edge;
 pub(crate) mod views;
 
 use crate::index::{HalfEdgeId, VertexId};
@@ -11,7 +11,7 @@ use crate::parallel;
 use crate::ring::{EdgeShape, RingShape};
 use crate::scheme::{EdgeMask, Scheme, Support, VertexMask};
 use crate::vector::{DVec3, vector};
-use spoke::Spoke;
+use incident_edge::IncidentEdge;
 use views::{EdgeView, LabelledRing, View, edge_views, vertex_views};
 
 /// Up to this valence the place of an edge in an open ring is counted each time; beyond it the places of all edges
@@ -116,19 +116,19 @@ impl<'a> Masks<'a> {
         }
         let topology = self.mesh.topology();
         let [origin, target] = topology.ends(h).map(|v| self.shapes.at(v));
-        let slot = |shape: RingShape, spoke: Spoke| match spoke {
+        let slot = |shape: RingShape, edge: IncidentEdge| match edge {
             _ if !shape.open => 0,
-            Spoke::Arriving(_) => shape.valence - 1,
-            Spoke::Leaving(h) => self.slots.get(h.index()).copied().unwrap_or_else(|| {
-                let before = core::iter::successors(spoke.previous(topology), |s| s.previous(topology));
+            IncidentEdge::Arriving(_) => shape.valence - 1,
+            IncidentEdge::Leaving(h) => self.slots.get(h.index()).copied().unwrap_or_else(|| {
+                let before = core::iter::successors(edge.previous(topology), |s| s.previous(topology));
                 before.count() as u32
             }),
         };
         EdgeShape {
             origin,
-            origin_slot: slot(origin, Spoke::from_origin(h)),
+            origin_slot: slot(origin, IncidentEdge::from_origin(h)),
             target,
-            target_slot: slot(target, Spoke::from_target(topology, h)),
+            target_slot: slot(target, IncidentEdge::from_target(topology, h)),
         }
     }
 
@@ -253,10 +253,15 @@ impl<'a> Masks<'a> {
         let [origin, target] = self.mesh.topology().ends(h);
         let mut sum = mask.origin * self.at(origin) + mask.target * self.at(target);
         let ends = [
-            (Spoke::from_origin(h), shape.origin, shape.origin_slot, &mask.origin_ring),
-            (Spoke::from_target(self.mesh.topology(), h), shape.target, shape.target_slot, &mask.target_ring),
+            (IncidentEdge::from_origin(h), shape.origin, shape.origin_slot, &mask.origin_ring),
+            (
+                IncidentEdge::from_target(self.mesh.topology(), h),
+                shape.target,
+                shape.target_slot,
+                &mask.target_ring,
+            ),
         ];
-        for (spoke, ring, slot, weights) in ends {
+        for (edge, ring, slot, weights) in ends {
             let slot = slot as usize;
             // A closed ring starts at the edge: the second half of it is nearer clockwise.
             let (before, from) = if ring.open {
@@ -265,29 +270,29 @@ impl<'a> Masks<'a> {
                 let (near, far) = weights.split_at(weights.len().div_ceil(2));
                 (far, near)
             };
-            self.weigh_spokes(&mut sum, Some(spoke), Spoke::next, from.iter());
-            let previous = spoke.previous(self.mesh.topology());
-            self.weigh_spokes(&mut sum, previous, Spoke::previous, before.iter().rev());
+            self.weigh_around(&mut sum, Some(edge), IncidentEdge::next, from.iter());
+            let previous = edge.previous(self.mesh.topology());
+            self.weigh_around(&mut sum, previous, IncidentEdge::previous, before.iter().rev());
         }
         sum
     }
 
-    /// Adds the weighted neighbours from `spoke` on, step by step, as far as there are weights that are not zero.
-    fn weigh_spokes<'w>(
+    /// Adds the weighted neighbours from `edge` on, step by step, as far as there are weights that are not zero.
+    fn weigh_around<'w>(
         &self,
         sum: &mut DVec3,
-        mut spoke: Option<Spoke>,
-        step: impl Fn(Spoke, &Topology) -> Option<Spoke>,
+        mut edge: Option<IncidentEdge>,
+        step: impl Fn(IncidentEdge, &Topology) -> Option<IncidentEdge>,
         weights: impl DoubleEndedIterator<Item = &'w f64> + ExactSizeIterator + Clone,
     ) {
         let topology = self.mesh.topology();
         let reach = weights.clone().rposition(|&weight| weight != 0.0).map_or(0, |last| last + 1);
         for &weight in weights.take(reach) {
-            let Some(here) = spoke else { return };
+            let Some(here) = edge else { return };
             if weight != 0.0 {
                 *sum += weight * self.at(here.neighbour(topology));
             }
-            spoke = step(here, topology);
+            edge = step(here, topology);
         }
     }
 }

@@ -8,8 +8,8 @@ use super::emit::Emission;
 use super::evaluate::Evaluation;
 use super::grow::Growth;
 use super::leaf::leaf_triangles;
+use crate::certificate::TriangleFrame;
 use crate::parallel;
-use crate::surface::Facet;
 use crate::vector::DVec3;
 
 /// Levels below a leaf whose vertices are sampled.
@@ -58,12 +58,12 @@ impl Growth<'_> {
         let middles = [0, 1, 2].map(|edge| self.forest.middle(leaf, edge));
         for triangle in leaf_triangles(self.forest.corners(leaf), middles, self.diagonals[leaf as usize]) {
             let at = |vertex: u32| self.points[vertex as usize].position;
-            let facet = Facet::new(triangle.corners.map(at));
+            let frame = TriangleFrame::new(triangle.corners.map(at));
             let (mut low, mut high) = (0.0f64, 0.0f64);
             for &sample in
-                samples.iter().filter(|&&sample| (0..3).all(|edge| facet.beside(edge, sample).outside <= 0.0))
+                samples.iter().filter(|&&sample| (0..3).all(|edge| frame.beside(edge, sample).outside <= 0.0))
             {
-                let height = facet.height(sample);
+                let height = frame.height(sample);
                 (low, high) = (low.min(height), high.max(height));
             }
             found.push((triangle.corners, 0.5 * (low + high)));

@@ -1,7 +1,8 @@
 //! Perspective cameras: how long a distance may be to stay within some pixels.
 
+use crate::certificate::TriangleFrame;
 use crate::mesh::MeshError;
-use crate::surface::{Facet, LimitPoint};
+use crate::patch::LimitPoint;
 use crate::vector::{DVec3, vector};
 
 /// A perspective camera.
@@ -72,9 +73,9 @@ impl Lens {
 
     /// The distance that a triangle may have from its piece of the surface to stay within one pixel: infinite where the
     /// camera does not see it.
-    pub(super) fn one_pixel(&self, facet: &Facet, corners: &[LimitPoint; 3]) -> f64 {
+    pub(super) fn one_pixel(&self, frame: &TriangleFrame, corners: &[LimitPoint; 3]) -> f64 {
         let sights = corners.map(|corner| corner.position - self.eye);
-        let size = facet.length(0).max(facet.length(1)).max(facet.length(2));
+        let size = frame.length(0).max(frame.length(1)).max(frame.length(2));
         let depths = sights.map(|sight| sight.dot(self.forward));
         let nearest = depths.into_iter().fold(f64::INFINITY, f64::min);
         // The surface may bulge out of the triangle, by much less than its size.
@@ -92,7 +93,7 @@ impl Lens {
             return f64::INFINITY;
         }
         // Normals of the piece stay within this angle of the corners'.
-        let cone = corners.iter().map(|corner| corner.normal.distance(facet.normal())).fold(0.0, f64::max);
+        let cone = corners.iter().map(|corner| corner.normal.distance(frame.normal())).fold(0.0, f64::max);
         let sines = sights.iter().zip(corners).map(|(sight, corner)| {
             let length = sight.length().max(f64::MIN_POSITIVE);
             let cosine = (sight.dot(corner.normal) / length).clamp(-1.0, 1.0);

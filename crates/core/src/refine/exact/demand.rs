@@ -2,9 +2,10 @@
 
 use super::camera::Lens;
 use super::options::ExactOptions;
+use crate::certificate::TriangleFrame;
 use crate::criterion::{Threshold, View};
 use crate::mesh::MeshError;
-use crate::surface::{Facet, LimitPoint};
+use crate::patch::LimitPoint;
 use crate::vector::DVec3;
 
 /// Where the viewer looks along the surface the paper divides without end; here the cone stays above this part of its
@@ -56,22 +57,22 @@ impl Demand {
 
     /// What the distance of a triangle to the surface is multiplied by: 0 where it does not matter.
     #[inline]
-    pub(super) fn distance_scale(&self, facet: &Facet, corners: &[LimitPoint; 3]) -> f64 {
+    pub(super) fn distance_scale(&self, frame: &TriangleFrame, corners: &[LimitPoint; 3]) -> f64 {
         let plain = match self.tolerance {
             Some(tolerance) => 1.0 / tolerance,
             None if self.is_some() => 0.0,
             None => 1.0,
         };
         let Some(pixels) = self.pixels else { return plain };
-        let seen = self.lenses.iter().map(|lens| lens.one_pixel(facet, corners));
+        let seen = self.lenses.iter().map(|lens| lens.one_pixel(frame, corners));
         plain.max(1.0 / (pixels * seen.fold(f64::INFINITY, f64::min)))
     }
 
     /// The share of the cone's angle that a triangle takes (the paper's equations 2 and 11): above 1 outside.
-    pub(super) fn cone(&self, facet: &Facet, corners: &[LimitPoint; 3]) -> f64 {
+    pub(super) fn cone(&self, frame: &TriangleFrame, corners: &[LimitPoint; 3]) -> f64 {
         let Some(angle) = self.angle else { return 0.0 };
-        let normal = facet.normal();
-        if facet.is_flat() {
+        let normal = frame.normal();
+        if frame.is_flat() {
             return 0.0;
         }
         let angle = match self.view {

@@ -4,9 +4,9 @@ use super::grow::Growth;
 use super::options::{BYTES_PER_TRIANGLE, Estimate, ExactOptions, ExactStop};
 use super::scale;
 use crate::mesh::Mesh;
+use crate::patch::Rules;
 use crate::refine::RefineError;
 use crate::scheme::Scheme;
-use crate::surface::Rules;
 
 /// Goals are approached by halves from this many times too coarse.
 const COARSEST: f64 = 64.0;

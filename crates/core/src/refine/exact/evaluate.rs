@@ -6,11 +6,12 @@
 use super::demand::Demand;
 use super::forest::Forest;
 use super::leaf::{LeafTriangle, leaf_triangles};
+use crate::certificate::{Deviation, Effort, Pieces, Samples, SubTriangle, TriangleFrame};
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::SidedNormals;
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
-use crate::surface::{Deviation, Effort, Facet, LimitPoint, Part, Patch, Pieces, Rules, Samples, root_patch};
+use crate::patch::{LimitPoint, Patch, Rules, root_patch};
 use crate::vector::{DVec3, vector};
 
 /// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
@@ -183,7 +184,7 @@ impl Evaluation<'_> {
                 Leaf { node, value: 0.0, scale: 0.0, deviation: Deviation::default(), diagonal_from_end };
             for triangle in leaf_triangles([0, 1, 2], middles, diagonal_from_end) {
                 let LeafTriangle { part, corners, borders } = triangle;
-                let is_shared = is_choice && matches!(part, Part::Child(_));
+                let is_shared = is_choice && matches!(part, SubTriangle::Child(_));
                 let found = match cut_off {
                     Some(known) if is_shared => known,
                     _ => {
@@ -220,18 +221,18 @@ impl Evaluation<'_> {
     fn triangle<'p>(
         &'p self,
         pieces: &mut Pieces<'p>,
-        part: Part,
+        part: SubTriangle,
         corners: [LimitPoint; 3],
         open: [bool; 3],
     ) -> Value {
-        let facet = Facet::new(corners.map(|point| point.position));
-        let (tilt, slope) = expected(&facet, &corners);
+        let frame = TriangleFrame::new(corners.map(|point| point.position));
+        let (tilt, slope) = expected(&frame, &corners);
         // The neighbour stands as far from the limit normals, on their other side.
         let chord = 2.0 * tilt;
-        let scale = self.demand.distance_scale(&facet, &corners);
+        let scale = self.demand.distance_scale(&frame, &corners);
         let effort = Effort { target: self.target / scale, halvings: self.halvings, open, chord, slope };
-        let deviation = pieces.deviation(part, &facet, self.rules, effort);
-        let value = (deviation.bound(chord, slope) * scale).max(self.demand.cone(&facet, &corners));
+        let deviation = pieces.deviation(part, &frame, self.rules, effort);
+        let value = (deviation.bound(chord, slope) * scale).max(self.demand.cone(&frame, &corners));
         Value { value, scale, deviation, tilt }
     }
 }
@@ -249,8 +250,8 @@ impl Evaluation<'_> {
         for place in path.into_iter().rev() {
             patch = patch.refined(self.rules).part(place);
         }
-        if let Patch::Local(local) = &patch {
-            return Samples::of(local, depth, self.rules).points();
+        if let Patch::Mesh(mesh) = &patch {
+            return Samples::of(mesh, depth, self.rules).points();
         }
         let mut points = Vec::new();
         self.sample(&patch, depth, &mut points);
@@ -268,7 +269,7 @@ impl Evaluation<'_> {
 
 /// What the neighbours of a triangle are expected from: the greatest chord of the angles between its plane and the limit
 /// normals at its corners, and the greatest slope of a drift, from its own angles.
-fn expected(facet: &Facet, corners: &[LimitPoint; 3]) -> (f64, f64) {
-    let squares = corners.iter().map(|corner| corner.normal.distance_squared(facet.normal()));
-    (squares.fold(0.0, f64::max).sqrt(), facet.least_slope())
+fn expected(frame: &TriangleFrame, corners: &[LimitPoint; 3]) -> (f64, f64) {
+    let squares = corners.iter().map(|corner| corner.normal.distance_squared(frame.normal()));
+    (squares.fold(0.0, f64::max).sqrt(), frame.least_slope())
 }

@@ -6,12 +6,13 @@ use super::evaluate::{ABOVE_WANTED, Evaluation, Found, WANTED};
 use super::forest::{Changes, Forest};
 use super::options::{ExactOptions, ExactProgress, ExactStop};
 use super::probe::rounding;
+use crate::certificate::Deviation;
 use crate::limit::{LimitTable, SidedNormals};
 use crate::mesh::{Mesh, Sharpness};
+use crate::patch::{LimitPoint, Rules};
 use crate::refine::RefineError;
 use crate::refine::junctions::join_copies;
 use crate::scheme::Scheme;
-use crate::surface::{Deviation, LimitPoint, Rules};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// Halvings of a net before a leaf is called too bad: the bound is within some per cent of the truth then.

@@ -1,14 +1,14 @@
 //! The triangles of a leaf by which of its edges are split (the paper's Figure 5), and the parts of its patch that
 //! they stand for.
 
-use crate::surface::Part;
+use crate::certificate::SubTriangle;
 
 /// A triangle of a leaf. Corners of the part and of the triangle stand in the same order, which may be another than that
 /// of the emitted triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LeafTriangle<P> {
     /// The part of the leaf's patch that it stands for.
-    pub(super) part: Part,
+    pub(super) part: SubTriangle,
     pub(super) corners: [P; 3],
     /// For each edge, from the corner of its number, the leaf's edge that it is part of.
     pub(super) borders: [Option<usize>; 3],
@@ -21,7 +21,7 @@ pub(super) fn leaf_triangles<P: Copy>(
     middles: [Option<P>; 3],
     diagonal_from_end: bool,
 ) -> impl Iterator<Item = LeafTriangle<P>> {
-    let whole = LeafTriangle { part: Part::Whole, corners, borders: [Some(0), Some(1), Some(2)] };
+    let whole = LeafTriangle { part: SubTriangle::Whole, corners, borders: [Some(0), Some(1), Some(2)] };
     let trisected = |edge, after, before| trisected(corners, edge, [after, before], diagonal_from_end);
     let list = match middles {
         [None, None, None] => [Some(whole), None, None, None],
@@ -43,7 +43,7 @@ fn half<P: Copy>(mut corners: [P; 3], edge: usize, second: bool, middle: P) -> O
     corners[(edge + usize::from(!second)) % 3] = middle;
     let mut borders = [Some(0), Some(1), Some(2)];
     borders[(edge + 1 + usize::from(second)) % 3] = None;
-    Some(LeafTriangle { part: Part::Half { edge, second }, corners, borders })
+    Some(LeafTriangle { part: SubTriangle::Half { edge, second }, corners, borders })
 }
 
 /// One of the four parts of a refinement.
@@ -52,7 +52,7 @@ fn child<P: Copy>(corners: [P; 3], part: usize, on_next: P, on_last: P) -> Optio
     own[(part + 1) % 3] = on_next;
     own[(part + 2) % 3] = on_last;
     borders[(part + 1) % 3] = None;
-    Some(LeafTriangle { part: Part::Child(part), corners: own, borders })
+    Some(LeafTriangle { part: SubTriangle::Child(part), corners: own, borders })
 }
 
 fn bisected<P: Copy>(corners: [P; 3], edge: usize, middle: P) -> Triangles<P> {
@@ -71,7 +71,7 @@ fn trisected<P: Copy>(
         // Leaving the edge's end, the quarter starts on the next edge; at its start it ends on the edge before.
         let mut borders = [None; 3];
         borders[if from == end { 0 } else { 2 }] = on_border;
-        let part = Part::Quarter { edge, at_end: from == end };
+        let part = SubTriangle::Quarter { edge, at_end: from == end };
         Some(LeafTriangle { part, corners: [corners[from], after, before], borders })
     };
     let cut_off = child(corners, tip, before, after);
@@ -84,6 +84,6 @@ fn trisected<P: Copy>(
 
 fn quartered<P: Copy>(corners: [P; 3], middles: [P; 3]) -> Triangles<P> {
     let [a, b, c] = middles;
-    let inner = LeafTriangle { part: Part::Child(3), corners: [b, c, a], borders: [None; 3] };
+    let inner = LeafTriangle { part: SubTriangle::Child(3), corners: [b, c, a], borders: [None; 3] };
     [child(corners, 0, a, c), child(corners, 1, b, a), child(corners, 2, c, b), Some(inner)]
 }

@@ -33,8 +33,8 @@ pub use options::{
 
 use super::RefineError;
 use crate::mesh::Mesh;
+use crate::patch::Rules;
 use crate::scheme::Scheme;
-use crate::surface::Rules;
 use grow::Growth;
 
 /// Refines `control` until the goals are met: each distance, angle or pixel goal everywhere, or as many triangles as
@@ -75,5 +75,5 @@ pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions<'_>) ->
 /// Whether the distances that [`exact`] reports for a scheme are proven: those of Loop's scheme and its variants are, others
 /// are estimated from samples.
 pub fn is_certified(scheme: &dyn Scheme) -> bool {
-    Rules::of(scheme).has_forms()
+    Rules::of(scheme).is_certified()
 }

@@ -5,11 +5,11 @@ use super::emit::Emission;
 use super::grow::Growth;
 use super::leaf::leaf_triangles;
 use super::options::ErrorBounds;
+use crate::certificate::{Deviation, TriangleFrame};
 use crate::index::VertexId;
 use crate::mesh::Mesh;
 use crate::parallel;
 use crate::refine::RefineError;
-use crate::surface::{Deviation, Facet};
 use crate::vector::DVec3;
 
 /// Leaves with the greatest bounds that are looked at for a lower bound.
@@ -80,7 +80,7 @@ impl Growth<'_> {
             deviation.own.min(deviation.height)
         };
         // Estimates need not be met by anything.
-        let telling = if self.rules.has_forms() { TELLING } else { 0.0 };
+        let telling = if self.rules.is_certified() { TELLING } else { 0.0 };
         let enough = telling * leaves.iter().map(|&leaf| least(leaf)).fold(0.0, f64::max);
         let found = parallel::blocks(leaves.len(), BLOCK, |block| {
             let telling = |&leaf: &u32| self.deviations[leaf as usize].own > enough;
@@ -108,7 +108,7 @@ impl Growth<'_> {
         worst.extend(&by_height[..probed]);
         worst.sort_unstable();
         worst.dedup();
-        let mut best = ErrorBounds { lower: 0.0, upper, at: [0.0; 3], certified: self.rules.has_forms() };
+        let mut best = ErrorBounds { lower: 0.0, upper, at: [0.0; 3], certified: self.rules.is_certified() };
         for (_, point) in self.samples(&worst).into_iter().take(MEASURED) {
             if best.lower > NARROW * upper {
                 break;
@@ -135,9 +135,9 @@ impl Growth<'_> {
             if bound <= best.lower || count >= MOST_MEASURED {
                 return bound.max(best.lower);
             }
-            let facets = self.facets(leaf);
+            let frames = self.frames(leaf);
             for point in evaluation.samples(leaf, SAMPLED_LEVELS) {
-                let own = facets.iter().map(|facet| facet.squared(point)).fold(f64::INFINITY, f64::min);
+                let own = frames.iter().map(|frame| frame.squared(point)).fold(f64::INFINITY, f64::min);
                 if own > best.lower * best.lower {
                     let distance = blocks.distance(self, emission, point);
                     if distance > best.lower {
@@ -150,11 +150,11 @@ impl Growth<'_> {
     }
 
     /// The triangles of a leaf.
-    fn facets(&self, leaf: u32) -> Vec<Facet> {
+    fn frames(&self, leaf: u32) -> Vec<TriangleFrame> {
         let corners = self.forest.corners(leaf).map(|vertex| self.emitted(vertex));
         let middles = [0, 1, 2].map(|edge| self.forest.middle(leaf, edge).map(|vertex| self.emitted(vertex)));
         leaf_triangles(corners, middles, self.diagonals[leaf as usize])
-            .map(|triangle| Facet::new(triangle.corners))
+            .map(|triangle| TriangleFrame::new(triangle.corners))
             .collect()
     }
 
@@ -163,11 +163,11 @@ impl Growth<'_> {
         let evaluation = self.evaluation(0.0);
         let mut samples: Vec<(f64, DVec3)> = Vec::new();
         for &leaf in leaves {
-            let facets = self.facets(leaf);
+            let frames = self.frames(leaf);
             // Sideways the neighbours take over: the height over the nearest triangle tells more than the distance.
             let promise = |point: DVec3| {
-                let nearest = facets.iter().min_by(|a, b| a.squared(point).total_cmp(&b.squared(point)));
-                nearest.map_or(0.0, |facet| facet.height(point).abs())
+                let nearest = frames.iter().min_by(|a, b| a.squared(point).total_cmp(&b.squared(point)));
+                nearest.map_or(0.0, |frame| frame.height(point).abs())
             };
             let points = evaluation.samples(leaf, SAMPLED_LEVELS).into_iter();
             samples.extend(points.map(|point| (promise(point), point)).max_by(|a, b| a.0.total_cmp(&b.0)));
@@ -179,12 +179,12 @@ impl Growth<'_> {
 
 /// What rounding can have done to a distance: positions are convex combinations of convex combinations, one for
 /// each level, and each adds a few units in the last place of the coordinates' size; those of a control vertex add one for
-/// each neighbour. Points near an edge of a triangle count as on it ([`Facet::on_edge`]), on either side.
+/// each neighbour. Points near an edge of a triangle count as on it ([`TriangleFrame::on_edge`]), on either side.
 pub(super) fn rounding(control: &Mesh, max_levels: usize) -> f64 {
     let size = control.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
     let topology = control.topology();
     let valence = |v: u32| topology.valence_and_openness(VertexId(v)).0;
     let most = (0..control.vertex_count() as u32).map(valence).max().unwrap_or(0);
     let units = 32.0 + 8.0 * max_levels.min(MOST_LEVELS) as f64 + f64::from(most);
-    (units * f64::EPSILON + 4.0 * Facet::ROUNDING) * size
+    (units * f64::EPSILON + 4.0 * TriangleFrame::ROUNDING) * size
 }

@@ -7,7 +7,7 @@ use super::emit::Emission;
 use super::grow::Growth;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::parallel;
-use crate::surface::{Patch, root_patch};
+use crate::patch::{Patch, root_patch};
 use crate::vector::{DVec3, vector};
 
 /// Leaves that one call takes together.

@@ -1,9 +1,9 @@
 //! The patch of a control face.
 
-use super::fan::{Centre, Fan, Fans};
-use super::local::{self, Local};
-use super::patch::Patch;
+use super::Patch;
+use super::mesh_patch::{self, MeshPatch};
 use super::rules::Rules;
+use super::sector::{Centre, SectorPatch, VertexSector};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sector, Sharpness, Topology};
 use crate::ring::RingShape;
@@ -12,25 +12,25 @@ use crate::vector::{DVec3, vector};
 /// The limit surface over a control face.
 pub(crate) fn root_patch(mesh: &Mesh, sharpness: &Sharpness<'_>, face: FaceId, rules: &Rules<'_>) -> Patch {
     let corners = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
-    if !rules.has_forms() || local::fades(mesh, sharpness, corners) {
-        return Patch::Local(Local::of(mesh, sharpness, face, rules));
+    if !rules.is_certified() || mesh_patch::fades(mesh, sharpness, corners) {
+        return Patch::Mesh(MeshPatch::of(mesh, sharpness, face, rules));
     }
     patch_of(mesh, sharpness, corners)
 }
 
 /// The surface over a face, given its corners, for a scheme of Loop's family. No tag may fade there.
 pub(super) fn patch_of(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> Patch {
-    Patch::of(Fans(corners.map(|corner| fan(mesh, sharpness, corner))))
+    Patch::of(SectorPatch(corners.map(|corner| sector(mesh, sharpness, corner))))
 }
 
-/// The fan of the origin of `h`, on the side of the face of `h`.
-fn fan(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> Fan {
+/// The sector of the origin of `h`, on the side of the face of `h`.
+fn sector(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> VertexSector {
     let topology = mesh.topology();
     let at = |v: VertexId| vector(mesh.positions()[v.index()]);
     let sector = sector_of(topology, sharpness, h);
     let neighbours: Vec<DVec3> = sector.neighbours(topology).map(at).collect();
     let slot = sector.outgoing(topology).position(|other| other == h).unwrap_or(0);
-    Fan { at: at(topology.origin(h)), neighbours, centre: centre(sector.shape), slot }
+    VertexSector { at: at(topology.origin(h)), neighbours, centre: centre(sector.shape), slot }
 }
 
 /// The sector of the ring of the origin of `h` that the face of `h` is in.

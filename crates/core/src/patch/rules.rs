@@ -19,7 +19,7 @@ const KEPT: usize = 32;
 pub(crate) struct Rules<'s> {
     scheme: &'s dyn Scheme,
     table: LimitTable<'s>,
-    has_forms: bool,
+    is_certified: bool,
     /// What went wrong first.
     failure: OnceLock<RefineError>,
     betas: [f64; KEPT],
@@ -34,7 +34,7 @@ impl<'s> Rules<'s> {
         Self {
             scheme,
             table: LimitTable::new(scheme),
-            has_forms: is_candidate && (2..KEPT).all(|k| (0.0..=1.0 / k as f64).contains(&betas[k])),
+            is_certified: is_candidate && (2..KEPT).all(|k| (0.0..=1.0 / k as f64).contains(&betas[k])),
             failure: OnceLock::new(),
             betas,
             characteristics: [const { OnceLock::new() }; KEPT],
@@ -53,13 +53,13 @@ impl<'s> Rules<'s> {
 
     /// Whether the scheme is of Loop's family: what does not fade has a form of its own, and bounds hold.
     #[inline]
-    pub(crate) fn has_forms(&self) -> bool {
-        self.has_forms
+    pub(crate) fn is_certified(&self) -> bool {
+        self.is_certified
     }
 
     /// The rings of faces around a face that decide the surface over it.
     pub(crate) fn rings(&self) -> usize {
-        if self.has_forms { 1 } else { 2 }
+        if self.is_certified { 1 } else { 2 }
     }
 
     /// Keeps a failure, for whoever looks at results: what is computed after it means nothing.
@@ -121,8 +121,8 @@ mod tests {
     #[test]
     fn the_family_is_recognised() {
         let (rules, warren) = (Rules::of(&Loop), Rules::of(&LoopWarren));
-        assert!(rules.has_forms() && rules.beta(6) == 0.0625 && rules.beta(100) > 0.0);
-        assert!(warren.has_forms() && warren.beta(3) == 0.1875);
-        assert!(!Rules::of(&ModifiedButterfly).has_forms());
+        assert!(rules.is_certified() && rules.beta(6) == 0.0625 && rules.beta(100) > 0.0);
+        assert!(warren.is_certified() && warren.beta(3) == 0.1875);
+        assert!(!Rules::of(&ModifiedButterfly).is_certified());
     }
 }

@@ -1,28 +1,28 @@
-//! Irregular pieces: a face and its one-ring as the fans of its three corners, whatever their rings are like.
+//! Irregular pieces: a face and its one-ring as the sectors of its three corners, whatever their rings are like.
 //!
-//! A fan is the part of a vertex's ring that decides the surface on the face's side: the whole ring of a smooth
-//! vertex or a dart, the sector between two sharp edges (or boundary edges) of a crease vertex or a corner. One
-//! refinement gives the fans of the four parts; all but the corner's own are regular then.
+//! A vertex's sector (Biermann, Levin and Zorin 2000) is the part of its ring that decides the surface on the face's
+//! side: the whole ring of a smooth vertex or a dart, the part between two sharp edges (or boundary edges) of a crease
+//! vertex or a corner. One refinement gives the sectors of the four parts; all but the corner's own are regular then.
 
-use super::lattice::{self, Points};
+use super::box_spline::{self, Points};
+use super::extraordinary::ExtraordinaryPatch;
 use super::rules::Rules;
-use super::spoke::Spoke;
 use crate::vector::DVec3;
 
-/// What becomes of a fan's centre.
+/// What becomes of a sector's centre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Centre {
     /// Faces all round; with the slot of its sharp edge where it has just one (a dart).
     Smooth { sharp: Option<usize> },
-    /// Smooth along the sharp or boundary curve that the fan starts and ends at.
+    /// Smooth along the sharp or boundary curve that the sector starts and ends at.
     Crease,
-    /// Keeps its place; the fan is open where `open`, and may have one sharp edge where not.
+    /// Keeps its place; the sector is open where `open`, and may have one sharp edge where not.
     Corner { open: bool, sharp: Option<usize> },
 }
 
 /// A vertex with its neighbours, counter-clockwise, on the side of one of its faces.
 #[derive(Clone, Debug)]
-pub(crate) struct Fan {
+pub(crate) struct VertexSector {
     pub(crate) at: DVec3,
     pub(crate) neighbours: Vec<DVec3>,
     pub(crate) centre: Centre,
@@ -30,8 +30,8 @@ pub(crate) struct Fan {
     pub(crate) slot: usize,
 }
 
-impl Fan {
-    /// Whether the fan ends at two sharp or boundary edges.
+impl VertexSector {
+    /// Whether the sector ends at two sharp or boundary edges.
     pub(crate) fn is_open(&self) -> bool {
         matches!(self.centre, Centre::Crease | Centre::Corner { open: true, .. })
     }
@@ -80,7 +80,7 @@ impl Fan {
             .collect()
     }
 
-    /// The six neighbours, the face's next corner first, of a regular fan; on an open one those beyond the curve are
+    /// The six neighbours, the face's next corner first, of a regular sector; on an open one those beyond the curve are
     /// mirrored, which gives the same surface.
     fn regular_ring(&self) -> Option<[DVec3; 6]> {
         let ring: [DVec3; 6] = match (self.centre, &self.neighbours[..]) {
@@ -92,41 +92,46 @@ impl Fan {
     }
 }
 
-/// The fans of a face's corners.
+/// The sectors of a face's corners.
 #[derive(Clone, Debug)]
-pub(crate) struct Fans(pub(crate) [Fan; 3]);
+pub(crate) struct SectorPatch(pub(crate) [VertexSector; 3]);
 
-impl Fans {
+impl SectorPatch {
     /// The twelve points of a regular face.
     pub(crate) fn regular(&self) -> Option<Points> {
         let [a, b, c] = &self.0;
         let rings = [a.regular_ring()?, b.regular_ring()?, c.regular_ring()?];
-        Some(lattice::assemble([a.at, b.at, c.at], &rings))
+        Some(box_spline::assemble([a.at, b.at, c.at], &rings))
     }
 
     /// The face as that of one irregular vertex inside the surface, if the other two corners are regular.
-    pub(crate) fn spoke(&self) -> Option<Spoke> {
-        let corner = self.0.iter().position(|fan| fan.regular_ring().is_none())?;
-        let [fan, first, second] = [0, 1, 2].map(|i| &self.0[(corner + i) % 3]);
-        if fan.centre != (Centre::Smooth { sharp: None }) || fan.neighbours.len() < 3 {
+    pub(crate) fn extraordinary(&self) -> Option<ExtraordinaryPatch> {
+        let corner = self.0.iter().position(|sector| sector.regular_ring().is_none())?;
+        let [sector, first, second] = [0, 1, 2].map(|i| &self.0[(corner + i) % 3]);
+        if sector.centre != (Centre::Smooth { sharp: None }) || sector.neighbours.len() < 3 {
             return None;
         }
         let [_, _, _, before, past_first, between] = first.regular_ring()?;
         let [_, _, _, past_second, after, _] = second.regular_ring()?;
-        let mut ring = fan.neighbours.clone();
-        ring.rotate_left(fan.slot);
-        Some(Spoke { corner, at: fan.at, ring, outer: [before, past_first, between, past_second, after] })
+        let mut ring = sector.neighbours.clone();
+        ring.rotate_left(sector.slot);
+        Some(ExtraordinaryPatch {
+            corner,
+            at: sector.at,
+            ring,
+            outer: [before, past_first, between, past_second, after],
+        })
     }
 
     /// All points, corners first; some more than once.
     pub(crate) fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
-        self.0.iter().flat_map(|fan| core::iter::once(fan.at).chain(fan.neighbours.iter().copied()))
+        self.0.iter().flat_map(|sector| core::iter::once(sector.at).chain(sector.neighbours.iter().copied()))
     }
 
     /// The points after one refinement.
-    pub(crate) fn refined(&self, rules: &Rules) -> RefinedFans<'_> {
-        RefinedFans {
-            fans: self,
+    pub(crate) fn refined(&self, rules: &Rules) -> RefinedSectors<'_> {
+        RefinedSectors {
+            sectors: self,
             moved: [0, 1, 2].map(|corner| self.0[corner].moved(rules)),
             edge_points: [0, 1, 2].map(|corner| self.0[corner].edge_points()),
         }
@@ -134,23 +139,23 @@ impl Fans {
 }
 
 /// The points around the four parts of an irregular face.
-pub(crate) struct RefinedFans<'a> {
-    fans: &'a Fans,
+pub(crate) struct RefinedSectors<'a> {
+    sectors: &'a SectorPatch,
     moved: [DVec3; 3],
     edge_points: [Vec<DVec3>; 3],
 }
 
-impl RefinedFans<'_> {
+impl RefinedSectors<'_> {
     /// The new point on the edge from corner `edge`.
     fn middle(&self, edge: usize) -> DVec3 {
-        self.edge_points[edge][self.fans.0[edge].slot]
+        self.edge_points[edge][self.sectors.0[edge].slot]
     }
 
     /// The neighbours of that point: from the edge's end over the face to its start, and on beyond the edge unless that is
     /// sharp or a boundary.
     fn around_middle(&self, edge: usize) -> (Vec<DVec3>, Centre) {
         let (next, last) = ((edge + 1) % 3, (edge + 2) % 3);
-        let (from, to) = (&self.fans.0[edge], &self.fans.0[next]);
+        let (from, to) = (&self.sectors.0[edge], &self.sectors.0[next]);
         let near = [self.moved[next], self.middle(next), self.middle(last), self.moved[edge]];
         if from.is_sharp(from.slot) || to.is_sharp(to.neighbour(1)) {
             return (near.to_vec(), Centre::Crease);
@@ -159,40 +164,40 @@ impl RefinedFans<'_> {
         ([near.as_slice(), &beyond].concat(), Centre::Smooth { sharp: None })
     }
 
-    /// The fan of the new point on the edge from corner `edge`, with the face that starts at neighbour `slot`.
-    fn middle_fan(&self, edge: usize, slot: usize) -> Fan {
+    /// The sector of the new point on the edge from corner `edge`, with the face that starts at neighbour `slot`.
+    fn middle_sector(&self, edge: usize, slot: usize) -> VertexSector {
         let (neighbours, centre) = self.around_middle(edge);
-        Fan { at: self.middle(edge), neighbours, centre, slot }
+        VertexSector { at: self.middle(edge), neighbours, centre, slot }
     }
 
     /// The new point on the edge from corner `edge` and its six neighbours: new points are always regular.
     pub(crate) fn regular_middle(&self, edge: usize) -> (DVec3, [DVec3; 6]) {
-        let fan = self.middle_fan(edge, 0);
-        let ring = fan.regular_ring().unwrap_or([fan.at; 6]);
-        (fan.at, ring)
+        let sector = self.middle_sector(edge, 0);
+        let ring = sector.regular_ring().unwrap_or([sector.at; 6]);
+        (sector.at, ring)
     }
 
     /// Whether a part is regular: new points are, old ones stay what they were.
     pub(crate) fn is_regular(&self, part: usize) -> bool {
-        part == 3 || self.fans.0[part].regular_ring().is_some()
+        part == 3 || self.sectors.0[part].regular_ring().is_some()
     }
 
-    /// The fans of a part; numbered as [`lattice::Refined::part`] does.
-    pub(crate) fn part(&self, part: usize) -> Fans {
+    /// The sectors of a part; numbered as [`box_spline::Refined::part`] does.
+    pub(crate) fn part(&self, part: usize) -> SectorPatch {
         // Around the middle of an edge the parts follow each other: the end's, the middle one, the start's.
         if part == 3 {
-            return Fans([1, 2, 0].map(|edge| self.middle_fan(edge, 1)));
+            return SectorPatch([1, 2, 0].map(|edge| self.middle_sector(edge, 1)));
         }
-        let old = &self.fans.0[part];
-        let own = Fan {
+        let old = &self.sectors.0[part];
+        let own = VertexSector {
             at: self.moved[part],
             neighbours: self.edge_points[part].clone(),
             centre: old.centre,
             slot: old.slot,
         };
-        let (on_next, on_last) = (self.middle_fan(part, 2), self.middle_fan((part + 2) % 3, 0));
-        let mut fans = [own, on_next, on_last];
-        fans.rotate_right(part);
-        Fans(fans)
+        let (on_next, on_last) = (self.middle_sector(part, 2), self.middle_sector((part + 2) % 3, 0));
+        let mut sectors = [own, on_next, on_last];
+        sectors.rotate_right(part);
+        SectorPatch(sectors)
     }
 }

@@ -6,14 +6,14 @@ use crate::mesh::Topology;
 
 /// An edge as seen from one of its ends, the vertex in the middle.
 #[derive(Clone, Copy)]
-pub(super) enum Spoke {
+pub(super) enum IncidentEdge {
     /// The half-edge that leaves the vertex.
     Leaving(HalfEdgeId),
     /// The last edge of an open ring: only its other half-edge exists, which arrives at the vertex.
     Arriving(HalfEdgeId),
 }
 
-impl Spoke {
+impl IncidentEdge {
     /// The edge of `h` as its origin sees it.
     pub(super) fn from_origin(h: HalfEdgeId) -> Self {
         Self::Leaving(h)

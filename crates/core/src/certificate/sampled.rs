@@ -3,12 +3,12 @@
 //! The piece is refined a few times, and the limits of its vertices are taken. They stand on a lattice of barycentric
 //! coordinates, so that those over each part of the piece are known exactly.
 
-use super::bound::Part;
-use super::gauge::{Deviation, Gauge};
-use super::local::{Local, corners, limit_position, refined_around};
-use super::rules::Rules;
+use super::deviation::{Deviation, DeviationBound};
+use super::sub_triangle::SubTriangle;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::Mesh;
+use crate::patch::Rules;
+use crate::patch::mesh_patch::{MeshPatch, corners, limit_position, refined_around};
 use crate::vector::DVec3;
 
 /// Barycentric coordinates, multiplied by a power of 2.
@@ -27,7 +27,7 @@ fn middle(a: Place, b: Place) -> Place {
 
 impl Samples {
     /// The limits of all vertices `levels` below a piece, its corners left out.
-    pub(crate) fn of(piece: &Local, levels: usize, rules: &Rules<'_>) -> Self {
+    pub(crate) fn of(piece: &MeshPatch, levels: usize, rules: &Rules<'_>) -> Self {
         let unit = 1 << levels;
         let mut faces: Vec<(HalfEdgeId, [Place; 3])> =
             vec![(piece.first(), [[unit, 0, 0], [0, unit, 0], [0, 0, unit]])];
@@ -62,7 +62,7 @@ impl Samples {
     }
 
     /// What the points over a part show of the deviation of the triangle that stands for it.
-    pub(crate) fn deviation(&self, part: Part, gauge: &Gauge<'_>) -> Deviation {
+    pub(crate) fn deviation(&self, part: SubTriangle, bound: &DeviationBound<'_>) -> Deviation {
         let corners = places_of(part, self.unit);
         let mut deviation = Deviation::default();
         for &(place, point) in &self.points {
@@ -71,10 +71,10 @@ impl Samples {
                 continue;
             }
             match within.map(|x| x == 0) {
-                [false, false, false] => gauge.inner_point(point, &mut deviation),
-                [false, false, true] => gauge.curve_point(0, point, &mut deviation),
-                [true, false, false] => gauge.curve_point(1, point, &mut deviation),
-                [false, true, false] => gauge.curve_point(2, point, &mut deviation),
+                [false, false, false] => bound.inner_point(point, &mut deviation),
+                [false, false, true] => bound.curve_point(0, point, &mut deviation),
+                [true, false, false] => bound.curve_point(1, point, &mut deviation),
+                [false, true, false] => bound.curve_point(2, point, &mut deviation),
                 // A corner.
                 _ => {}
             }
@@ -94,19 +94,19 @@ fn numbered((face, places): (usize, [Place; 3])) -> (HalfEdgeId, [Place; 3]) {
 }
 
 /// The places of the corners of a part.
-fn places_of(part: Part, unit: i32) -> [Place; 3] {
+fn places_of(part: SubTriangle, unit: i32) -> [Place; 3] {
     let whole = [[unit, 0, 0], [0, unit, 0], [0, 0, unit]];
     let on = |edge: usize| middle(whole[edge % 3], whole[(edge + 1) % 3]);
     let mut corners = whole;
     match part {
-        Part::Whole => {}
-        Part::Half { edge, second } => corners[(edge + usize::from(!second)) % 3] = on(edge),
-        Part::Child(3) => corners = [on(1), on(2), on(0)],
-        Part::Child(child) => {
+        SubTriangle::Whole => {}
+        SubTriangle::Half { edge, second } => corners[(edge + usize::from(!second)) % 3] = on(edge),
+        SubTriangle::Child(3) => corners = [on(1), on(2), on(0)],
+        SubTriangle::Child(child) => {
             corners[(child + 1) % 3] = on(child);
             corners[(child + 2) % 3] = on(child + 2);
         }
-        Part::Quarter { edge, at_end } => {
+        SubTriangle::Quarter { edge, at_end } => {
             let from = if at_end { edge + 1 } else { edge };
             corners = [whole[from % 3], on(edge + 1), on(edge + 2)];
         }
@@ -127,16 +127,16 @@ mod tests {
     /// Parts are turned like the whole, and their areas add up as they should.
     #[test]
     fn parts_have_their_share_of_the_area() {
-        let whole = determinant(places_of(Part::Whole, 8));
+        let whole = determinant(places_of(SubTriangle::Whole, 8));
         let mut shares = Vec::new();
         for i in 0..3 {
             for flag in [false, true] {
-                shares.push((Part::Half { edge: i, second: flag }, 2));
-                shares.push((Part::Quarter { edge: i, at_end: flag }, 4));
+                shares.push((SubTriangle::Half { edge: i, second: flag }, 2));
+                shares.push((SubTriangle::Quarter { edge: i, at_end: flag }, 4));
             }
-            shares.push((Part::Child(i), 4));
+            shares.push((SubTriangle::Child(i), 4));
         }
-        shares.push((Part::Child(3), 4));
+        shares.push((SubTriangle::Child(3), 4));
         for (part, share) in shares {
             assert_eq!(share * determinant(places_of(part, 8)), whole, "{part:?}");
         }

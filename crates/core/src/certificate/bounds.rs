@@ -37,7 +37,7 @@
 //! ends, and filling the gaps with such segments closes what is covered again. Each point of Ŝ and of the fills has S
 //! within R: heights and own bounds grow by R, drifts and slopes do not. Two such Ŝ are taken.
 //!
-//! Inside the surface, at a vertex of valence k with the characteristic map χ ([`super::characteristic`]), the control
+//! Inside the surface, at a vertex of valence k with the characteristic map χ ([`crate::patch::characteristic`]), the control
 //! points are Pᵢ = p + t₁χᵢ₁ + t₂χᵢ₂ + rᵢ, p being the limit position and t₁, t₂ = (2/k) Σ cos(2πj/k) rⱼ, (2/k) Σ
 //! sin(2πj/k) rⱼ the tangents. Weights of control points are at least 0 and their sum is 1, so Ŝ = p + t₁χ₁ + t₂χ₂ and
 //! R = max |rᵢ|, which falls by about four from level to level. Ŝ is an affine image, its hull points those of χ: a
@@ -50,14 +50,14 @@
 //! So the greatest of the least of both bounds over all triangles bounds the distance of mesh and surface, both
 //! ways. θ and the neighbours' angles are those of the mesh as it is emitted.
 
-use super::characteristic::{Characteristic, Sector};
-use super::facet::Facet;
-use super::gauge::{Borders, Deviation, Gauge, INSIDE};
-use super::net::Net;
-use super::patch::{Patch, RefinedPatch};
-use super::rules::Rules;
+use super::deviation::{Borders, Deviation, DeviationBound, INSIDE};
 use super::sampled::Samples;
-use super::spoke::Spoke;
+use super::sub_triangle::SubTriangle;
+use super::triangle_frame::TriangleFrame;
+use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::characteristic::{Characteristic, MapSector};
+use crate::patch::extraordinary::ExtraordinaryPatch;
+use crate::patch::{Patch, RefinedPatch, Rules};
 use crate::vector::DVec3;
 
 /// Levels that a piece at an irregular vertex is split at most: it has shrunk by 2⁻⁴⁰ then, below rounding.
@@ -69,31 +69,6 @@ const HOPELESS: f64 = 1.5;
 
 /// The whole piece stands for the triangle.
 const ALL: Borders = [0, 1, 2];
-
-/// Part of a patch's domain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Part {
-    /// All of it.
-    Whole,
-    /// One side of the line from the middle of the edge from corner `edge` to the corner opposite: that of the edge's
-    /// start, or of its end. Corners keep their places, the middle takes that of the other end.
-    Half {
-        /// Number of the edge.
-        edge: usize,
-        /// The side of the edge's end.
-        second: bool,
-    },
-    /// One of the four parts of a refinement.
-    Child(usize),
-    /// The quarter between an edge's end, the middle of the next edge and the middle of the edge before.
-    Quarter {
-        /// The edge, from this corner to the next one.
-        edge: usize,
-        /// At the edge's end rather than at its start. Corners: the end, the middle of the next edge, the middle
-        /// of the edge before.
-        at_end: bool,
-    },
-}
 
 /// When a bound is good enough, and how much may be done to get there.
 #[derive(Clone, Copy, Debug)]
@@ -114,7 +89,7 @@ pub(crate) struct Effort {
 pub(crate) struct Pieces<'a> {
     patch: &'a Patch,
     refined: Option<RefinedPatch<'a>>,
-    net: Option<Net>,
+    net: Option<BezierTriangle>,
     samples: Option<Samples>,
 }
 
@@ -132,67 +107,68 @@ impl<'a> Pieces<'a> {
         self.refined.get_or_insert_with(|| self.patch.refined(rules))
     }
 
-    /// The deviation of `facet` and the part of the surface that it stands for: the facet's corner `i` belongs to the
+    /// The deviation of `frame` and the part of the surface that it stands for: the frame's corner `i` belongs to the
     /// part's. Estimated from samples for schemes outside Loop's family.
     pub(crate) fn deviation(
         &mut self,
-        part: Part,
-        facet: &Facet,
+        part: SubTriangle,
+        frame: &TriangleFrame,
         rules: &'a Rules<'a>,
         effort: Effort,
     ) -> Deviation {
-        let gauge = Gauge { facet, open: effort.open };
-        let mut bound = Bound { gauge, rules, effort, found: Deviation::default() };
+        let bound = DeviationBound { frame, open: effort.open };
+        let mut search = Search { bound, rules, effort, found: Deviation::default() };
         match (self.patch, part) {
-            (Patch::Local(local), _) if !rules.has_forms() => {
+            (Patch::Mesh(local), _) if !rules.is_certified() => {
                 let samples = self.samples.get_or_insert_with(|| Samples::of(local, SAMPLED_LEVELS, rules));
-                return samples.deviation(part, &gauge);
+                return samples.deviation(part, &bound);
             }
-            (_, Part::Child(child)) => {
+            (_, SubTriangle::Child(child)) => {
                 let refined = self.refined.get_or_insert_with(|| self.patch.refined(rules));
-                bound.part(&refined.part(child), Part::Whole, ALL, 1);
+                search.part(&refined.part(child), SubTriangle::Whole, ALL, 1);
             }
             (Patch::Regular(points), _) => {
-                let net = self.net.get_or_insert_with(|| Net::of(points));
-                bound.net_part(net, part, ALL);
+                let net = self.net.get_or_insert_with(|| BezierTriangle::of(points));
+                search.net_part(net, part, ALL);
             }
-            (Patch::Irregular(_) | Patch::Spoke(_) | Patch::Local(_), _) => {
-                bound.irregular(self.patch, part, ALL, 0);
+            (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::Mesh(_), _) => {
+                search.irregular(self.patch, part, ALL, 0);
             }
         }
-        bound.found
+        search.found
     }
 }
 
-struct Bound<'a> {
-    gauge: Gauge<'a>,
+/// The bound of one triangle as it grows, piece by piece.
+struct Search<'a> {
+    bound: DeviationBound<'a>,
     rules: &'a Rules<'a>,
     effort: Effort,
     found: Deviation,
 }
 
-impl Bound<'_> {
-    fn part(&mut self, patch: &Patch, part: Part, borders: Borders, depth: usize) {
+impl Search<'_> {
+    fn part(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) {
         match (patch, part) {
-            (_, Part::Child(child)) => {
-                self.part(&patch.refined(self.rules).part(child), Part::Whole, borders, depth + 1);
+            (_, SubTriangle::Child(child)) => {
+                self.part(&patch.refined(self.rules).part(child), SubTriangle::Whole, borders, depth + 1);
             }
-            (Patch::Regular(points), _) => self.net_part(&Net::of(points), part, borders),
-            (Patch::Irregular(_) | Patch::Spoke(_) | Patch::Local(_), _) => {
+            (Patch::Regular(points), _) => self.net_part(&BezierTriangle::of(points), part, borders),
+            (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::Mesh(_), _) => {
                 self.irregular(patch, part, borders, depth);
             }
         }
     }
 
-    fn net_part(&mut self, net: &Net, part: Part, borders: Borders) {
+    fn net_part(&mut self, net: &BezierTriangle, part: SubTriangle, borders: Borders) {
         let halvings = self.effort.halvings;
         match part {
-            Part::Half { edge, second } => self.net(&net.half(edge, second), borders, halvings),
-            Part::Quarter { edge, at_end } => {
+            SubTriangle::Half { edge, second } => self.net(&net.half(edge, second), borders, halvings),
+            SubTriangle::Quarter { edge, at_end } => {
                 let (quarter, borders) = quarter(net, edge, at_end, borders);
                 self.net(&quarter, borders, halvings);
             }
-            Part::Whole | Part::Child(_) => self.net(net, borders, halvings),
+            SubTriangle::Whole | SubTriangle::Child(_) => self.net(net, borders, halvings),
         }
     }
 
@@ -212,8 +188,8 @@ impl Bound<'_> {
         self.found = self.found.max(if alone { Deviation::alone(deviation.own) } else { deviation });
     }
 
-    fn net(&mut self, net: &Net, borders: Borders, halvings: usize) {
-        let (deviation, attained) = self.gauge.net(net, borders);
+    fn net(&mut self, net: &BezierTriangle, borders: Borders, halvings: usize) {
+        let (deviation, attained) = self.bound.net(net, borders);
         // What is much too far away for sure stays so however it is divided.
         let is_hopeless = attained > HOPELESS * self.effort.target;
         if halvings == 0 || is_hopeless || self.value(&deviation) <= self.aim() {
@@ -234,7 +210,7 @@ impl Bound<'_> {
     }
 
     /// A piece at an irregular vertex: as it is if that is enough, else refined.
-    fn irregular(&mut self, patch: &Patch, part: Part, borders: Borders, depth: usize) {
+    fn irregular(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) {
         if let Some(deviation) = self.held(patch, part, borders, depth)
             && (depth >= DEEPEST || self.value(&deviation) <= self.aim())
         {
@@ -243,30 +219,34 @@ impl Bound<'_> {
         }
         let refined = patch.refined(self.rules);
         match part {
-            Part::Whole => {
+            SubTriangle::Whole => {
                 let inner = |part: usize| {
                     let mut sides = borders;
                     sides[(part + 1) % 3] = INSIDE;
-                    (part, Part::Whole, sides)
+                    (part, SubTriangle::Whole, sides)
                 };
-                self.pieces(&refined, [inner(0), inner(1), inner(2), (3, Part::Whole, [INSIDE; 3])], depth);
+                self.pieces(
+                    &refined,
+                    [inner(0), inner(1), inner(2), (3, SubTriangle::Whole, [INSIDE; 3])],
+                    depth,
+                );
             }
-            Part::Child(child) => self.pieces(&refined, [(child, Part::Whole, borders)], depth),
-            Part::Half { edge, second } => self.half(&refined, edge, second, borders, depth),
-            Part::Quarter { edge, at_end } => self.quarter(&refined, edge, at_end, borders, depth),
+            SubTriangle::Child(child) => self.pieces(&refined, [(child, SubTriangle::Whole, borders)], depth),
+            SubTriangle::Half { edge, second } => self.half(&refined, edge, second, borders, depth),
+            SubTriangle::Quarter { edge, at_end } => self.quarter(&refined, edge, at_end, borders, depth),
         }
     }
 
     /// What a piece is good for without being refined; `None` if nothing is known, or nothing that helps.
-    fn held(&self, patch: &Patch, part: Part, borders: Borders, depth: usize) -> Option<Deviation> {
-        if let Patch::Spoke(spoke) = patch
-            && let Some(map) = self.rules.characteristic(spoke.ring.len())
+    fn held(&self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) -> Option<Deviation> {
+        if let Patch::Extraordinary(piece) = patch
+            && let Some(map) = self.rules.characteristic(piece.ring.len())
             && depth < DEEPEST
         {
             return match part {
-                Part::Whole => self.affine(spoke, map, &map.sectors[0], borders),
-                Part::Half { edge, second } if edge == (spoke.corner + 1) % 3 => {
-                    self.affine(spoke, map, &map.sectors[1 + usize::from(second)], borders)
+                SubTriangle::Whole => self.affine(piece, map, &map.sectors[0], borders),
+                SubTriangle::Half { edge, second } if edge == (piece.corner + 1) % 3 => {
+                    self.affine(piece, map, &map.sectors[1 + usize::from(second)], borders)
                 }
                 _ => None,
             };
@@ -277,20 +257,20 @@ impl Bound<'_> {
     /// The bound by an affine image of the characteristic map's sector, if what the piece differs from it is little.
     fn affine(
         &self,
-        spoke: &Spoke,
+        piece: &ExtraordinaryPatch,
         map: &Characteristic,
-        sector: &Sector,
+        sector: &MapSector,
         borders: Borders,
     ) -> Option<Deviation> {
-        let valence = spoke.ring.len();
-        let sums = spoke.ring.iter().zip(&map.control.ring).fold([DVec3::ZERO; 3], |sums, (&point, at)| {
+        let valence = piece.ring.len();
+        let sums = piece.ring.iter().zip(&map.control.ring).fold([DVec3::ZERO; 3], |sums, (&point, at)| {
             [sums[0] + point, sums[1] + at.x * point, sums[2] + at.y * point]
         });
         let weight = 0.375 / self.rules.beta(valence);
-        let limit = (weight * spoke.at + sums[0]) / (weight + valence as f64);
+        let limit = (weight * piece.at + sums[0]) / (weight + valence as f64);
         let tangents = [1, 2].map(|i| sums[i] * (2.0 / valence as f64));
         let image = |at: DVec3| limit + at.x * tangents[0] + at.y * tangents[1];
-        let rest = spoke.points().zip(map.control.points());
+        let rest = piece.points().zip(map.control.points());
         let rest = rest.map(|(point, at)| point.distance_squared(image(at))).fold(0.0, f64::max).sqrt();
         if rest > self.aim() {
             return None;
@@ -303,7 +283,7 @@ impl Bound<'_> {
                 count += 1;
             }
         };
-        let [starts, rim, ends] = [0, 1, 2].map(|edge| borders[(spoke.corner + edge) % 3]);
+        let [starts, rim, ends] = [0, 1, 2].map(|edge| borders[(piece.corner + edge) % 3]);
         curve(starts, sector.start);
         curve(ends, sector.end);
         sector.rim.iter().for_each(|&at| curve(rim, at));
@@ -316,24 +296,24 @@ impl Bound<'_> {
         let is_inside = starts == INSIDE && ends == INSIDE;
         let vertex = is_inside.then_some(DVec3::ZERO);
         let inner = sector.hull.iter().copied().chain(vertex).map(image);
-        let deviation = self.gauge.points(inner, &curves[..count]);
+        let deviation = self.bound.points(inner, &curves[..count]);
         Some(Deviation { own: deviation.own + rest, height: deviation.height + rest, ..deviation })
     }
 
     /// The greatest distance of the control points from the triangle, and from the edges in `borders`.
     fn hull(&self, patch: &Patch, borders: Borders) -> f64 {
-        let facet = self.gauge.facet;
+        let frame = self.bound.frame;
         let mut greatest = 0.0f64;
         patch.for_each_hull_point(|point| {
-            greatest = greatest.max(facet.squared(point));
+            greatest = greatest.max(frame.squared(point));
             for border in borders.into_iter().filter(|&border| border != INSIDE) {
-                greatest = greatest.max(facet.squared_to_edge(border as usize, point));
+                greatest = greatest.max(frame.squared_to_edge(border as usize, point));
             }
         });
         greatest.sqrt()
     }
 
-    /// The pieces that make up a half; see [`Part::Half`].
+    /// The pieces that make up a half; see [`SubTriangle::Half`].
     fn half(
         &mut self,
         refined: &RefinedPatch<'_>,
@@ -343,8 +323,8 @@ impl Bound<'_> {
         depth: usize,
     ) {
         let (next, last) = ((edge + 1) % 3, (edge + 2) % 3);
-        let half = Part::Half { edge, second };
-        let other = Part::Half { edge, second: !second };
+        let half = SubTriangle::Half { edge, second };
+        let other = SubTriangle::Half { edge, second: !second };
         let (mut whole, mut middle, mut tip) = ([INSIDE; 3], [INSIDE; 3], [INSIDE; 3]);
         (tip[next], tip[last]) = (borders[next], borders[last]);
         whole[edge] = borders[edge];
@@ -357,10 +337,14 @@ impl Bound<'_> {
             middle[last] = borders[next];
             edge
         };
-        self.pieces(refined, [(3, other, middle), (kept, Part::Whole, whole), (last, half, tip)], depth);
+        self.pieces(
+            refined,
+            [(3, other, middle), (kept, SubTriangle::Whole, whole), (last, half, tip)],
+            depth,
+        );
     }
 
-    /// The pieces that make up a quarter; see [`Part::Quarter`].
+    /// The pieces that make up a quarter; see [`SubTriangle::Quarter`].
     fn quarter(
         &mut self,
         refined: &RefinedPatch<'_>,
@@ -380,15 +364,15 @@ impl Bound<'_> {
             (middle[tip], middle[edge]) = (borders[0], borders[1]);
             (edge, end)
         };
-        let own = (at, Part::Half { edge: cut, second: !at_end }, corner);
-        self.pieces(refined, [(3, Part::Half { edge: cut, second: at_end }, middle), own], depth);
+        let own = (at, SubTriangle::Half { edge: cut, second: !at_end }, corner);
+        self.pieces(refined, [(3, SubTriangle::Half { edge: cut, second: at_end }, middle), own], depth);
     }
 
     /// Pieces of the parts of a refinement: the regular ones first, so that little is left to do for the others.
     fn pieces<const N: usize>(
         &mut self,
         refined: &RefinedPatch<'_>,
-        pieces: [(usize, Part, Borders); N],
+        pieces: [(usize, SubTriangle, Borders); N],
         depth: usize,
     ) {
         for regular in [true, false] {
@@ -402,7 +386,7 @@ impl Bound<'_> {
 }
 
 /// The net of a quarter, and its borders in the order of the net's edges.
-fn quarter(net: &Net, edge: usize, at_end: bool, borders: Borders) -> (Net, Borders) {
+fn quarter(net: &BezierTriangle, edge: usize, at_end: bool, borders: Borders) -> (BezierTriangle, Borders) {
     let (end, tip) = ((edge + 1) % 3, (edge + 2) % 3);
     // Away from the other end first, then away from the corner opposite.
     let (quarter, order) = if at_end {
@@ -416,152 +400,4 @@ fn quarter(net: &Net, edge: usize, at_end: bool, borders: Borders) -> (Net, Bord
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scheme::Loop;
-
-    /// Numbers between −1 and 1, the same on every run.
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-
-        /// A face with one irregular corner: the characteristic map, sheared, stirred and bent.
-        fn spoke(&mut self, valence: usize, noise: f64) -> Spoke {
-            let bend = [self.next(), self.next(), self.next()];
-            let shear = self.next();
-            let mut moved = |p: DVec3| {
-                let stir = DVec3::new(self.next(), self.next(), self.next()) * noise;
-                let height = bend[0] * p.x * p.x + bend[1] * p.x * p.y + bend[2] * p.y * p.y;
-                DVec3::new(p.x + shear * p.y, p.y, 0.3 * height) + stir
-            };
-            let map = Characteristic::of(valence).control;
-            Spoke {
-                corner: valence % 3,
-                at: moved(map.at),
-                ring: map.ring.iter().map(|&p| moved(p)).collect(),
-                outer: map.outer.map(moved),
-            }
-        }
-    }
-
-    /// Points of the surface over a patch, with their barycentric coordinates.
-    fn sample(
-        patch: &Patch,
-        rules: &Rules<'_>,
-        at: [DVec3; 3],
-        depth: usize,
-        found: &mut Vec<(DVec3, DVec3)>,
-    ) {
-        let refined = patch.refined(rules);
-        let middles = [0, 1, 2].map(|edge| 0.5 * (at[edge] + at[(edge + 1) % 3]));
-        (0..3).for_each(|edge| found.push((middles[edge], refined.middle(edge).position)));
-        if depth > 0 {
-            for part in 0..4 {
-                let mut own = [middles[1], middles[2], middles[0]];
-                if part < 3 {
-                    own[part] = at[part];
-                    own[(part + 1) % 3] = middles[part];
-                    own[(part + 2) % 3] = middles[(part + 2) % 3];
-                }
-                sample(&refined.part(part), rules, own, depth - 1, found);
-            }
-        }
-    }
-
-    /// The limit position of a corner.
-    fn limit(patch: &Patch, rules: &Rules<'_>, corner: usize) -> DVec3 {
-        match patch {
-            Patch::Regular(points) => Net::of(points).corners()[corner],
-            Patch::Spoke(spoke) if spoke.corner == corner => {
-                let weight = 0.375 / rules.beta(spoke.ring.len());
-                let sum = weight * spoke.at + spoke.ring.iter().sum::<DVec3>();
-                sum / (weight + spoke.ring.len() as f64)
-            }
-            _ => limit(&patch.refined(rules).part(corner), rules, corner),
-        }
-    }
-
-    /// The corners of a part, as barycentric coordinates.
-    fn corners(part: Part) -> [DVec3; 3] {
-        let whole = [DVec3::X, DVec3::Y, DVec3::Z];
-        let middle = |edge: usize| 0.5 * (whole[edge % 3] + whole[(edge + 1) % 3]);
-        match part {
-            Part::Whole => whole,
-            Part::Half { edge, second } => {
-                let mut corners = whole;
-                corners[(edge + usize::from(!second)) % 3] = middle(edge);
-                corners
-            }
-            Part::Child(3) => [middle(1), middle(2), middle(0)],
-            Part::Child(part) => {
-                let mut corners = [middle(part), middle(part), middle(part)];
-                corners[part] = whole[part];
-                corners[(part + 2) % 3] = middle(part + 2);
-                corners
-            }
-            Part::Quarter { edge, at_end } => {
-                [whole[(edge + usize::from(at_end)) % 3], middle(edge + 1), middle(edge + 2)]
-            }
-        }
-    }
-
-    /// Dense samples never lie farther away than the bounds say, in both directions.
-    #[test]
-    fn bounds_hold_for_every_part_and_valence() {
-        let rules = Rules::of(&Loop);
-        let mut numbers = Numbers(7);
-        let parts = (0..3).flat_map(|edge| {
-            let half = |second| Part::Half { edge, second };
-            let quarter = |at_end| Part::Quarter { edge, at_end };
-            [Part::Child(edge), half(false), half(true), quarter(false), quarter(true)]
-        });
-        let parts: Vec<Part> = parts.chain([Part::Whole, Part::Child(3)]).collect();
-        for valence in 3..=20 {
-            for noise in [0.0, 0.01, 0.2] {
-                let patch = match numbers.spoke(valence, noise) {
-                    // A regular one now and then.
-                    spoke if valence == 6 => spoke.refined(rules.beta(6)).part((spoke.corner + 1) % 3),
-                    spoke => Patch::Spoke(Box::new(spoke)),
-                };
-                let mut samples = Vec::new();
-                sample(&patch, &rules, [DVec3::X, DVec3::Y, DVec3::Z], 5, &mut samples);
-                for (corner, at) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
-                    samples.push((at, limit(&patch, &rules, corner)));
-                }
-                for &part in &parts {
-                    let at = corners(part);
-                    let position = |at: DVec3| samples.iter().find(|s| s.0.distance(at) < 1e-12).unwrap().1;
-                    let triangle = at.map(position);
-                    let facet = Facet::new(triangle);
-                    let matrix = glam::DMat3::from_cols(at[0], at[1], at[2]).inverse();
-                    let inside: Vec<DVec3> = samples
-                        .iter()
-                        .filter(|s| (matrix * s.0).min_element() > -1e-12)
-                        .map(|s| s.1)
-                        .collect();
-                    let farthest = inside.iter().map(|&p| facet.squared(p)).fold(0.0, f64::max).sqrt();
-                    let highest = inside.iter().map(|&p| facet.height(p).abs()).fold(0.0, f64::max);
-                    for (target, slope) in [(0.0, 0.5), (0.5 * farthest, 0.2), (2.0 * farthest, f64::MAX)] {
-                        let effort = Effort { target, halvings: 3, open: [false; 3], chord: 0.1, slope };
-                        let found = Pieces::of(&patch).deviation(part, &facet, &rules, effort);
-                        assert!(
-                            found.own >= farthest - 1e-12 && found.height >= highest - 1e-12,
-                            "valence {valence}, noise {noise}, {part:?}: {found:?}, {farthest}, {highest}"
-                        );
-                        // And not far above the truth.
-                        if target == 0.0 && noise == 0.0 {
-                            assert!(
-                                found.height <= 1.5 * highest + 0.1,
-                                "{valence} {part:?} {found:?} {highest}"
-                            );
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
+mod tests;

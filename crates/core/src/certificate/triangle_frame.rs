@@ -15,7 +15,7 @@ const SAFE: core::ops::Range<f64> = 1e-140..1e140;
 
 /// A triangle with what its distances need.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Facet {
+pub(crate) struct TriangleFrame {
     corners: [DVec3; 3],
     /// Unit vectors along the edges, zero where one has no length.
     along: [DVec3; 3],
@@ -42,7 +42,7 @@ pub(crate) struct Beside {
     pub(crate) along: f64,
 }
 
-impl Facet {
+impl TriangleFrame {
     /// Distances below this part of the coordinates' size are what rounding leaves of zero where points coincide.
     pub(crate) const ROUNDING: f64 = 5e-14;
 

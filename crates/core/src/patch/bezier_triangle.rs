@@ -3,12 +3,12 @@
 //! A regular piece of Loop's surface is a quartic polynomial over its triangle. Its net follows from the twelve
 //! points by a matrix of integers over 24, all of them at least 0 (the box spline's conversion). Points `b_ijk`, i + j + k = 4, stand in the order of k, then of j.
 
-use super::lattice::{CORNERS, Points, RINGS};
+use super::box_spline::{CORNERS, Points, RINGS};
 use crate::vector::DVec3;
 
 /// The fifteen points of a net.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Net(pub(crate) [DVec3; 15]);
+pub(crate) struct BezierTriangle(pub(crate) [DVec3; 15]);
 
 /// The points along each edge, from its first corner to its second.
 pub(crate) const EDGES: [[usize; 5]; 3] = [[0, 1, 2, 3, 4], [4, 8, 11, 13, 14], [14, 12, 9, 5, 0]];
@@ -26,7 +26,7 @@ const TURNED: [[usize; 15]; 3] = [
 /// Where each row of constant k starts, and its degree.
 const ROWS: [(usize, usize); 5] = [(0, 4), (5, 3), (9, 2), (12, 1), (14, 0)];
 
-impl Net {
+impl BezierTriangle {
     /// The net of a regular piece.
     #[inline]
     pub(crate) fn of(points: &Points) -> Self {
@@ -95,7 +95,7 @@ impl Net {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::lattice::Refined;
+    use crate::patch::box_spline::Refined;
 
     fn arbitrary() -> Points {
         core::array::from_fn(|i| {
@@ -105,7 +105,7 @@ mod tests {
     }
 
     /// A point of the net by de Casteljau's algorithm.
-    fn point(net: &Net, weights: [f64; 3]) -> DVec3 {
+    fn point(net: &BezierTriangle, weights: [f64; 3]) -> DVec3 {
         let place = |j: usize, k: usize| ROWS[k].0 + j;
         let mut points = net.0.to_vec();
         for degree in (0..4).rev() {
@@ -125,21 +125,21 @@ mod tests {
     #[test]
     fn nets_of_parts_are_parts_of_the_net() {
         let points = arbitrary();
-        let (whole, refined) = (Net::of(&points), Refined::of(&points));
+        let (whole, refined) = (BezierTriangle::of(&points), Refined::of(&points));
         for (weights, part, there) in [
             ([0.2, 0.5, 0.3], 0, [0.6, 0.25, 0.15]),
             ([0.2, 0.5, 0.3], 1, [0.1, 0.75, 0.15]),
             ([0.2, 0.5, 0.3], 2, [0.1, 0.25, 0.65]),
             ([0.2, 0.5, 0.3], 3, [0.4, 0.25, 0.35]),
         ] {
-            let found = point(&Net::of(&refined.part(part)), weights);
+            let found = point(&BezierTriangle::of(&refined.part(part)), weights);
             assert!(found.distance(point(&whole, there)) < 1e-14, "part {part}");
         }
     }
 
     #[test]
     fn halves_are_halves() {
-        let whole = Net::of(&arbitrary());
+        let whole = BezierTriangle::of(&arbitrary());
         for edge in 0..3 {
             let halves = whole.halves(edge);
             let weights = [0.2, 0.5, 0.3];
@@ -161,9 +161,9 @@ mod tests {
         for i in 0..12 {
             let mut points = [DVec3::ZERO; 12];
             points[i] = DVec3::X;
-            assert!(Net::of(&points).0.iter().all(|b| b.x >= 0.0));
+            assert!(BezierTriangle::of(&points).0.iter().all(|b| b.x >= 0.0));
         }
-        let net = Net::of(&[DVec3::ONE; 12]);
+        let net = BezierTriangle::of(&[DVec3::ONE; 12]);
         assert!(net.0.iter().all(|b| b.distance(DVec3::ONE) < 1e-15));
     }
 }

@@ -12,7 +12,7 @@ use crate::mesh::{
 
 /// The faces of the half-edges in `seeds` and `rings` rings around them. Face `i` of the result is that of seed `i`, its
 /// first half-edge the seed; the others follow.
-pub(crate) fn crop(mesh: &Mesh, sharpness: &Sharpness<'_>, seeds: &[HalfEdgeId], rings: usize) -> Mesh {
+pub(crate) fn submesh(mesh: &Mesh, sharpness: &Sharpness<'_>, seeds: &[HalfEdgeId], rings: usize) -> Mesh {
     let cut = Cut::around(mesh.topology(), seeds, rings);
     let count = 3 * cut.firsts.len() as u32;
     let twins: Vec<u32> =
@@ -144,7 +144,7 @@ mod tests {
             for rings in [1, 2] {
                 for face in mesh.topology().faces().step_by(7) {
                     let seeds = [HalfEdgeId::of(face, 1)];
-                    let small = crop(&mesh, &sharpness, &seeds, rings);
+                    let small = submesh(&mesh, &sharpness, &seeds, rings);
                     small.validate().unwrap();
                     let small_sharpness = Sharpness::of(&small);
                     for corner in 0..3 {
@@ -159,8 +159,8 @@ mod tests {
                             points
                         };
                         assert_eq!(at(&mesh, old), at(&small, new), "{name}");
-                        let spokes = |sharpness: &Sharpness<'_>, v| sharpness.spokes(v).sum::<f64>();
-                        assert_eq!(spokes(&sharpness, old), spokes(&small_sharpness, new), "{name}");
+                        let edges = |sharpness: &Sharpness<'_>, v| sharpness.spokes(v).sum::<f64>();
+                        assert_eq!(edges(&sharpness, old), edges(&small_sharpness, new), "{name}");
                     }
                 }
             }
@@ -171,9 +171,9 @@ mod tests {
     #[test]
     fn vertices_of_the_rim_fall_apart() {
         let mesh = model("tetrahedron");
-        let small = crop(&mesh, &Sharpness::of(&mesh), &[HalfEdgeId(0)], 0);
+        let small = submesh(&mesh, &Sharpness::of(&mesh), &[HalfEdgeId(0)], 0);
         assert_eq!((small.face_count(), small.vertex_count()), (1, 3));
-        let whole = crop(&mesh, &Sharpness::of(&mesh), &[HalfEdgeId(0)], 1);
+        let whole = submesh(&mesh, &Sharpness::of(&mesh), &[HalfEdgeId(0)], 1);
         assert_eq!((whole.face_count(), whole.vertex_count()), (4, 4));
     }
 }

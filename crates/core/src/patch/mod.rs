@@ -1,11 +1,28 @@
-//! Pieces of the limit surface: the part over one face of some level, with the points that decide it.
+//! The limit surface of a control mesh in exact pieces. Knows no triangles that stand for them, and no bounds.
+//!
+//! Each control face carries a [`Patch`]: its corners and their one-ring, which is all that the surface over it
+//! depends on. Refining a patch gives the four over its parts, at any depth, so that only what is needed is ever
+//! computed; limit positions and normals of new vertices come with it. Schemes of Loop's family have pieces of simple
+//! forms; for others, and where tags still fade, a piece is a small mesh that is refined as a whole.
 
-use super::fan::{Fans, RefinedFans};
-use super::lattice::{Points, Refined};
-use super::local::{Local, RefinedLocal};
-use super::rules::Rules;
-use super::spoke::{RefinedSpoke, Spoke};
+pub(crate) mod bezier_triangle;
+mod box_spline;
+pub(crate) mod characteristic;
+pub(crate) mod extraordinary;
+mod from_mesh;
+pub(crate) mod mesh_patch;
+mod rules;
+mod sector;
+mod submesh;
+
+pub(crate) use from_mesh::root_patch;
+pub(crate) use rules::Rules;
+
 use crate::vector::{DVec3, unit_or_zero};
+use box_spline::{Points, Refined};
+use extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
+use mesh_patch::{MeshPatch, RefinedMeshPatch};
+use sector::{RefinedSectors, SectorPatch};
 
 /// The limit surface over one face.
 // Almost all are regular: boxing them would cost an allocation for each face.
@@ -15,11 +32,11 @@ pub(crate) enum Patch {
     /// All corners have six edges, or mirror images beyond a crease make it so.
     Regular(Points),
     /// One corner inside the surface has another number of edges, the others are regular.
-    Spoke(Box<Spoke>),
+    Extraordinary(Box<ExtraordinaryPatch>),
     /// Any other without tags that fade, of Loop's family.
-    Irregular(Box<Fans>),
+    Sectors(Box<SectorPatch>),
     /// Anything else.
-    Local(Local),
+    Mesh(MeshPatch),
 }
 
 /// A point of the limit surface with its unit normal on the side it was asked for; zero without one.
@@ -48,22 +65,22 @@ pub(crate) enum RefinedPatch<'a> {
     /// Of a regular patch.
     Regular(Refined),
     /// Of one with an irregular corner.
-    Spoke(RefinedSpoke),
+    Extraordinary(RefinedExtraordinary),
     /// Of another irregular one.
-    Irregular(RefinedFans<'a>),
+    Sectors(RefinedSectors<'a>),
     /// Of one without a form of its own.
-    Local(RefinedLocal<'a>),
+    Mesh(RefinedMeshPatch<'a>),
 }
 
 impl Patch {
     /// The simplest form of a piece.
-    pub(crate) fn of(fans: Fans) -> Self {
-        if let Some(points) = fans.regular() {
+    pub(crate) fn of(sectors: SectorPatch) -> Self {
+        if let Some(points) = sectors.regular() {
             return Self::Regular(points);
         }
-        match fans.spoke() {
-            Some(spoke) => Self::Spoke(Box::new(spoke)),
-            None => Self::Irregular(Box::new(fans)),
+        match sectors.extraordinary() {
+            Some(patch) => Self::Extraordinary(Box::new(patch)),
+            None => Self::Sectors(Box::new(sectors)),
         }
     }
 
@@ -72,9 +89,11 @@ impl Patch {
     pub(crate) fn refined<'a>(&'a self, rules: &'a Rules<'a>) -> RefinedPatch<'a> {
         match self {
             Self::Regular(points) => RefinedPatch::Regular(Refined::of(points)),
-            Self::Spoke(spoke) => RefinedPatch::Spoke(spoke.refined(rules.beta(spoke.ring.len()))),
-            Self::Irregular(fans) => RefinedPatch::Irregular(fans.refined(rules)),
-            Self::Local(local) => RefinedPatch::Local(local.refined(rules)),
+            Self::Extraordinary(patch) => {
+                RefinedPatch::Extraordinary(patch.refined(rules.beta(patch.ring.len())))
+            }
+            Self::Sectors(sectors) => RefinedPatch::Sectors(sectors.refined(rules)),
+            Self::Mesh(local) => RefinedPatch::Mesh(local.refined(rules)),
         }
     }
 
@@ -82,9 +101,9 @@ impl Patch {
     pub(crate) fn for_each_hull_point(&self, mut visit: impl FnMut(DVec3)) {
         match self {
             Self::Regular(points) => points.iter().for_each(|&point| visit(point)),
-            Self::Spoke(spoke) => spoke.points().for_each(visit),
-            Self::Irregular(fans) => fans.points().for_each(visit),
-            Self::Local(local) => local.points().for_each(visit),
+            Self::Extraordinary(patch) => patch.points().for_each(visit),
+            Self::Sectors(sectors) => sectors.points().for_each(visit),
+            Self::Mesh(local) => local.points().for_each(visit),
         }
     }
 }
@@ -94,9 +113,9 @@ impl RefinedPatch<'_> {
     pub(crate) fn is_regular(&self, part: usize) -> bool {
         match self {
             Self::Regular(_) => true,
-            Self::Spoke(refined) => refined.is_regular(part),
-            Self::Irregular(refined) => refined.is_regular(part),
-            Self::Local(refined) => matches!(refined.part(part), Patch::Regular(_)),
+            Self::Extraordinary(refined) => refined.is_regular(part),
+            Self::Sectors(refined) => refined.is_regular(part),
+            Self::Mesh(refined) => matches!(refined.part(part), Patch::Regular(_)),
         }
     }
 
@@ -106,9 +125,9 @@ impl RefinedPatch<'_> {
     pub(crate) fn part(&self, part: usize) -> Patch {
         match self {
             Self::Regular(refined) => Patch::Regular(refined.part(part)),
-            Self::Spoke(refined) => refined.part(part),
-            Self::Irregular(refined) => Patch::of(refined.part(part)),
-            Self::Local(refined) => refined.part(part),
+            Self::Extraordinary(refined) => refined.part(part),
+            Self::Sectors(refined) => Patch::of(refined.part(part)),
+            Self::Mesh(refined) => refined.part(part),
         }
     }
 
@@ -120,15 +139,15 @@ impl RefinedPatch<'_> {
                 let (at, ring) = refined.middle(edge);
                 LimitPoint::regular(at, &ring)
             }
-            Self::Spoke(refined) => {
+            Self::Extraordinary(refined) => {
                 let (at, ring) = refined.middle(edge);
                 LimitPoint::regular(at, &ring)
             }
-            Self::Irregular(refined) => {
+            Self::Sectors(refined) => {
                 let (at, ring) = refined.regular_middle(edge);
                 LimitPoint::regular(at, &ring)
             }
-            Self::Local(refined) => refined.middle(edge),
+            Self::Mesh(refined) => refined.middle(edge),
         }
     }
 }

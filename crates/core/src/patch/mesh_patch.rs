@@ -10,11 +10,11 @@
 
 use std::sync::Arc;
 
-use super::crop::crop;
-use super::lattice::Points;
-use super::patch::{LimitPoint, Patch};
-use super::root::patch_of;
+use super::box_spline::Points;
+use super::from_mesh::patch_of;
 use super::rules::Rules;
+use super::submesh::submesh;
+use super::{LimitPoint, Patch};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sharpness};
 use crate::refine::{UniformOptions, uniform};
@@ -22,7 +22,7 @@ use crate::vector::{DVec3, vector};
 
 /// A face of a small mesh that holds all that the surface over the face depends on.
 #[derive(Clone, Debug)]
-pub(crate) struct Local {
+pub(crate) struct MeshPatch {
     mesh: Arc<Mesh>,
     /// The half-edge from the piece's first corner to its second.
     first: HalfEdgeId,
@@ -42,7 +42,7 @@ pub(crate) fn fades(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId
 /// Refines the surroundings of faces, given as half-edges, once. The parts of seed `i` are the faces from `4i` on.
 /// `None` after a failure, which the rules keep.
 pub(crate) fn refined_around(mesh: &Mesh, seeds: &[HalfEdgeId], rules: &Rules<'_>) -> Option<Mesh> {
-    let small = crop(mesh, &Sharpness::of(mesh), seeds, rules.rings());
+    let small = submesh(mesh, &Sharpness::of(mesh), seeds, rules.rings());
     let refined = uniform(&small, rules.scheme(), &UniformOptions::default().levels(1));
     refined.map_err(|why| rules.fail(why)).ok().map(|refined| refined.mesh)
 }
@@ -59,10 +59,10 @@ pub(crate) fn first_of_part(part: usize) -> HalfEdgeId {
     HalfEdgeId::of(FaceId(part as u32), [0, 2, 1, 1][part])
 }
 
-impl Local {
+impl MeshPatch {
     /// The piece over a face of a mesh.
     pub(crate) fn of(mesh: &Mesh, sharpness: &Sharpness<'_>, face: FaceId, rules: &Rules<'_>) -> Self {
-        let small = crop(mesh, sharpness, &[HalfEdgeId::of(face, 0)], rules.rings());
+        let small = submesh(mesh, sharpness, &[HalfEdgeId::of(face, 0)], rules.rings());
         Self { mesh: Arc::new(small), first: HalfEdgeId(0) }
     }
 
@@ -85,36 +85,36 @@ impl Local {
     }
 
     /// The piece refined once.
-    pub(crate) fn refined<'a>(&self, rules: &'a Rules<'a>) -> RefinedLocal<'a> {
+    pub(crate) fn refined<'a>(&self, rules: &'a Rules<'a>) -> RefinedMeshPatch<'a> {
         let refined = refined_around(&self.mesh, &[self.first], rules).map(Arc::new);
         let at = vector(self.mesh.positions()[self.mesh.topology().origin(self.first).index()]);
-        RefinedLocal { refined, at, rules }
+        RefinedMeshPatch { refined, at, rules }
     }
 }
 
 /// A piece refined once: its parts are the first four faces of a mesh.
-pub(crate) struct RefinedLocal<'a> {
+pub(crate) struct RefinedMeshPatch<'a> {
     refined: Option<Arc<Mesh>>,
     /// Stands for everything after a failure, so that nothing more is done.
     at: DVec3,
     rules: &'a Rules<'a>,
 }
 
-impl RefinedLocal<'_> {
-    /// A part; numbered as [`super::lattice::Refined::part`] does.
+impl RefinedMeshPatch<'_> {
+    /// A part; numbered as [`super::box_spline::Refined::part`] does.
     pub(crate) fn part(&self, part: usize) -> Patch {
         let Some(mesh) = &self.refined else {
             let points: Points = [self.at; 12];
             return Patch::Regular(points);
         };
         let first = first_of_part(part);
-        if self.rules.has_forms() {
+        if self.rules.is_certified() {
             let sharpness = Sharpness::of(mesh);
             if !fades(mesh, &sharpness, corners(first)) {
                 return patch_of(mesh, &sharpness, corners(first));
             }
         }
-        Patch::Local(Local { mesh: Arc::clone(mesh), first })
+        Patch::Mesh(MeshPatch { mesh: Arc::clone(mesh), first })
     }
 
     /// The limit of the new vertex on the edge from corner `edge`, on the face's side.

@@ -8,22 +8,22 @@
 //! straight; it scales by λ from level to level, so that a sector is its outer three regular pieces, their copies
 //! shrunk by powers of λ, and 0: the hull of 0 and the outer pieces' Bézier points holds it all.
 
-use super::net::{EDGES, Net};
-use super::spoke::Spoke;
+use super::bezier_triangle::{BezierTriangle, EDGES};
+use super::extraordinary::ExtraordinaryPatch;
 use crate::vector::DVec3;
 
 /// The map over one face of a vertex, with points in the plane z = 0.
 #[derive(Clone, Debug)]
 pub(crate) struct Characteristic {
     /// The control points as one refinement scales them by λ.
-    pub(crate) control: Spoke,
+    pub(crate) control: ExtraordinaryPatch,
     /// The face's sector, and its halves on either side of the bisector.
-    pub(crate) sectors: [Sector; 3],
+    pub(crate) sectors: [MapSector; 3],
 }
 
 /// Points that hold the map over a sector.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Sector {
+pub(crate) struct MapSector {
     /// Their hull holds all of it but 0.
     pub(crate) hull: Vec<DVec3>,
     /// Their hull holds the rim, the edge opposite to the vertex.
@@ -47,7 +47,7 @@ impl Characteristic {
         };
         let around = power(1.0) + power(-1.0) + between + rotated(between, -1.0);
         let past = (0.625 * power(0.0) + 0.0625 * around) / (eigenvalue - 0.0625);
-        let control = Spoke {
+        let control = ExtraordinaryPatch {
             corner: 0,
             at: DVec3::ZERO,
             ring: (0..valence).map(|j| power(j as f64)).collect(),
@@ -55,16 +55,16 @@ impl Characteristic {
         };
         // The vertex stays at 0 whatever its weights are.
         let refined = control.refined(0.0);
-        let [first, second, middle] = [1, 2, 3].map(|part| Net::of(&refined.regular(part)));
-        let rim = |net: &Net| EDGES[1].map(|at| net.0[at]);
+        let [first, second, middle] = [1, 2, 3].map(|part| BezierTriangle::of(&refined.regular(part)));
+        let rim = |net: &BezierTriangle| EDGES[1].map(|at| net.0[at]);
         let directions = [power(0.0), power(0.5), power(1.0)];
-        let sector = |nets: &[&Net], rim: Vec<DVec3>, start: DVec3, end: DVec3| {
+        let sector = |nets: &[&BezierTriangle], rim: Vec<DVec3>, start: DVec3, end: DVec3| {
             let points: Vec<DVec3> = nets.iter().flat_map(|net| net.0).collect();
             let along = |direction: DVec3| {
                 let on_line = points.iter().filter(|p| direction.cross(**p).length() < ON_LINE);
                 on_line.map(|p| p.dot(direction)).fold(0.0, f64::max) * direction
             };
-            Sector { start: along(start), end: along(end), rim, hull: hull(&points) }
+            MapSector { start: along(start), end: along(end), rim, hull: hull(&points) }
         };
         let sectors = [
             sector(
@@ -108,7 +108,7 @@ fn hull(points: &[DVec3]) -> Vec<DVec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::patch::Patch;
+    use crate::patch::Patch;
 
     /// Brute force: the eigenvector is refined by the masks alone.
     #[test]
@@ -116,7 +116,7 @@ mod tests {
         for valence in 3..40 {
             let map = Characteristic::of(valence);
             let eigenvalue = 0.375 + 0.25 * (core::f64::consts::TAU / valence as f64).cos();
-            let Patch::Spoke(refined) = map.control.refined(0.0).part(0) else { panic!() };
+            let Patch::Extraordinary(refined) = map.control.refined(0.0).part(0) else { panic!() };
             for (fine, coarse) in refined.points().zip(map.control.points()) {
                 assert!(fine.distance(eigenvalue * coarse) < 1e-13, "valence {valence}");
             }
@@ -124,7 +124,7 @@ mod tests {
     }
 
     /// Whether a point lies in the hull of 0 and the corners, which go round it.
-    fn holds(sector: &Sector, point: DVec3) -> bool {
+    fn holds(sector: &MapSector, point: DVec3) -> bool {
         let corners: Vec<DVec3> = [DVec3::ZERO].into_iter().chain(sector.hull.iter().copied()).collect();
         let n = corners.len();
         let mut turned = corners.clone();
@@ -141,11 +141,11 @@ mod tests {
     fn sectors_hold_the_map() {
         for valence in 3..30 {
             let map = Characteristic::of(valence);
-            let mut spoke = map.control.clone();
+            let mut patch = map.control.clone();
             for _ in 0..6 {
-                let refined = spoke.refined(0.0);
+                let refined = patch.refined(0.0);
                 for part in 1..4 {
-                    let net = Net::of(&refined.regular(part));
+                    let net = BezierTriangle::of(&refined.regular(part));
                     let corners = net.corners();
                     for corner in corners {
                         assert!(holds(&map.sectors[0], corner), "valence {valence}");
@@ -153,8 +153,8 @@ mod tests {
                         assert!(first || second, "valence {valence}");
                     }
                 }
-                let Patch::Spoke(next) = refined.part(0) else { panic!() };
-                spoke = *next;
+                let Patch::Extraordinary(next) = refined.part(0) else { panic!() };
+                patch = *next;
             }
             // Edges and bisectors run straight, and the outer ends are the farthest points.
             let [whole, first, second] = &map.sectors;

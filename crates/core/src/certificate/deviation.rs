@@ -1,8 +1,8 @@
-//! How far hull points stand from a triangle, its plane and its edges: what the bounds of [`super::bound`] are the
+//! How far hull points stand from a triangle, its plane and its edges: what the bounds of [`super::bounds`] are the
 //! greatest of.
 
-use super::facet::{Beside, Facet};
-use super::net::{EDGES, INNER, Net};
+use super::triangle_frame::{Beside, TriangleFrame};
+use crate::patch::bezier_triangle::{BezierTriangle, EDGES, INNER};
 use crate::vector::DVec3;
 
 /// For each edge of a piece the edge of the triangle that it is part of, or [`INSIDE`].
@@ -12,7 +12,7 @@ pub(crate) type Borders = [u8; 3];
 pub(crate) const INSIDE: u8 = 3;
 
 /// The square of the greatest chord of the angle between neighbours that help each other, 2√3: 137°. Where they meet in
-/// a sharper fold, both may reach beyond the surface (see [`super::bound`]).
+/// a sharper fold, both may reach beyond the surface (see [`super::bounds`]).
 const SHARPEST: f64 = 3.464;
 
 /// How far a triangle and its piece of the surface can be from each other.
@@ -72,8 +72,8 @@ impl Deviation {
 
 /// A triangle and which of its edges have no neighbour.
 #[derive(Clone, Copy)]
-pub(crate) struct Gauge<'a> {
-    pub(crate) facet: &'a Facet,
+pub(crate) struct DeviationBound<'a> {
+    pub(crate) frame: &'a TriangleFrame,
     pub(crate) open: [bool; 3],
 }
 
@@ -101,14 +101,14 @@ impl Greatest {
         self.squared = self.squared.max(height * height + side * side);
     }
 
-    /// A point of the surface, as seen from the facet's first corner, with its height.
+    /// A point of the surface, as seen from the frame's first corner, with its height.
     #[inline]
-    fn inner(&mut self, facet: &Facet, offset: DVec3, height: f64) {
+    fn inner(&mut self, frame: &TriangleFrame, offset: DVec3, height: f64) {
         let mut side = 0.0f64;
         for edge in 0..3 {
-            let outside = facet.outside_from_first(edge, offset);
-            if outside > facet.on_edge() {
-                let room = facet.room_from_first(edge, offset);
+            let outside = frame.outside_from_first(edge, offset);
+            if outside > frame.on_edge() {
+                let room = frame.room_from_first(edge, offset);
                 side = side.max(outside);
                 self.drift = self.drift.max(outside);
                 self.slope = self.slope.max(outside / room);
@@ -120,12 +120,12 @@ impl Greatest {
 
     /// The same for a point of the curve over an edge.
     #[inline]
-    fn curve(&mut self, facet: &Facet, edge: usize, offset: DVec3, height: f64) {
-        let outside = facet.outside_from_first(edge, offset);
-        let room = facet.room_from_first(edge, offset);
+    fn curve(&mut self, frame: &TriangleFrame, edge: usize, offset: DVec3, height: f64) {
+        let outside = frame.outside_from_first(edge, offset);
+        let room = frame.room_from_first(edge, offset);
         self.stands(height, outside);
-        if outside.abs() <= facet.on_edge() {
-            self.beyond |= room < -facet.on_edge();
+        if outside.abs() <= frame.on_edge() {
+            self.beyond |= room < -frame.on_edge();
             return;
         }
         self.beyond |= room <= 0.0;
@@ -139,46 +139,46 @@ impl Greatest {
 
 impl Greatest {
     /// What that comes to; `None` if the points have to be looked at one by one.
-    fn deviation(self, facet: &Facet) -> Option<Deviation> {
+    fn deviation(self, frame: &TriangleFrame) -> Option<Deviation> {
         let Self { height, squared, side, drift, slope, .. } = self;
         // Squares of tiny lengths vanish.
         let own = if squared > 1e-280 { squared.sqrt() } else { height.hypot(side) };
         // A curve that swings less than the least angle opens crosses no other edge.
-        let is_plain = !self.beyond && self.swing <= facet.least_slope();
+        let is_plain = !self.beyond && self.swing <= frame.least_slope();
         is_plain.then_some(Deviation { own, height, drift, slope })
     }
 }
 
-impl Gauge<'_> {
+impl DeviationBound<'_> {
     /// The deviation of a net's points, and a height that the piece itself attains.
-    pub(crate) fn net(&self, net: &Net, borders: Borders) -> (Deviation, f64) {
-        if self.facet.is_flat() || self.open != [false; 3] {
+    pub(crate) fn net(&self, net: &BezierTriangle, borders: Borders) -> (Deviation, f64) {
+        if self.frame.is_flat() || self.open != [false; 3] {
             return (self.each_of_net(net, borders), 0.0);
         }
-        let facet = self.facet;
-        let offsets = net.0.map(|point| facet.seen_from_first(point));
-        let heights = offsets.map(|offset| facet.height_from_first(offset));
+        let frame = self.frame;
+        let offsets = net.0.map(|point| frame.seen_from_first(point));
+        let heights = offsets.map(|offset| frame.height_from_first(offset));
         let mut greatest = Greatest::default();
         for at in INNER {
-            greatest.inner(facet, offsets[at], heights[at]);
+            greatest.inner(frame, offsets[at], heights[at]);
         }
         for (edge, points) in EDGES.iter().enumerate() {
             let border = borders[edge];
             for &at in &points[1..4] {
                 if border == INSIDE {
-                    greatest.inner(facet, offsets[at], heights[at]);
+                    greatest.inner(frame, offsets[at], heights[at]);
                 } else {
-                    greatest.curve(facet, border as usize, offsets[at], heights[at]);
+                    greatest.curve(frame, border as usize, offsets[at], heights[at]);
                 }
             }
             let at = points[0];
             match corner(borders, edge) {
                 Corner::Own => {}
-                Corner::On(border) => greatest.curve(facet, border, offsets[at], heights[at]),
-                Corner::Inside => greatest.inner(facet, offsets[at], heights[at]),
+                Corner::On(border) => greatest.curve(frame, border, offsets[at], heights[at]),
+                Corner::Inside => greatest.inner(frame, offsets[at], heights[at]),
             }
         }
-        let deviation = greatest.deviation(facet).unwrap_or_else(|| self.each_of_net(net, borders));
+        let deviation = greatest.deviation(frame).unwrap_or_else(|| self.each_of_net(net, borders));
         (deviation, attained(&heights))
     }
 
@@ -188,17 +188,17 @@ impl Gauge<'_> {
         inner: impl Iterator<Item = DVec3> + Clone,
         curves: &[(usize, DVec3)],
     ) -> Deviation {
-        let facet = self.facet;
-        if !facet.is_flat() && self.open == [false; 3] {
+        let frame = self.frame;
+        if !frame.is_flat() && self.open == [false; 3] {
             let mut greatest = Greatest::default();
-            for offset in inner.clone().map(|point| facet.seen_from_first(point)) {
-                greatest.inner(facet, offset, facet.height_from_first(offset));
+            for offset in inner.clone().map(|point| frame.seen_from_first(point)) {
+                greatest.inner(frame, offset, frame.height_from_first(offset));
             }
             for &(edge, point) in curves {
-                let offset = facet.seen_from_first(point);
-                greatest.curve(facet, edge, offset, facet.height_from_first(offset));
+                let offset = frame.seen_from_first(point);
+                greatest.curve(frame, edge, offset, frame.height_from_first(offset));
             }
-            if let Some(deviation) = greatest.deviation(facet) {
+            if let Some(deviation) = greatest.deviation(frame) {
                 return deviation;
             }
         }
@@ -209,7 +209,7 @@ impl Gauge<'_> {
     }
 
     /// The deviation of a net's points, one by one, for any triangle.
-    fn each_of_net(&self, net: &Net, borders: Borders) -> Deviation {
+    fn each_of_net(&self, net: &BezierTriangle, borders: Borders) -> Deviation {
         let mut deviation = Deviation::default();
         for at in INNER {
             self.inner_point(net.0[at], &mut deviation);
@@ -233,15 +233,15 @@ impl Gauge<'_> {
 
     /// A hull point of the surface.
     pub(crate) fn inner_point(&self, point: DVec3, deviation: &mut Deviation) {
-        if self.facet.is_flat() {
-            self.found_alone(self.facet.squared(point).sqrt(), deviation);
+        if self.frame.is_flat() {
+            self.found_alone(self.frame.squared(point).sqrt(), deviation);
             return;
         }
-        let height = self.facet.height(point).abs();
+        let height = self.frame.height(point).abs();
         let mut own = height;
         let mut alone = height;
         for edge in 0..3 {
-            let beside = self.facet.beside(edge, point);
+            let beside = self.frame.beside(edge, point);
             if beside.outside > 0.0 {
                 own = f64::INFINITY;
                 if self.open[edge] {
@@ -252,7 +252,7 @@ impl Gauge<'_> {
             }
         }
         if own.is_infinite() {
-            own = self.facet.squared(point).sqrt();
+            own = self.frame.squared(point).sqrt();
             if alone > height {
                 alone = alone.max(own);
             }
@@ -263,8 +263,8 @@ impl Gauge<'_> {
 
     /// A hull point of the curve over an edge of the triangle.
     pub(crate) fn curve_point(&self, edge: usize, point: DVec3, deviation: &mut Deviation) {
-        let own = self.facet.squared_to_edge(edge, point).sqrt();
-        if self.facet.is_flat() {
+        let own = self.frame.squared_to_edge(edge, point).sqrt();
+        if self.frame.is_flat() {
             self.found_alone(own, deviation);
             return;
         }
@@ -272,14 +272,14 @@ impl Gauge<'_> {
         if self.open[edge] {
             deviation.height = deviation.height.max(own);
         } else {
-            deviation.height = deviation.height.max(self.facet.height(point).abs());
-            let beside = self.facet.beside(edge, point);
+            deviation.height = deviation.height.max(self.frame.height(point).abs());
+            let beside = self.frame.beside(edge, point);
             if beside.outside > 0.0 {
                 self.drifted(edge, beside, deviation);
             }
         }
         for other in [(edge + 1) % 3, (edge + 2) % 3] {
-            if self.facet.beside(other, point).outside > 0.0 {
+            if self.frame.beside(other, point).outside > 0.0 {
                 deviation.slope = f64::INFINITY;
             }
         }
@@ -292,7 +292,7 @@ impl Gauge<'_> {
     }
 
     fn drifted(&self, edge: usize, beside: Beside, deviation: &mut Deviation) {
-        let room = beside.along.min(self.facet.length(edge) - beside.along);
+        let room = beside.along.min(self.frame.length(edge) - beside.along);
         deviation.drift = deviation.drift.max(beside.outside);
         let slope = if room > 0.0 { beside.outside / room } else { f64::INFINITY };
         deviation.slope = deviation.slope.max(slope);

@@ -4,13 +4,13 @@
 //! The points are the vertex v, its ring r₀, r₁, … (the face is v r₀ r₁) and the five beyond the ring that complete the
 //! rings of r₀ and r₁. One refinement gives the same again, smaller, and three regular pieces.
 
-use super::lattice::{self, Points};
-use super::patch::Patch;
+use super::Patch;
+use super::box_spline::{self, Points};
 use crate::vector::DVec3;
 
 /// The points around a face with one irregular corner. What is said of corners and edges counts from that one.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Spoke {
+pub(crate) struct ExtraordinaryPatch {
     /// Which of the face's corners is the irregular one.
     pub(crate) corner: usize,
     /// The irregular vertex.
@@ -22,27 +22,27 @@ pub(crate) struct Spoke {
     pub(crate) outer: [DVec3; 5],
 }
 
-/// The points around the four parts of a [`Spoke`].
-pub(crate) struct RefinedSpoke {
-    own: Spoke,
+/// The points around the four parts of an [`ExtraordinaryPatch`].
+pub(crate) struct RefinedExtraordinary {
+    own: ExtraordinaryPatch,
     /// What the regular parts need besides: the new points between r₀ and the first three outer points, and
     /// between r₁ and the last three.
     beyond: [DVec3; 6],
 }
 
-impl Spoke {
+impl ExtraordinaryPatch {
     /// All points.
     pub(crate) fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
         core::iter::once(self.at).chain(self.ring.iter().copied()).chain(self.outer)
     }
 
     /// The points after one refinement; `beta` is the weight of each neighbour of the irregular vertex.
-    pub(crate) fn refined(&self, beta: f64) -> RefinedSpoke {
+    pub(crate) fn refined(&self, beta: f64) -> RefinedExtraordinary {
         let edge = |a: DVec3, b: DVec3, c: DVec3, d: DVec3| 0.375 * (a + b) + 0.125 * (c + d);
         let Self { corner, at, ref ring, outer: [before, past_first, between, past_second, after] } = *self;
         let valence = ring.len();
         let (last, first, second, third) = (ring[valence - 1], ring[0], ring[1], ring[2 % valence]);
-        let spokes = (0..valence).map(|slot| {
+        let edges = (0..valence).map(|slot| {
             let previous = ring[if slot == 0 { valence - 1 } else { slot - 1 }];
             let next = ring[if slot + 1 == valence { 0 } else { slot + 1 }];
             edge(at, ring[slot], previous, next)
@@ -51,7 +51,7 @@ impl Spoke {
         let own = Self {
             corner,
             at: (1.0 - valence as f64 * beta) * at + beta * ring.iter().sum::<DVec3>(),
-            ring: spokes.collect(),
+            ring: edges.collect(),
             outer: [
                 edge(last, first, at, before),
                 vertex(first, [at, last, before, past_first, between, second]),
@@ -68,15 +68,15 @@ impl Spoke {
             edge(second, past_second, between, after),
             edge(second, after, past_second, third),
         ];
-        RefinedSpoke { own, beyond }
+        RefinedExtraordinary { own, beyond }
     }
 }
 
-impl RefinedSpoke {
+impl RefinedExtraordinary {
     /// One of the four parts, numbered like the face's corners; 3 is the middle one.
     pub(crate) fn part(&self, part: usize) -> Patch {
         match self.local(part) {
-            0 => Patch::Spoke(Box::new(self.own.clone())),
+            0 => Patch::Extraordinary(Box::new(self.own.clone())),
             local => Patch::Regular(self.regular(local)),
         }
     }
@@ -105,7 +105,7 @@ impl RefinedSpoke {
         };
         corners.rotate_right(self.own.corner);
         rings.rotate_right(self.own.corner);
-        lattice::assemble(corners, &rings)
+        box_spline::assemble(corners, &rings)
     }
 
     /// The new vertex on the edge from corner `edge` of the face, with its ring.
@@ -119,7 +119,7 @@ impl RefinedSpoke {
 
     /// The ring of the point on the edge to r₀, counter-clockwise from the given place on.
     fn around_first(&self, from: usize) -> [DVec3; 6] {
-        let Spoke { at, ref ring, outer: [before, first, between, ..], .. } = self.own;
+        let ExtraordinaryPatch { at, ref ring, outer: [before, first, between, ..], .. } = self.own;
         let mut around = [before, first, between, ring[1], at, ring[ring.len() - 1]];
         around.rotate_left(from);
         around
@@ -127,7 +127,7 @@ impl RefinedSpoke {
 
     /// The ring of the point on the edge to r₁.
     fn around_second(&self, from: usize) -> [DVec3; 6] {
-        let Spoke { at, ref ring, outer: [_, _, between, second, after], .. } = self.own;
+        let ExtraordinaryPatch { at, ref ring, outer: [_, _, between, second, after], .. } = self.own;
         let mut around = [ring[0], between, second, after, ring[2 % ring.len()], at];
         around.rotate_left(from);
         around
@@ -135,7 +135,7 @@ impl RefinedSpoke {
 
     /// The ring of the point on r₀r₁.
     fn between(&self, from: usize) -> [DVec3; 6] {
-        let Spoke { ref ring, outer: [_, first, _, second, _], .. } = self.own;
+        let ExtraordinaryPatch { ref ring, outer: [_, first, _, second, _], .. } = self.own;
         let mut around = [first, self.beyond[2], self.beyond[3], second, ring[1], ring[0]];
         around.rotate_left(from);
         around
@@ -143,13 +143,13 @@ impl RefinedSpoke {
 
     /// The ring of r₀.
     fn first(&self) -> [DVec3; 6] {
-        let Spoke { ref ring, outer: [before, _, between, ..], .. } = self.own;
+        let ExtraordinaryPatch { ref ring, outer: [before, _, between, ..], .. } = self.own;
         [between, ring[0], before, self.beyond[0], self.beyond[1], self.beyond[2]]
     }
 
     /// The ring of r₁.
     fn second(&self) -> [DVec3; 6] {
-        let Spoke { ref ring, outer: [.., between, _, after], .. } = self.own;
+        let ExtraordinaryPatch { ref ring, outer: [.., between, _, after], .. } = self.own;
         [ring[1], between, self.beyond[3], self.beyond[4], self.beyond[5], after]
     }
 }
@@ -157,9 +157,9 @@ impl RefinedSpoke {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::patch::Rules;
+    use crate::patch::sector::{Centre, SectorPatch, VertexSector};
     use crate::scheme::Loop;
-    use crate::surface::Rules;
-    use crate::surface::fan::{Centre, Fan, Fans};
 
     fn arbitrary(count: usize, seed: f64) -> Vec<DVec3> {
         (0..count)
@@ -170,39 +170,48 @@ mod tests {
             .collect()
     }
 
-    /// The same face by its three fans.
-    fn fans(spoke: &Spoke) -> Fans {
-        let Spoke { corner, at, ref ring, outer: [before, past_first, between, past_second, after] } = *spoke;
+    /// The same face by its three sectors.
+    fn sectors(patch: &ExtraordinaryPatch) -> SectorPatch {
+        let ExtraordinaryPatch {
+            corner,
+            at,
+            ref ring,
+            outer: [before, past_first, between, past_second, after],
+        } = *patch;
         let k = ring.len();
-        let smooth = |at, neighbours| Fan { at, neighbours, centre: Centre::Smooth { sharp: None }, slot: 0 };
-        let mut fans = [
+        let smooth =
+            |at, neighbours| VertexSector { at, neighbours, centre: Centre::Smooth { sharp: None }, slot: 0 };
+        let mut sectors = [
             smooth(at, ring.clone()),
             smooth(ring[0], vec![ring[1], at, ring[k - 1], before, past_first, between]),
             smooth(ring[1], vec![at, ring[0], between, past_second, after, ring[2]]),
         ];
-        fans.rotate_right(corner);
-        Fans(fans)
+        sectors.rotate_right(corner);
+        SectorPatch(sectors)
     }
 
     #[test]
-    fn refinement_is_that_of_the_fans() {
+    fn refinement_is_that_of_the_sectors() {
         let rules = Rules::of(&Loop);
         for valence in (3..12).filter(|&k| k != 6) {
             for corner in 0..3 {
                 let points = arbitrary(valence + 6, valence as f64);
                 let outer = core::array::from_fn(|i| points[valence + 1 + i]);
-                let mut spoke = Spoke { corner, at: points[0], ring: points[1..=valence].to_vec(), outer };
+                let mut patch =
+                    ExtraordinaryPatch { corner, at: points[0], ring: points[1..=valence].to_vec(), outer };
                 for level in 0..3 {
-                    let fans = fans(&spoke);
-                    assert!(matches!(Patch::of(fans.clone()), Patch::Spoke(found) if *found == spoke));
-                    let (expected, found) = (fans.refined(&rules), spoke.refined(rules.beta(valence)));
+                    let sectors = sectors(&patch);
+                    assert!(
+                        matches!(Patch::of(sectors.clone()), Patch::Extraordinary(found) if *found == patch)
+                    );
+                    let (expected, found) = (sectors.refined(&rules), patch.refined(rules.beta(valence)));
                     let near = |a: DVec3, b: DVec3| {
                         assert!(a.distance(b) < 1e-14, "valence {valence}, corner {corner}, level {level}")
                     };
                     for part in 0..4 {
                         match (Patch::of(expected.part(part)), found.part(part)) {
                             (Patch::Regular(a), Patch::Regular(b)) => (0..12).for_each(|i| near(a[i], b[i])),
-                            (Patch::Spoke(a), Patch::Spoke(b)) => {
+                            (Patch::Extraordinary(a), Patch::Extraordinary(b)) => {
                                 assert_eq!((part, a.corner), (corner, corner));
                                 a.points().zip(b.points()).for_each(|(a, b)| near(a, b));
                             }
@@ -218,8 +227,8 @@ mod tests {
                         ring.rotate_left(start);
                         (0..6).for_each(|i| near(ring[i], around[i]));
                     }
-                    let Patch::Spoke(next) = found.part(corner) else { panic!() };
-                    spoke = *next;
+                    let Patch::Extraordinary(next) = found.part(corner) else { panic!() };
+                    patch = *next;
                 }
             }
         }

@@ -1,0 +1,140 @@
+//! The bounds against dense samples of the pieces, both ways.
+
+use super::*;
+use crate::scheme::Loop;
+
+/// Numbers between −1 and 1, the same on every run.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// A face with one irregular corner: the characteristic map, sheared, stirred and bent.
+    fn piece(&mut self, valence: usize, noise: f64) -> ExtraordinaryPatch {
+        let bend = [self.next(), self.next(), self.next()];
+        let shear = self.next();
+        let mut moved = |p: DVec3| {
+            let stir = DVec3::new(self.next(), self.next(), self.next()) * noise;
+            let height = bend[0] * p.x * p.x + bend[1] * p.x * p.y + bend[2] * p.y * p.y;
+            DVec3::new(p.x + shear * p.y, p.y, 0.3 * height) + stir
+        };
+        let map = Characteristic::of(valence).control;
+        ExtraordinaryPatch {
+            corner: valence % 3,
+            at: moved(map.at),
+            ring: map.ring.iter().map(|&p| moved(p)).collect(),
+            outer: map.outer.map(moved),
+        }
+    }
+}
+
+/// Points of the surface over a patch, with their barycentric coordinates.
+fn sample(patch: &Patch, rules: &Rules<'_>, at: [DVec3; 3], depth: usize, found: &mut Vec<(DVec3, DVec3)>) {
+    let refined = patch.refined(rules);
+    let middles = [0, 1, 2].map(|edge| 0.5 * (at[edge] + at[(edge + 1) % 3]));
+    (0..3).for_each(|edge| found.push((middles[edge], refined.middle(edge).position)));
+    if depth > 0 {
+        for part in 0..4 {
+            let mut own = [middles[1], middles[2], middles[0]];
+            if part < 3 {
+                own[part] = at[part];
+                own[(part + 1) % 3] = middles[part];
+                own[(part + 2) % 3] = middles[(part + 2) % 3];
+            }
+            sample(&refined.part(part), rules, own, depth - 1, found);
+        }
+    }
+}
+
+/// The limit position of a corner.
+fn limit(patch: &Patch, rules: &Rules<'_>, corner: usize) -> DVec3 {
+    match patch {
+        Patch::Regular(points) => BezierTriangle::of(points).corners()[corner],
+        Patch::Extraordinary(piece) if piece.corner == corner => {
+            let weight = 0.375 / rules.beta(piece.ring.len());
+            let sum = weight * piece.at + piece.ring.iter().sum::<DVec3>();
+            sum / (weight + piece.ring.len() as f64)
+        }
+        _ => limit(&patch.refined(rules).part(corner), rules, corner),
+    }
+}
+
+/// The corners of a part, as barycentric coordinates.
+fn corners(part: SubTriangle) -> [DVec3; 3] {
+    let whole = [DVec3::X, DVec3::Y, DVec3::Z];
+    let middle = |edge: usize| 0.5 * (whole[edge % 3] + whole[(edge + 1) % 3]);
+    match part {
+        SubTriangle::Whole => whole,
+        SubTriangle::Half { edge, second } => {
+            let mut corners = whole;
+            corners[(edge + usize::from(!second)) % 3] = middle(edge);
+            corners
+        }
+        SubTriangle::Child(3) => [middle(1), middle(2), middle(0)],
+        SubTriangle::Child(part) => {
+            let mut corners = [middle(part), middle(part), middle(part)];
+            corners[part] = whole[part];
+            corners[(part + 2) % 3] = middle(part + 2);
+            corners
+        }
+        SubTriangle::Quarter { edge, at_end } => {
+            [whole[(edge + usize::from(at_end)) % 3], middle(edge + 1), middle(edge + 2)]
+        }
+    }
+}
+
+/// Dense samples never lie farther away than the bounds say, in both directions.
+#[test]
+fn bounds_hold_for_every_part_and_valence() {
+    let rules = Rules::of(&Loop);
+    let mut numbers = Numbers(7);
+    let parts = (0..3).flat_map(|edge| {
+        let half = |second| SubTriangle::Half { edge, second };
+        let quarter = |at_end| SubTriangle::Quarter { edge, at_end };
+        [SubTriangle::Child(edge), half(false), half(true), quarter(false), quarter(true)]
+    });
+    let parts: Vec<SubTriangle> = parts.chain([SubTriangle::Whole, SubTriangle::Child(3)]).collect();
+    for valence in 3..=20 {
+        for noise in [0.0, 0.01, 0.2] {
+            let patch = match numbers.piece(valence, noise) {
+                // A regular one now and then.
+                piece if valence == 6 => piece.refined(rules.beta(6)).part((piece.corner + 1) % 3),
+                piece => Patch::Extraordinary(Box::new(piece)),
+            };
+            let mut samples = Vec::new();
+            sample(&patch, &rules, [DVec3::X, DVec3::Y, DVec3::Z], 5, &mut samples);
+            for (corner, at) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
+                samples.push((at, limit(&patch, &rules, corner)));
+            }
+            for &part in &parts {
+                let at = corners(part);
+                let position = |at: DVec3| samples.iter().find(|s| s.0.distance(at) < 1e-12).unwrap().1;
+                let triangle = at.map(position);
+                let frame = TriangleFrame::new(triangle);
+                let matrix = glam::DMat3::from_cols(at[0], at[1], at[2]).inverse();
+                let inside: Vec<DVec3> =
+                    samples.iter().filter(|s| (matrix * s.0).min_element() > -1e-12).map(|s| s.1).collect();
+                let farthest = inside.iter().map(|&p| frame.squared(p)).fold(0.0, f64::max).sqrt();
+                let highest = inside.iter().map(|&p| frame.height(p).abs()).fold(0.0, f64::max);
+                for (target, slope) in [(0.0, 0.5), (0.5 * farthest, 0.2), (2.0 * farthest, f64::MAX)] {
+                    let effort = Effort { target, halvings: 3, open: [false; 3], chord: 0.1, slope };
+                    let found = Pieces::of(&patch).deviation(part, &frame, &rules, effort);
+                    assert!(
+                        found.own >= farthest - 1e-12 && found.height >= highest - 1e-12,
+                        "valence {valence}, noise {noise}, {part:?}: {found:?}, {farthest}, {highest}"
+                    );
+                    // And not far above the truth.
+                    if target == 0.0 && noise == 0.0 {
+                        assert!(
+                            found.height <= 1.5 * highest + 0.1,
+                            "{valence} {part:?} {found:?} {highest}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
