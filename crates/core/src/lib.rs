@@ -38,6 +38,7 @@
 //! | [`limit`] | limit positions and normals of any scheme from its masks |
 //! | [`criterion`] | which faces are to be divided |
 //! | [`refine`] | exact refinement to a goal, edge collapse within a distance, uniform and the paper's stepwise refinement |
+//! | [`progress`] | what long functions tell while they work, and how they are cancelled |
 //! | [`measure`] | distances, sampled and certified, watertightness, triangle quality |
 //! | [`models`] | built-in control meshes |
 
@@ -52,6 +53,7 @@ pub mod mesh;
 pub mod models;
 mod parallel;
 mod patch;
+pub mod progress;
 pub mod refine;
 pub mod ring;
 pub mod scheme;

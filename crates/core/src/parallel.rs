@@ -2,9 +2,12 @@
 //! input alone and written by exactly one call; sums are taken over pieces of fixed length, in order.
 
 use core::ops::Range;
+#[cfg(feature = "parallel")]
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+use crate::progress::Cancelled;
 
 /// Below this many elements a loop stays on the calling thread: starting workers would cost more than the work.
-#[cfg(feature = "parallel")]
 const SEQUENTIAL_BELOW: usize = 4096;
 
 /// `[f(0), f(1), …, f(n−1)]`.
@@ -66,25 +69,6 @@ pub(crate) fn pieces_of<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(
     (0..count).map(|piece| f(range(piece))).collect()
 }
 
-/// Cuts `0..n` into blocks of the given length and returns `f` of each, in order: for elements whose work is worth a
-/// call of its own.
-pub(crate) fn blocks<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(
-    n: usize,
-    length: usize,
-    f: F,
-) -> Vec<T> {
-    let range = |block: usize| block * length..((block + 1) * length).min(n);
-    let count = n.div_ceil(length);
-    #[cfg(feature = "parallel")]
-    {
-        use rayon::prelude::*;
-        if count > 1 && rayon::current_num_threads() > 1 {
-            return (0..count).into_par_iter().map(|block| f(range(block))).collect();
-        }
-    }
-    (0..count).map(|block| f(range(block))).collect()
-}
-
 /// The least `i` below `n` for which `found(i)` holds.
 pub(crate) fn first<F: Fn(usize) -> bool + Sync + Send>(n: usize, found: F) -> Option<usize> {
     pieces(n, |mut piece| piece.find(|&i| found(i))).into_iter().flatten().next()
@@ -92,25 +76,29 @@ pub(crate) fn first<F: Fn(usize) -> bool + Sync + Send>(n: usize, found: F) -> O
 
 /// `[0, c(0), c(0)+c(1), …]`: where each element's items start when element `i` has `c(i)` of them, and their
 /// total as the last entry. `None` where the total does not fit.
-pub(crate) fn starts<F: Fn(usize) -> u32 + Sync + Send>(n: usize, count: F) -> Option<Vec<u32>> {
-    let totals = pieces(n, |piece| piece.map(|i| u64::from(count(i))).sum::<u64>());
+pub(crate) fn starts<F: Fn(usize) -> u32 + Sync + Send>(
+    n: usize,
+    poll: &mut Poll<'_>,
+    count: F,
+) -> Result<Option<Vec<u32>>, Cancelled> {
+    let totals = pieces_polled(n, PIECE, poll, |piece| piece.map(|i| u64::from(count(i))).sum::<u64>())?;
     let mut before = Vec::with_capacity(totals.len());
     let mut total = 0u64;
     for piece_total in totals {
         before.push(total);
         total += piece_total;
     }
-    let total = u32::try_from(total).ok()?;
+    let Ok(total) = u32::try_from(total) else { return Ok(None) };
     let mut starts = vec![0u32; n + 1];
     starts[n] = total;
-    for_each_chunk(&mut starts[..n], PIECE, |piece, slots| {
+    for_each_chunk_polled(&mut starts[..n], PIECE, poll, |piece, slots| {
         let mut running = before[piece] as u32;
         for (i, slot) in slots.iter_mut().enumerate() {
             *slot = running;
             running += count(piece * PIECE + i);
         }
-    });
-    Some(starts)
+    })?;
+    Ok(Some(starts))
 }
 
 /// For elements that own consecutive runs of two arrays of items, `a[starts[i]..starts[i+1]]` and likewise in
@@ -119,8 +107,9 @@ pub(crate) fn for_each_run<A: Send, B: Send, F: Fn(usize, &mut [A], &mut [B]) + 
     starts: &[u32],
     a: &mut [A],
     b: &mut [B],
+    poll: &mut Poll<'_>,
     f: F,
-) {
+) -> Result<(), Cancelled> {
     let n = starts.len().saturating_sub(1);
     let mut pieces = Vec::with_capacity(n.div_ceil(PIECE));
     let (mut rest_a, mut rest_b) = (a, b);
@@ -141,13 +130,184 @@ pub(crate) fn for_each_run<A: Send, B: Send, F: Fn(usize, &mut [A], &mut [B]) + 
             f(i, &mut a[run.clone()], &mut b[run]);
         }
     };
+    hand_out(pieces.into_iter(), &mut |pieces| poll((pieces * PIECE).min(n)), work)?;
+    Ok(())
+}
+
+/// What a loop that can be cancelled calls between its blocks, always on the calling thread, with the number of elements
+/// done by then.
+pub(crate) type Poll<'a> = dyn FnMut(usize) -> Result<(), Cancelled> + 'a;
+
+/// [`pieces_of`] that can be cancelled; a piece should take a few milliseconds at most.
+pub(crate) fn pieces_polled<T: Send, F: Fn(Range<usize>) -> T + Sync>(
+    n: usize,
+    length: usize,
+    poll: &mut Poll<'_>,
+    f: F,
+) -> Result<Vec<T>, Cancelled> {
+    let pieces = (0..n.div_ceil(length)).map(|piece| piece * length..((piece + 1) * length).min(n));
+    hand_out(pieces, &mut |blocks| poll((blocks * length).min(n)), f)
+}
+
+/// [`for_each_chunk`] that can be cancelled; a piece should take a few milliseconds at most.
+pub(crate) fn for_each_chunk_polled<T: Send, F: Fn(usize, &mut [T]) + Sync>(
+    slots: &mut [T],
+    piece: usize,
+    poll: &mut Poll<'_>,
+    f: F,
+) -> Result<(), Cancelled> {
+    let n = slots.len();
+    let chunks = slots.chunks_mut(piece).enumerate();
+    hand_out(chunks, &mut |blocks| poll((blocks * piece).min(n)), |(i, chunk)| f(i, chunk))?;
+    Ok(())
+}
+
+/// [`map`] that can be cancelled.
+pub(crate) fn map_polled<T: Send + Clone + Default, F: Fn(usize) -> T + Sync>(
+    n: usize,
+    poll: &mut Poll<'_>,
+    f: F,
+) -> Result<Vec<T>, Cancelled> {
+    let mut slots = vec![T::default(); n];
+    for_each_chunk_polled(&mut slots, SEQUENTIAL_BELOW, poll, |chunk, slots| {
+        for (i, slot) in slots.iter_mut().enumerate() {
+            *slot = f(chunk * SEQUENTIAL_BELOW + i);
+        }
+    })?;
+    Ok(slots)
+}
+
+/// Runs `work` on every block and gives the results in order. `poll` is called after each block that the calling thread
+/// does, with the number of blocks done, and while it waits for others; once it fails no further block is begun.
+fn hand_out<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send, F: Fn(B) -> R + Sync>(
+    blocks: I,
+    poll: &mut Poll<'_>,
+    work: F,
+) -> Result<Vec<R>, Cancelled> {
     #[cfg(feature = "parallel")]
     {
-        use rayon::prelude::*;
-        if pieces.len() > 1 && rayon::current_num_threads() > 1 {
-            pieces.into_par_iter().for_each(work);
-            return;
+        let threads = rayon::current_num_threads().min(blocks.len());
+        if threads > 1 {
+            return Blocks::new(blocks).run(threads, poll, &work);
         }
     }
-    pieces.into_iter().for_each(work);
+    let mut results = Vec::with_capacity(blocks.len());
+    for block in blocks {
+        results.push(work(block));
+        poll(results.len())?;
+    }
+    Ok(results)
 }
+
+/// Blocks that several threads take one after the other, the calling one among them.
+#[cfg(feature = "parallel")]
+struct Blocks<I, R> {
+    state: Mutex<BlocksState<I, R>>,
+    /// Told when a thread has ended.
+    ended: Condvar,
+}
+
+#[cfg(feature = "parallel")]
+struct BlocksState<I, R> {
+    /// Blocks that nobody has begun.
+    left: core::iter::Enumerate<I>,
+    /// Results by number of block, in the order in which they came about.
+    results: Vec<(usize, R)>,
+    /// Threads at work beside the calling one.
+    working: usize,
+    cancelled: bool,
+}
+
+/// How long the calling thread waits for the others between two calls of the observer.
+#[cfg(feature = "parallel")]
+const WAIT: core::time::Duration = core::time::Duration::from_millis(20);
+
+#[cfg(feature = "parallel")]
+impl<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send> Blocks<I, R> {
+    fn new(blocks: I) -> Self {
+        let results = Vec::with_capacity(blocks.len());
+        let state = BlocksState { left: blocks.enumerate(), results, working: 0, cancelled: false };
+        Self { state: Mutex::new(state), ended: Condvar::new() }
+    }
+
+    fn run(
+        self,
+        threads: usize,
+        poll: &mut Poll<'_>,
+        work: &(impl Fn(B) -> R + Sync),
+    ) -> Result<Vec<R>, Cancelled> {
+        rayon::in_place_scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(|_| self.help(work));
+            }
+            let result = self.lead(poll, work);
+            self.lock().cancelled |= result.is_err();
+            result
+        })?;
+        let state = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let mut results = state.results;
+        results.sort_unstable_by_key(|&(number, _)| number);
+        Ok(results.into_iter().map(|(_, result)| result).collect())
+    }
+
+    fn lock(&self) -> MutexGuard<'_, BlocksState<I, R>> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The calling thread: works as long as there are blocks, then waits for the others.
+    fn lead(&self, poll: &mut Poll<'_>, work: &impl Fn(B) -> R) -> Result<(), Cancelled> {
+        loop {
+            let Some((number, block)) = self.lock().next() else { break };
+            let result = work(block);
+            let done = self.lock().put(number, result);
+            poll(done)?;
+        }
+        let mut state = self.lock();
+        while state.working > 0 {
+            let waited = self.ended.wait_timeout(state, WAIT);
+            let done = waited.unwrap_or_else(PoisonError::into_inner).0.results.len();
+            poll(done)?;
+            state = self.lock();
+        }
+        Ok(())
+    }
+
+    /// Another thread: works until nothing is left.
+    fn help(&self, work: &impl Fn(B) -> R) {
+        self.lock().working += 1;
+        let _ended = Ended(self);
+        loop {
+            let Some((number, block)) = self.lock().next() else { return };
+            let result = work(block);
+            self.lock().put(number, result);
+        }
+    }
+}
+
+#[cfg(feature = "parallel")]
+impl<B, R, I: Iterator<Item = B>> BlocksState<I, R> {
+    fn next(&mut self) -> Option<(usize, B)> {
+        if self.cancelled { None } else { self.left.next() }
+    }
+
+    /// Takes a result in; says how many there are.
+    fn put(&mut self, number: usize, result: R) -> usize {
+        self.results.push((number, result));
+        self.results.len()
+    }
+}
+
+/// Says that a thread has ended, also where its work panicked: nobody then waits for it for ever.
+#[cfg(feature = "parallel")]
+struct Ended<'b, B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send>(&'b Blocks<I, R>);
+
+#[cfg(feature = "parallel")]
+impl<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send> Drop for Ended<'_, B, R, I> {
+    fn drop(&mut self) {
+        self.0.lock().working -= 1;
+        self.0.ended.notify_one();
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -5,12 +5,14 @@
 mod support;
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use limitmesh::criterion::{Criterion, CriterionError, LimitNormal, NeighbourNormal, Sight, View};
 use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
-use limitmesh::refine::{RefineError, SeamRule, StepwiseOptions, Stop, UniformOptions, stepwise, uniform};
+use limitmesh::progress::{Cancelled, Progress, Stage};
+use limitmesh::refine::{
+    RefineError, SeamRule, StepwiseOptions, Stop, UniformOptions, stepwise, uniform, uniform_observed,
+};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, Mesh};
 use proptest::prelude::*;
@@ -239,17 +241,31 @@ fn caps_and_satisfaction_are_told() {
 
 #[test]
 fn the_observer_sees_each_step_and_can_cancel() {
-    let seen = AtomicUsize::new(0);
-    let observer = |_: &limitmesh::refine::StepReport| {
-        if seen.fetch_add(1, Ordering::Relaxed) == 1 {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+    let options = UniformOptions::default().levels(4);
+    let mut triangles = Vec::new();
+    let mut watch = |progress: &Progress| {
+        assert_eq!((progress.stage, progress.total), (Stage::Refining, Some(4)));
+        assert_eq!(progress.triangles, 8 << (2 * progress.done));
+        triangles.push(progress.triangles);
+        ControlFlow::Continue(())
     };
-    let options = UniformOptions::default().levels(4).observer(&observer);
-    assert_eq!(uniform(&octahedron(), &Loop, &options).unwrap_err(), RefineError::Cancelled { steps: 2 });
-    assert_eq!(seen.into_inner(), 2);
+    let watched = uniform_observed(&octahedron(), &Loop, &options, &mut watch).unwrap();
+    assert_eq!(watched.mesh.positions(), uniform(&octahedron(), &Loop, &options).unwrap().mesh.positions());
+    assert!(triangles.is_sorted());
+    triangles.dedup();
+    assert_eq!(triangles, [8, 32, 128, 512, 2048]);
+
+    // It is called more than once a step, and never again once it said so.
+    for last in 1..=12 {
+        let mut calls = 0;
+        let mut observer = |_: &Progress| {
+            calls += 1;
+            if calls == last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let cancelled = uniform_observed(&octahedron(), &Loop, &options, &mut observer);
+        assert_eq!(cancelled.unwrap_err(), RefineError::Cancelled(Cancelled));
+        assert_eq!(calls, last);
+    }
 }
 
 #[test]

@@ -5,9 +5,10 @@ use std::time::Instant;
 use super::junctions::join_copies;
 use super::split::SplitEdges;
 use super::step::advance;
-use super::{Observer, RefineError, Refinement, StepReport, Stop};
+use super::{RefineError, Refinement, StepReport, Stop};
 use crate::limit::LimitTable;
 use crate::mesh::{Mesh, check_finite};
+use crate::progress::{Observer, Stage, Watch};
 use crate::scheme::Scheme;
 
 /// What a run of steps needs to know besides how to flag faces.
@@ -16,24 +17,28 @@ pub(super) struct Driver<'a> {
     pub(super) levels: usize,
     pub(super) limit: bool,
     pub(super) max_triangles: Option<usize>,
-    pub(super) observer: Option<Observer<'a>>,
 }
 
 impl Driver<'_> {
-    /// Refines until the levels are done, no face is flagged, the cap is near or the observer says stop.
+    /// Refines until the levels are done, no face is flagged, or the cap is near.
     pub(super) fn run(
         &self,
         control: &Mesh,
+        observer: &mut Observer<'_>,
         flags: impl Fn(&Mesh) -> Result<Vec<bool>, RefineError>,
         moves: impl Fn(&Mesh, &SplitEdges) -> Option<Vec<bool>>,
     ) -> Result<Refinement, RefineError> {
         let mut refined: Option<Mesh> = None;
         let mut steps = Vec::new();
         let mut stop = Stop::Levels;
+        let mut watch = Watch::new(observer, Stage::Refining);
+        watch.triangles(control.face_count());
+        watch.stage(Stage::Refining, Some(self.levels))?;
         for step in 1..=self.levels {
             let start = Instant::now();
             let mesh = refined.as_ref().unwrap_or(control);
             let divisible = flags(mesh)?;
+            watch.poll()?;
             let divisible_count = divisible.iter().filter(|&&flag| flag).count();
             if divisible_count == 0 {
                 stop = Stop::Satisfied;
@@ -48,23 +53,26 @@ impl Driver<'_> {
             let closure = split.closure_cases(&divisible);
             drop(divisible);
             let moving = moves(mesh, &split);
-            let next = advance(mesh, self.scheme, split, moving.as_deref())?;
-            let report = StepReport {
+            let next = advance(mesh, self.scheme, split, moving.as_deref(), &mut watch)?;
+            steps.push(StepReport {
                 step,
                 faces_before: mesh.face_count(),
                 divisible: divisible_count,
                 closure,
                 faces_after: next.face_count(),
                 duration: start.elapsed(),
-            };
+            });
+            watch.triangles(next.face_count());
             refined = Some(next);
-            steps.push(report);
-            if self.observer.is_some_and(|observer| observer(&report).is_break()) {
-                return Err(RefineError::Cancelled { steps: step });
-            }
+            watch.done(step)?;
         }
         let mesh = refined.unwrap_or_else(|| control.clone());
-        let mesh = if self.limit { at_limit(mesh, self.scheme)? } else { mesh };
+        let mesh = if self.limit {
+            watch.stage(Stage::Limits, Some(mesh.vertex_count()))?;
+            at_limit(mesh, self.scheme)?
+        } else {
+            mesh
+        };
         // Coordinates near the greatest number may overflow in a weighted sum.
         check_finite(mesh.positions())?;
         Ok(Refinement { mesh, steps, stop })

@@ -16,16 +16,16 @@ pub use exact::{
     Camera, ErrorBounds, Estimate, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin,
     exact, exact_estimate, is_certified,
 };
-pub use stepwise::{SeamRule, StepwiseOptions, stepwise};
-pub use uniform::{UniformOptions, uniform};
+pub use stepwise::{SeamRule, StepwiseOptions, stepwise, stepwise_observed};
+pub use uniform::{UniformOptions, uniform, uniform_observed};
 
-use core::ops::ControlFlow;
 use core::time::Duration;
 
 use crate::criterion::CriterionError;
 use crate::limit::LimitError;
 use crate::measure::MeasureError;
 use crate::mesh::{Mesh, MeshError};
+use crate::progress::Cancelled;
 
 /// Why a refinement gave no mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -44,11 +44,8 @@ pub enum RefineError {
     #[error(transparent)]
     Measure(#[from] MeasureError),
     /// The observer asked to stop.
-    #[error("cancelled after {steps} steps")]
-    Cancelled {
-        /// Steps done by then.
-        steps: usize,
-    },
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// What one step did.
@@ -95,6 +92,3 @@ pub struct Refinement {
     /// Why there were no more steps.
     pub stop: Stop,
 }
-
-/// Called after each step; may cancel.
-pub type Observer<'a> = &'a (dyn Fn(&StepReport) -> ControlFlow<()> + Sync);

@@ -5,6 +5,8 @@ use crate::emit::{Diagonal, Pattern, closure};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{MAX_FACES, Mesh, MeshError, NONE, Topology};
 use crate::parallel;
+use crate::progress::{Cancelled, Watch};
+use crate::refine::RefineError;
 
 /// All three edges of a face are split.
 pub(super) const ALL_EDGES: u8 = 0b111;
@@ -126,12 +128,16 @@ impl SplitTopology {
     /// Numbers the new vertices and triangles.
     ///
     /// # Errors
-    /// There are more than `u32` half-edge indices can name.
-    pub(super) fn number(mesh: &Mesh, split: &SplitEdges) -> Result<Self, MeshError> {
+    /// There are more than `u32` half-edge indices can name, or the observer asked to stop.
+    pub(super) fn number(
+        mesh: &Mesh,
+        split: &SplitEdges,
+        watch: &mut Watch<'_>,
+    ) -> Result<Self, RefineError> {
         let topology = mesh.topology();
         let needed = split.triangle_count();
         if needed > MAX_FACES {
-            return Err(MeshError::TooMany { what: "faces", count: needed, limit: MAX_FACES });
+            return Err(MeshError::TooMany { what: "faces", count: needed, limit: MAX_FACES }.into());
         }
         let too_many = || MeshError::TooMany {
             what: "vertices",
@@ -142,35 +148,42 @@ impl SplitTopology {
             let h = HalfEdgeId(h as u32);
             split.contains(h) && topology.twin(h).is_none_or(|twin| h < twin)
         };
-        let before =
-            parallel::starts(topology.half_edge_count(), |h| u32::from(is_first(h))).ok_or_else(too_many)?;
+        let poll = &mut |_| watch.poll();
+        let before = parallel::starts(topology.half_edge_count(), poll, |h| u32::from(is_first(h)))?
+            .ok_or_else(too_many)?;
         let new_vertices = before.last().copied().unwrap_or(0) as usize;
         let old_vertices = mesh.vertex_count() as u32;
         old_vertices.checked_add(new_vertices as u32).ok_or_else(too_many)?;
 
         let mut edges = vec![HalfEdgeId(0); new_vertices];
-        parallel::for_each_run(&before, &mut edges, &mut vec![(); new_vertices], |h, slot, _| {
+        parallel::for_each_run(&before, &mut edges, &mut vec![(); new_vertices], poll, |h, slot, _| {
             if let [edge] = slot {
                 *edge = HalfEdgeId(h as u32);
             }
-        });
-        let vertex_on = parallel::map(topology.half_edge_count(), |h| {
+        })?;
+        let vertex_on = parallel::map_polled(topology.half_edge_count(), poll, |h| {
             let twin = topology.raw_twins()[h] as usize;
             old_vertices + before[h.min(twin)]
-        });
+        })?;
         drop(before);
-        let starts =
-            parallel::starts(mesh.face_count(), |face| 1 + split.count(face) as u32).ok_or_else(too_many)?;
+        let starts = parallel::starts(mesh.face_count(), poll, |face| 1 + split.count(face) as u32)?
+            .ok_or_else(too_many)?;
         Ok(Self { edges, vertex_on, starts })
     }
 
     /// The topology of the split mesh.
-    pub(super) fn connect(&self, mesh: &Mesh, split: &SplitEdges) -> Topology {
+    pub(super) fn connect(
+        &self,
+        mesh: &Mesh,
+        split: &SplitEdges,
+        watch: &mut Watch<'_>,
+    ) -> Result<Topology, Cancelled> {
         let topology = mesh.topology();
         let count = self.starts.last().copied().unwrap_or(0) as usize;
+        let poll = &mut |_| watch.poll();
         let mut triangles = vec![[0u32; 3]; count];
         let mut twins = vec![[0u32; 3]; count];
-        parallel::for_each_run(&self.starts, &mut triangles, &mut twins, |face, triangles, twins| {
+        parallel::for_each_run(&self.starts, &mut triangles, &mut twins, poll, |face, triangles, twins| {
             let pattern = split.pattern(face);
             let first = 3 * self.starts[face];
             let labels = self.labels(topology, face);
@@ -191,16 +204,16 @@ impl SplitTopology {
                 twins[mine_first] = first;
                 twins[mine_second] = second;
             }
-        });
+        })?;
         let old = topology.vertex_count();
-        let outgoing = parallel::map(old + self.edges.len(), |v| {
+        let outgoing = parallel::map_polled(old + self.edges.len(), poll, |v| {
             if v < old {
                 self.halves(split, topology.outgoing(VertexId(v as u32)))[0]
             } else {
                 self.halves(split, self.edges[v - old])[1]
             }
-        });
-        Topology::from_parts(triangles, twins.into_flattened(), outgoing)
+        })?;
+        Ok(Topology::from_parts(triangles, twins.into_flattened(), outgoing))
     }
 
     /// The half-edges of the split mesh along `h`: first and second half, or twice the same.

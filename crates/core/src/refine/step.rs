@@ -10,6 +10,7 @@ use crate::index::VertexId;
 use crate::masks::Masks;
 use crate::mesh::{Junctions, Mesh};
 use crate::parallel;
+use crate::progress::{Cancelled, Watch};
 use crate::scheme::Scheme;
 
 /// The mesh after one step. `moves` says which old vertices take their new position; `None` means all.
@@ -18,14 +19,15 @@ pub(super) fn advance(
     scheme: &dyn Scheme,
     mut split: SplitEdges,
     moves: Option<&[bool]>,
+    watch: &mut Watch<'_>,
 ) -> Result<Mesh, RefineError> {
-    let numbered = SplitTopology::number(mesh, &split)?;
-    let mut positions = new_positions(mesh, scheme, &numbered, moves);
+    let numbered = SplitTopology::number(mesh, &split, watch)?;
+    let mut positions = new_positions(mesh, scheme, &numbered, moves, watch)?;
     let vertices = vertex_groups(mesh, &split, &numbered);
     join_copies(&mut positions, &vertices);
     split.choose_diagonals(mesh, &numbered, &positions);
     let junctions = Junctions { vertices, edges: edge_groups(mesh, &split, &numbered) };
-    let topology = numbered.connect(mesh, &split);
+    let topology = numbered.connect(mesh, &split, watch)?;
     let tags = refined_tags(mesh, &split, &numbered, moves);
     Ok(Mesh::from_parts(topology, positions, tags, junctions))
 }
@@ -36,10 +38,11 @@ fn new_positions(
     scheme: &dyn Scheme,
     numbered: &SplitTopology,
     moves: Option<&[bool]>,
-) -> Vec<[f64; 3]> {
+    watch: &mut Watch<'_>,
+) -> Result<Vec<[f64; 3]>, Cancelled> {
     let masks = Masks::new(mesh, scheme);
     let old = mesh.vertex_count();
-    parallel::map(old + numbered.edges.len(), |v| {
+    parallel::map_polled(old + numbered.edges.len(), &mut |_| watch.poll(), |v| {
         if v >= old {
             masks.edge_point(numbered.edges[v - old]).to_array()
         } else if moves.is_none_or(|moves| moves[v]) {

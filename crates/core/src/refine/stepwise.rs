@@ -3,12 +3,13 @@
 use super::driver::Driver;
 use super::junctions::agree;
 use super::split::SplitEdges;
-use super::{Observer, RefineError, Refinement};
+use super::{RefineError, Refinement};
 use crate::criterion::Criterion;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::limit::LimitTable;
 use crate::mesh::Mesh;
 use crate::parallel;
+use crate::progress::{Observer, unobserved};
 use crate::scheme::Scheme;
 
 /// Which vertices take their new position in a step; the paper does not say.
@@ -24,9 +25,9 @@ pub enum SeamRule {
 }
 
 /// How to refine step by step.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct StepwiseOptions<'a> {
+pub struct StepwiseOptions {
     /// Greatest number of steps.
     pub levels: usize,
     /// Which vertices move.
@@ -35,17 +36,15 @@ pub struct StepwiseOptions<'a> {
     pub limit: bool,
     /// Stop before the step that would give more triangles.
     pub max_triangles: Option<usize>,
-    /// Called after each step.
-    pub observer: Option<Observer<'a>>,
 }
 
-impl Default for StepwiseOptions<'_> {
+impl Default for StepwiseOptions {
     fn default() -> Self {
-        Self { levels: 3, seam: SeamRule::All, limit: false, max_triangles: None, observer: None }
+        Self { levels: 3, seam: SeamRule::All, limit: false, max_triangles: None }
     }
 }
 
-impl<'a> StepwiseOptions<'a> {
+impl StepwiseOptions {
     /// Sets [`Self::levels`].
     pub fn levels(mut self, levels: usize) -> Self {
         self.levels = levels;
@@ -69,12 +68,6 @@ impl<'a> StepwiseOptions<'a> {
         self.max_triangles = max_triangles;
         self
     }
-
-    /// Sets [`Self::observer`].
-    pub fn observer(mut self, observer: Observer<'a>) -> Self {
-        self.observer = Some(observer);
-        self
-    }
 }
 
 /// Refines `mesh` where `criterion` asks for it.
@@ -89,18 +82,27 @@ pub fn stepwise(
     mesh: &Mesh,
     scheme: &dyn Scheme,
     criterion: &dyn Criterion,
-    options: &StepwiseOptions<'_>,
+    options: &StepwiseOptions,
+) -> Result<Refinement, RefineError> {
+    stepwise_observed(mesh, scheme, criterion, options, &mut unobserved)
+}
+
+/// [`stepwise`], telling an observer how it goes on.
+///
+/// # Errors
+/// See [`RefineError`].
+pub fn stepwise_observed(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    criterion: &dyn Criterion,
+    options: &StepwiseOptions,
+    observer: &mut Observer<'_>,
 ) -> Result<Refinement, RefineError> {
     let limits = LimitTable::new(scheme);
     let flags = |mesh: &Mesh| Ok(criterion.divisible(mesh, &limits)?);
-    let driver = Driver {
-        scheme,
-        levels: options.levels,
-        limit: options.limit,
-        max_triangles: options.max_triangles,
-        observer: options.observer,
-    };
-    driver.run(mesh, flags, |mesh, split| moving_vertices(mesh, split, options.seam))
+    let driver =
+        Driver { scheme, levels: options.levels, limit: options.limit, max_triangles: options.max_triangles };
+    driver.run(mesh, observer, flags, |mesh, split| moving_vertices(mesh, split, options.seam))
 }
 
 /// Which vertices take their new position under a seam rule; `None` for all.

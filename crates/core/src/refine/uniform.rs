@@ -1,31 +1,30 @@
 //! Uniform refinement: every triangle is split in four at each level.
 
 use super::driver::Driver;
-use super::{Observer, RefineError, Refinement};
+use super::{RefineError, Refinement};
 use crate::mesh::Mesh;
+use crate::progress::{Observer, unobserved};
 use crate::scheme::Scheme;
 
 /// How to refine uniformly.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct UniformOptions<'a> {
+pub struct UniformOptions {
     /// Number of levels.
     pub levels: usize,
     /// Move the vertices to the limit surface at the end.
     pub limit: bool,
     /// Stop before the level that would have more triangles.
     pub max_triangles: Option<usize>,
-    /// Called after each level.
-    pub observer: Option<Observer<'a>>,
 }
 
-impl Default for UniformOptions<'_> {
+impl Default for UniformOptions {
     fn default() -> Self {
-        Self { levels: 3, limit: false, max_triangles: None, observer: None }
+        Self { levels: 3, limit: false, max_triangles: None }
     }
 }
 
-impl<'a> UniformOptions<'a> {
+impl UniformOptions {
     /// Sets [`Self::levels`].
     pub fn levels(mut self, levels: usize) -> Self {
         self.levels = levels;
@@ -43,12 +42,6 @@ impl<'a> UniformOptions<'a> {
         self.max_triangles = max_triangles;
         self
     }
-
-    /// Sets [`Self::observer`].
-    pub fn observer(mut self, observer: Observer<'a>) -> Self {
-        self.observer = Some(observer);
-        self
-    }
 }
 
 /// Refines `mesh` uniformly.
@@ -58,15 +51,23 @@ impl<'a> UniformOptions<'a> {
 pub fn uniform(
     mesh: &Mesh,
     scheme: &dyn Scheme,
-    options: &UniformOptions<'_>,
+    options: &UniformOptions,
+) -> Result<Refinement, RefineError> {
+    uniform_observed(mesh, scheme, options, &mut unobserved)
+}
+
+/// [`uniform`], telling an observer how it goes on.
+///
+/// # Errors
+/// See [`RefineError`].
+pub fn uniform_observed(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    options: &UniformOptions,
+    observer: &mut Observer<'_>,
 ) -> Result<Refinement, RefineError> {
     let all = |mesh: &Mesh| Ok(vec![true; mesh.face_count()]);
-    let driver = Driver {
-        scheme,
-        levels: options.levels,
-        limit: options.limit,
-        max_triangles: options.max_triangles,
-        observer: options.observer,
-    };
-    driver.run(mesh, all, |_, _| None)
+    let driver =
+        Driver { scheme, levels: options.levels, limit: options.limit, max_triangles: options.max_triangles };
+    driver.run(mesh, observer, all, |_, _| None)
 }

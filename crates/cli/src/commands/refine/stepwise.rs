@@ -5,7 +5,10 @@ use std::ops::ControlFlow;
 use limitmesh::Mesh;
 use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal};
 use limitmesh::limit::LimitTable;
-use limitmesh::refine::{Refinement, StepReport, StepwiseOptions, Stop, UniformOptions, stepwise, uniform};
+use limitmesh::refine::{
+    Refinement, StepReport, StepwiseOptions, Stop, UniformOptions, stepwise_observed, uniform,
+    uniform_observed,
+};
 use limitmesh_io::Format;
 
 use super::{Refined, view, view_report};
@@ -61,15 +64,12 @@ pub(super) fn run(
 /// Runs the method asked for.
 fn refine(control: &Mesh, arguments: &RefineArguments, progress: &Progress) -> anyhow::Result<Refinement> {
     let levels = levels(arguments);
-    let stage = |done: usize, faces: usize| {
-        if done < levels {
-            let faces = counted(faces, "triangle", "triangles");
-            progress.stage(format!("refining: step {} of at most {levels}, from {faces}", done + 1));
+    let mut shown = None;
+    let mut observer = |at: &limitmesh::progress::Progress| {
+        if at.done < levels && shown.replace(at.done) != Some(at.done) {
+            let faces = counted(at.triangles, "triangle", "triangles");
+            progress.stage(format!("{}: step {} of at most {levels}, from {faces}", at.stage, at.done + 1));
         }
-    };
-    stage(0, control.face_count());
-    let observer = |report: &StepReport| {
-        stage(report.step, report.faces_after);
         ControlFlow::Continue(())
     };
     let scheme = arguments.scheme.scheme();
@@ -80,16 +80,15 @@ fn refine(control: &Mesh, arguments: &RefineArguments, progress: &Progress) -> a
         (Method::LimitNormal, Some(view)) => Box::new(LimitNormal::new(angle).view(view)),
         (Method::LimitNormal, None) => Box::new(LimitNormal::new(angle)),
         (Method::Uniform | Method::Exact, _) => {
-            let options = UniformOptions::default().levels(levels).max_triangles(cap).observer(&observer);
-            return Ok(uniform(control, scheme, &options)?);
+            let options = UniformOptions::default().levels(levels).max_triangles(cap);
+            return Ok(uniform_observed(control, scheme, &options, &mut observer)?);
         }
     };
     let options = StepwiseOptions::default()
         .levels(levels)
         .seam(arguments.seam.unwrap_or_default().rule())
-        .max_triangles(cap)
-        .observer(&observer);
-    Ok(stepwise(control, scheme, criterion.as_ref(), &options)?)
+        .max_triangles(cap);
+    Ok(stepwise_observed(control, scheme, criterion.as_ref(), &options, &mut observer)?)
 }
 
 /// Takes limit normals where the output or the picture shows them, then moves the vertices to the limit if asked.

@@ -25,7 +25,7 @@ impl Growth<'_> {
         let count = self.forest.vertex_count();
         let leaves = &emission.leaves.order;
         let evaluation = self.evaluation(0.0);
-        let bulges = parallel::blocks(leaves.len(), BLOCK, |block| {
+        let bulges = parallel::pieces_of(leaves.len(), BLOCK, |block| {
             let mut found = Vec::new();
             leaves[block].iter().for_each(|&leaf| self.bulges(&evaluation, leaf, &mut found));
             found

@@ -80,7 +80,7 @@ pub(super) struct Evaluation<'a> {
 impl Evaluation<'_> {
     /// Evaluates all wanted leaves below the given control faces, in their order.
     pub(super) fn run(&self, roots: &[u32]) -> Vec<Found> {
-        parallel::blocks(roots.len(), BLOCK, |block| {
+        parallel::pieces_of(roots.len(), BLOCK, |block| {
             let mut found = Found::default();
             for &root in &roots[block] {
                 let patch = root_patch(self.control, self.sharpness, FaceId(root), self.rules);

@@ -10,6 +10,7 @@ use crate::certificate::Deviation;
 use crate::limit::{LimitTable, SidedNormals};
 use crate::mesh::{Mesh, Sharpness};
 use crate::patch::{LimitPoint, Rules};
+use crate::progress::Cancelled;
 use crate::refine::RefineError;
 use crate::refine::junctions::join_copies;
 use crate::scheme::Scheme;
@@ -294,9 +295,7 @@ impl<'a> Growth<'a> {
         self.round += 1;
         let progress = ExactProgress { round: self.round, triangles: self.forest.triangle_count(), worst };
         match self.options.observer {
-            Some(observer) if observer(&progress).is_break() => {
-                Err(RefineError::Cancelled { steps: self.round })
-            }
+            Some(observer) if observer(&progress).is_break() => Err(Cancelled.into()),
             _ => Ok(()),
         }
     }

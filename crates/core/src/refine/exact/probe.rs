@@ -82,7 +82,7 @@ impl Growth<'_> {
         // Estimates need not be met by anything.
         let telling = if self.rules.is_certified() { TELLING } else { 0.0 };
         let enough = telling * leaves.iter().map(|&leaf| least(leaf)).fold(0.0, f64::max);
-        let found = parallel::blocks(leaves.len(), BLOCK, |block| {
+        let found = parallel::pieces_of(leaves.len(), BLOCK, |block| {
             let telling = |&leaf: &u32| self.deviations[leaf as usize].own > enough;
             let leaves = leaves[block].iter().copied().filter(telling);
             leaves.map(|leaf| (self.settled(leaf), leaf)).collect::<Vec<_>>()

@@ -37,7 +37,7 @@ impl Growth<'_> {
         }
         let leaves: Vec<u32> =
             (0..nodes as u32).filter(|&node| changed[node as usize]).filter(is_leaf).collect();
-        let failing = parallel::blocks(leaves.len(), BLOCK, |block| {
+        let failing = parallel::pieces_of(leaves.len(), BLOCK, |block| {
             let values = leaves[block].iter().map(|&leaf| {
                 let scale = self.scales[leaf as usize];
                 // What holds without neighbours holds with them.

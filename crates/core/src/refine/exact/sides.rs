@@ -39,7 +39,7 @@ impl Growth<'_> {
         }
         let walk = Walk { growth: self, emission, is_sharp, above };
         let roots = self.forest.roots();
-        let found = parallel::blocks(roots, BLOCK, |block| {
+        let found = parallel::pieces_of(roots, BLOCK, |block| {
             let mut found = Vec::new();
             for root in block.filter(|&root| walk.above[root]) {
                 let face = FaceId(root as u32);

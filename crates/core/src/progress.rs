@@ -1,0 +1,132 @@
+//! Progress and cancellation, in one dialect for every long function of the library.
+//!
+//! A long function `f` has a twin `f_observed` with one more argument, last: an [`Observer`], called on the calling
+//! thread, also while other threads work, and told what is being done, how much of it is done and how many triangles
+//! there are by then. It is called often: after each block of work, mostly every few milliseconds and at least every
+//! 100, and costs little if it does little. Whoever draws something limits how often that is. When it breaks, the
+//! function ends as soon as the blocks in hand are finished, with an error that says [`Cancelled`]; until then it has
+//! no influence on any result.
+//!
+//! ```
+//! use core::ops::ControlFlow;
+//! use limitmesh::progress::Progress;
+//! use limitmesh::refine::{RefineError, UniformOptions, uniform_observed};
+//! use limitmesh::{Mesh, scheme::Loop};
+//!
+//! let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+//! let mesh = Mesh::from_triangles(corners, vec![[0, 1, 2]])?;
+//! let mut observer = |progress: &Progress| {
+//!     println!("{}: {} triangles", progress.stage, progress.triangles);
+//!     if progress.triangles > 1_000 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+//! };
+//! let options = UniformOptions::default().levels(10);
+//! let result = uniform_observed(&mesh, &Loop, &options, &mut observer);
+//! assert!(matches!(result, Err(RefineError::Cancelled(_))));
+//! # Ok::<(), limitmesh::mesh::MeshError>(())
+//! ```
+
+use core::fmt;
+use core::ops::ControlFlow;
+
+/// How far a long function has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Progress {
+    /// What is being done.
+    pub stage: Stage,
+    /// Units of this stage that are done; see [`Stage`] for what they are.
+    pub done: usize,
+    /// Units that there will be, where that is known.
+    pub total: Option<usize>,
+    /// Triangles of the mesh that is being made, or of the surface that is being looked at.
+    pub triangles: usize,
+}
+
+/// What a long function is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Stage {
+    /// Faces are being divided; the units are levels or steps.
+    Refining,
+    /// Vertices are being moved to the limit surface; the units are vertices.
+    Limits,
+    /// A mesh is being put together; the units are its triangles.
+    Assembling,
+    /// Edges are being collapsed; the units are triangles gone.
+    Simplifying,
+    /// A hierarchy for closest points is being built; the units are triangles.
+    Indexing,
+    /// Distances are being measured at points; the units are points.
+    Sampling,
+    /// A distance is being bounded from above; the units are triangles, and then pieces of them, whose number nobody
+    /// knows before.
+    Bounding,
+    /// Edges are being matched and counted; the units are triangles.
+    Matching,
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Refining => "refining",
+            Self::Limits => "moving vertices to the limit surface",
+            Self::Assembling => "putting the mesh together",
+            Self::Simplifying => "simplifying",
+            Self::Indexing => "indexing triangles",
+            Self::Sampling => "measuring at samples",
+            Self::Bounding => "bounding the distance",
+            Self::Matching => "matching edges",
+        })
+    }
+}
+
+/// What is told of progress, and says whether to go on.
+pub type Observer<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + 'a;
+
+/// The observer asked to stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled by the observer")]
+pub struct Cancelled;
+
+/// The observer of those who do not watch.
+pub(crate) fn unobserved(_: &Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// An observer and what it is told: what long functions pass on to the loops that they consist of.
+pub(crate) struct Watch<'a> {
+    observer: &'a mut Observer<'a>,
+    progress: Progress,
+}
+
+impl<'a> Watch<'a> {
+    /// Begins with `stage`, of which nothing is done.
+    pub(crate) fn new(observer: &'a mut Observer<'a>, stage: Stage) -> Self {
+        Self { observer, progress: Progress { stage, done: 0, total: None, triangles: 0 } }
+    }
+
+    /// Another stage begins; the triangles stay.
+    pub(crate) fn stage(&mut self, stage: Stage, total: Option<usize>) -> Result<(), Cancelled> {
+        self.progress = Progress { stage, done: 0, total, ..self.progress };
+        self.poll()
+    }
+
+    /// How many triangles there are by now; told with the next call.
+    pub(crate) fn triangles(&mut self, triangles: usize) {
+        self.progress.triangles = triangles;
+    }
+
+    /// So many units of the stage are done.
+    pub(crate) fn done(&mut self, done: usize) -> Result<(), Cancelled> {
+        self.progress.done = done;
+        self.poll()
+    }
+
+    /// Calls the observer with what it was told before.
+    pub(crate) fn poll(&mut self) -> Result<(), Cancelled> {
+        match (self.observer)(&self.progress) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Cancelled),
+        }
+    }
+}
