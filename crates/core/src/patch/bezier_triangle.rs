@@ -17,7 +17,7 @@ pub(crate) const EDGES: [[usize; 5]; 3] = [[0, 1, 2, 3, 4], [4, 8, 11, 13, 14], 
 pub(crate) const INNER: [usize; 3] = [6, 7, 10];
 
 /// The net seen with corner `r` as the first.
-const TURNED: [[usize; 15]; 3] = [
+pub(super) const TURNED: [[usize; 15]; 3] = [
     [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14],
     [4, 8, 11, 13, 14, 3, 7, 10, 12, 2, 6, 9, 1, 5, 0],
     [14, 12, 9, 5, 0, 13, 10, 6, 1, 11, 7, 2, 8, 3, 4],

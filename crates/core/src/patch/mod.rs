@@ -11,6 +11,9 @@ pub(crate) mod characteristic;
 pub(crate) mod extraordinary;
 mod from_mesh;
 pub(crate) mod mesh_patch;
+// Nobody evaluates by rows yet.
+#[allow(dead_code)]
+pub(crate) mod quartic;
 mod rules;
 mod sector;
 mod submesh;
