@@ -5,9 +5,9 @@ use std::path::Path;
 
 use anyhow::Result;
 use limitmesh::Mesh;
-use limitmesh::refine::optimize::{Features, OptimizeOptions, optimize};
 use limitmesh::refine::{ExactOptions, exact};
 use limitmesh::scheme::Loop;
+use limitmesh::simplify::{Features, SimplifyOptions, simplify};
 
 use super::cast::gather;
 use super::judge::{Judge, Reference};
@@ -68,8 +68,8 @@ pub(crate) fn against_optimum(folder: &Path) -> Result<()> {
 /// A mesh with at most so many triangles, collapsed from a finer exact one.
 pub(crate) fn optimized(control: &Mesh, triangles: usize) -> Result<Mesh> {
     let fine = exact(control, &Loop, &ExactOptions::default().triangles(FINER * triangles))?.mesh;
-    let options = OptimizeOptions::default().triangles(Some(triangles)).certify(false);
-    Ok(optimize(&fine, &Features::default(), &options)?.mesh)
+    let options = SimplifyOptions::default().triangles(Some(triangles)).certify(false);
+    Ok(simplify(&fine, &Features::default(), &options)?.mesh)
 }
 
 /// ∫√|K| dA by angle defects: that of a vertex is K times its share of the area, so that √|K| dA = √(|defect|·area).

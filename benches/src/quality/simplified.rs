@@ -4,9 +4,9 @@ use std::path::Path;
 
 use anyhow::Result;
 use limitmesh::measure::limit_reference;
-use limitmesh::refine::optimize::{Features, OptimizeOptions, optimize};
 use limitmesh::refine::{ExactOptions, exact};
 use limitmesh::scheme::Loop;
+use limitmesh::simplify::{Features, SimplifyOptions, simplify};
 
 use super::cast::{Model, gather};
 use super::judge::{Judge, Reference};
@@ -84,8 +84,8 @@ fn compare(
         let plain = plain?.mesh;
         let (optimizing, optimized) = one_thread(|| {
             let finer = exact(control, &Loop, &ExactOptions::default().triangles(FINER * triangles))?;
-            let options = OptimizeOptions::default().triangles(Some(triangles)).certify(false);
-            optimize(&finer.mesh, &Features::default(), &options)
+            let options = SimplifyOptions::default().triangles(Some(triangles)).certify(false);
+            simplify(&finer.mesh, &Features::default(), &options)
         })?;
         let optimized = optimized?.mesh;
         let ours = [(judge.distance(&plain)?, time.all), (judge.distance(&optimized)?, optimizing.all)];

@@ -37,7 +37,8 @@
 //! | [`scheme`] | subdivision schemes as masks on ring shapes |
 //! | [`limit`] | limit positions and normals of any scheme from its masks |
 //! | [`criterion`] | which faces are to be divided |
-//! | [`refine`] | exact refinement to a goal, edge collapse within a distance, uniform and the paper's stepwise refinement |
+//! | [`refine`] | exact refinement to a goal, uniform and the paper's stepwise refinement |
+//! | [`mod@simplify`] | edge collapse within a proven distance |
 //! | [`progress`] | what long functions tell while they work, and how they are cancelled |
 //! | [`measure`] | distances, sampled and certified, watertightness, triangle quality |
 //! | [`models`] | built-in control meshes |
@@ -57,6 +58,7 @@ pub mod progress;
 pub mod refine;
 pub mod ring;
 pub mod scheme;
+pub mod simplify;
 mod vector;
 
 pub use index::{FaceId, HalfEdgeId, VertexId};

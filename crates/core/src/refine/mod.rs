@@ -5,7 +5,7 @@
 mod driver;
 mod exact;
 mod junctions;
-pub mod optimize;
+mod simplified;
 mod split;
 mod step;
 mod stepwise;
@@ -26,6 +26,7 @@ use crate::limit::LimitError;
 use crate::measure::MeasureError;
 use crate::mesh::{Mesh, MeshError};
 use crate::progress::Cancelled;
+use crate::simplify::SimplifyError;
 
 /// Why a refinement gave no mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -43,6 +44,9 @@ pub enum RefineError {
     /// A distance could not be measured.
     #[error(transparent)]
     Measure(#[from] MeasureError),
+    /// Edges could not be collapsed.
+    #[error(transparent)]
+    Simplify(#[from] SimplifyError),
     /// The observer asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

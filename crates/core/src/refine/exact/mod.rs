@@ -18,7 +18,6 @@ mod evaluate;
 mod forest;
 mod grow;
 mod leaf;
-mod optimized;
 mod options;
 mod probe;
 mod scale;
@@ -50,7 +49,7 @@ pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions<'_>) ->
         return scale::result(scaled, factor);
     }
     if options.optimize {
-        return optimized::optimized(control, scheme, options);
+        return super::simplified::simplified(control, scheme, options);
     }
     let rules = Rules::of(scheme);
     let grown = |levels: usize| {

@@ -31,7 +31,7 @@ pub struct ExactOptions<'a> {
     /// Moves vertices off the limit surface by about half the local error, so that the error lies on both sides and
     /// fewer triangles are needed. Default: no.
     pub balance: bool,
-    /// Collapses edges of a finer mesh as long as the goals allow ([`crate::refine::optimize`]): slower, and fewer triangles for
+    /// Collapses edges of a finer mesh as long as the goals allow ([`mod@crate::simplify`]): slower, and fewer triangles for
     /// the same distance. For a tolerance, a number of triangles, or both; not with [`Self::balance`]. Default: no.
     pub optimize: bool,
     /// Levels at most below the control faces. Default: 24.

@@ -3,7 +3,7 @@
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, MeshError, NONE};
 
-use super::surface::Surface;
+use super::editable_mesh::EditableMesh;
 
 /// Edges that stay edges and vertices that stay, beside boundaries and the mesh's own tags, which always stay.
 ///
@@ -28,7 +28,11 @@ pub(super) enum Kind {
 }
 
 /// Marks the edges in `surface` and tells the kind of each vertex of `fine`.
-pub(super) fn kinds(fine: &Mesh, features: &Features, surface: &mut Surface) -> Result<Vec<Kind>, MeshError> {
+pub(super) fn kinds(
+    fine: &Mesh,
+    features: &Features,
+    surface: &mut EditableMesh,
+) -> Result<Vec<Kind>, MeshError> {
     let topology = fine.topology();
     let broken = |place: String, what| MeshError::Broken { place, what };
     let exists = |v: u32| (v as usize) < topology.vertex_count();
@@ -66,7 +70,7 @@ pub(super) fn kinds(fine: &Mesh, features: &Features, surface: &mut Surface) -> 
 }
 
 /// The kind of a vertex by its sharp edges alone.
-fn chain_at(vertex: u32, surface: &Surface) -> Kind {
+fn chain_at(vertex: u32, surface: &EditableMesh) -> Kind {
     let mut ends = [NONE; 2];
     let mut count = 0;
     let mut meet = |v: u32| {
@@ -79,7 +83,7 @@ fn chain_at(vertex: u32, surface: &Surface) -> Kind {
         if surface.is_sharp(h) {
             meet(surface.target(h));
         }
-        let before = super::surface::previous(h);
+        let before = super::editable_mesh::previous(h);
         if surface.twin(before) == NONE {
             meet(surface.origin(before));
         }
@@ -93,7 +97,7 @@ fn chain_at(vertex: u32, surface: &Surface) -> Kind {
 
 /// The vertex that is still there at which a walk from `start` to its neighbour on a chain, `step`, and on along the chain
 /// ends.
-pub(super) fn end_of_chain(start: u32, step: u32, surface: &Surface, kinds: &[Kind]) -> u32 {
+pub(super) fn end_of_chain(start: u32, step: u32, surface: &EditableMesh, kinds: &[Kind]) -> u32 {
     walk_chain(start, step, surface, kinds, |_| {})
 }
 
@@ -101,7 +105,7 @@ pub(super) fn end_of_chain(start: u32, step: u32, surface: &Surface, kinds: &[Ki
 pub(super) fn walk_chain(
     start: u32,
     step: u32,
-    surface: &Surface,
+    surface: &EditableMesh,
     kinds: &[Kind],
     mut gone: impl FnMut(u32),
 ) -> u32 {

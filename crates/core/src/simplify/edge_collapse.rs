@@ -5,12 +5,12 @@
 //! rises while the stars grow, they are left alone until the threshold has reached it.
 
 use super::Goals;
-use super::features::Kind;
-use super::flip::{Flipper, edges};
-use super::ground::Ground;
-use super::samples::Samples;
-use super::star::{Star, Way};
-use super::surface::Surface;
+use super::edge_flip::{Flipper, edges};
+use super::editable_mesh::EditableMesh;
+use super::fine_samples::FineSamples;
+use super::kept_features::Kind;
+use super::reference::Reference;
+use super::vertex_star::{VertexStar, Way};
 
 /// Growth of the threshold far from the goal. In a round of that growth the order hardly matters yet: what it costs is
 /// made good for later, and larger steps save little more time.
@@ -30,10 +30,10 @@ const MOST_EDGES: usize = 64;
 
 /// The mesh on its way from fine to coarse.
 pub(super) struct Collapser<'a> {
-    pub(super) surface: Surface,
-    pub(super) samples: Samples,
-    pub(super) ground: Ground<'a>,
-    star: Star,
+    pub(super) surface: EditableMesh,
+    pub(super) samples: FineSamples,
+    pub(super) ground: Reference<'a>,
+    star: VertexStar,
     /// For each vertex what its best collapse would cost, or less; infinite if it has none.
     costs: Vec<f64>,
     /// Greatest error that a collapse has left so far.
@@ -46,19 +46,19 @@ pub(super) struct Collapser<'a> {
 /// A mesh on its way, to come back to.
 #[derive(Clone)]
 pub(super) struct Snapshot {
-    surface: Surface,
-    samples: Samples,
+    surface: EditableMesh,
+    samples: FineSamples,
     costs: Vec<f64>,
 }
 
 impl<'a> Collapser<'a> {
-    pub(super) fn new(surface: Surface, samples: Samples, ground: Ground<'a>, flat: f64) -> Self {
+    pub(super) fn new(surface: EditableMesh, samples: FineSamples, ground: Reference<'a>, flat: f64) -> Self {
         let costs = vec![0.0; ground.kinds.len()];
         Self {
             surface,
             samples,
             ground,
-            star: Star::default(),
+            star: VertexStar::default(),
             costs,
             reached: 0.0,
             flat,

@@ -3,13 +3,11 @@
 //! A mesh finer than asked for, certified against the limit surface, is collapsed with proof of how far the result is from
 //! it; both distances add up.
 
-use super::exact;
-use super::options::{ErrorBounds, Exact, ExactOptions, ExactStop};
+use super::{ErrorBounds, Exact, ExactOptions, ExactStop, RefineError, exact};
 use crate::measure::distances_to;
 use crate::mesh::{Mesh, MeshError};
-use crate::refine::RefineError;
-use crate::refine::optimize::{Features, OptimizeOptions, optimize};
 use crate::scheme::Scheme;
+use crate::simplify::{Features, SimplifyOptions, simplify};
 
 /// The part of the tolerance that the fine mesh takes: less leaves more to the collapse and costs more triangles to
 /// collapse.
@@ -22,7 +20,7 @@ const FINE_TIMES: usize = 16;
 const FEW: usize = 6;
 
 /// Refines and collapses.
-pub(super) fn optimized(
+pub(super) fn simplified(
     control: &Mesh,
     scheme: &dyn Scheme,
     options: &ExactOptions<'_>,
@@ -40,8 +38,8 @@ pub(super) fn optimized(
         // A cap ended the refinement before there was anything to collapse.
         return Ok(fine);
     }
-    let goals = OptimizeOptions::default().tolerance(allowance).triangles(options.triangles);
-    let collapsed = optimize(&fine.mesh, &Features::default(), &goals)?;
+    let goals = SimplifyOptions::default().tolerance(allowance).triangles(options.triangles);
+    let collapsed = simplify(&fine.mesh, &Features::default(), &goals)?;
     // Where the proof failed again and again little is collapsed; then refinement alone needs fewer triangles.
     if options.tolerance.is_some() && collapsed.mesh.face_count() > fine.mesh.face_count() / FEW {
         let plain = exact(control, scheme, &ExactOptions { optimize: false, ..options.clone() })?;

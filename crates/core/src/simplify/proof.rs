@@ -6,7 +6,7 @@
 //!
 //! [`certified_hausdorff`]: crate::measure::certified_hausdorff
 
-use super::collapse::Collapser;
+use super::edge_collapse::Collapser;
 use crate::measure::{Bvh, CertifiedHausdorff, CertifiedOptions, MeasureError, certified_hausdorff_between};
 use crate::mesh::{Mesh, Triangles};
 use crate::parallel;

@@ -1,8 +1,8 @@
 //! What does not change while edges collapse: what kind each fine vertex is, the surface's normals there, and the
 //! conditions on a triangle that follow from them.
 
-use super::features::Kind;
-use super::plane::Plane;
+use super::kept_features::Kind;
+use super::triangle_plane::Plane;
 use crate::index::VertexId;
 use crate::mesh::Mesh;
 use crate::vector::{DVec3, vector};
@@ -20,7 +20,7 @@ const LEAST_SHAPE: f64 = 0.01;
 pub(super) const LEAST_AGREEMENT: f64 = 0.95;
 
 /// Kinds and normals of the fine mesh's vertices.
-pub(super) struct Ground<'a> {
+pub(super) struct Reference<'a> {
     pub(super) kinds: &'a [Kind],
     /// Unit normals; not used at creases and boundaries, where one does not tell.
     pub(super) normals: &'a [DVec3],
@@ -41,14 +41,14 @@ impl Worst {
     pub(super) const NONE: Self = Self { shape: 1.0, turn: 1.0 };
 
     /// Takes account of a triangle, `None` where it spans no plane.
-    pub(super) fn add(&mut self, plane: Option<&Plane>, corners: [u32; 3], ground: &Ground<'_>) {
+    pub(super) fn add(&mut self, plane: Option<&Plane>, corners: [u32; 3], ground: &Reference<'_>) {
         let (shape, turn) = plane.map_or((0.0, -1.0), |plane| (plane.shape, ground.turn(plane, corners)));
         self.shape = self.shape.min(shape);
         self.turn = self.turn.min(turn);
     }
 }
 
-impl Ground<'_> {
+impl Reference<'_> {
     #[inline]
     pub(super) fn kind(&self, vertex: u32) -> Kind {
         self.kinds[vertex as usize]

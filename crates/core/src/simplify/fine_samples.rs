@@ -8,7 +8,7 @@ use crate::vector::DVec3;
 
 /// Sample positions and which face cares for which.
 #[derive(Clone)]
-pub(super) struct Samples {
+pub(super) struct FineSamples {
     positions: Vec<DVec3>,
     following: Vec<u32>,
     first: Vec<u32>,
@@ -18,7 +18,7 @@ pub(super) struct Samples {
     reserves: Vec<f64>,
 }
 
-impl Samples {
+impl FineSamples {
     /// No face has samples yet.
     pub(super) fn new(positions: Vec<DVec3>, faces: usize) -> Self {
         Self {

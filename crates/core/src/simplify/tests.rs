@@ -10,18 +10,18 @@ fn model(name: &str) -> Mesh {
     Mesh::from_soup(&models::find(name).unwrap().soup(), &BuildOptions::default()).unwrap().0
 }
 
-fn run(fine: &Mesh, options: &OptimizeOptions) -> Optimized {
-    let coarse = optimize(fine, &Features::default(), options).unwrap();
+fn run(fine: &Mesh, options: &SimplifyOptions) -> Simplified {
+    let coarse = simplify(fine, &Features::default(), options).unwrap();
     check_invariants(fine, &coarse);
     coarse
 }
 
-fn within(tolerance: f64) -> OptimizeOptions {
-    OptimizeOptions::default().tolerance(Some(tolerance))
+fn within(tolerance: f64) -> SimplifyOptions {
+    SimplifyOptions::default().tolerance(Some(tolerance))
 }
 
 /// What holds for any mesh and any goal.
-fn check_invariants(fine: &Mesh, coarse: &Optimized) {
+fn check_invariants(fine: &Mesh, coarse: &Simplified) {
     let mesh = &coarse.mesh;
     mesh.validate().unwrap();
     assert_eq!(mesh.topology().euler_characteristic(), fine.topology().euler_characteristic());
@@ -98,7 +98,7 @@ fn a_flat_square_keeps_its_corners_alone() {
     let corners = [0, 20, 420, 440];
     let fine = square(20, |_, _| 0.0);
     let features = Features { vertices: corners.to_vec(), ..Features::default() };
-    let coarse = optimize(&fine, &features, &within(1e-9)).unwrap();
+    let coarse = simplify(&fine, &features, &within(1e-9)).unwrap();
     check_invariants(&fine, &coarse);
     assert_eq!((coarse.vertices, coarse.mesh.face_count()), (corners.to_vec(), 2));
     assert!(coarse.estimate < 1e-15);
@@ -168,7 +168,7 @@ fn a_sphere_stays_within_the_tolerance_and_close_to_the_optimum() {
 fn the_number_of_triangles_is_kept() {
     let fine = limit_reference(&model("bumpy"), &Loop, 3).unwrap();
     for triangles in [4000, 1001, 100] {
-        let coarse = run(&fine, &OptimizeOptions::default().triangles(Some(triangles)).certify(false));
+        let coarse = run(&fine, &SimplifyOptions::default().triangles(Some(triangles)).certify(false));
         assert!((triangles - 1..=triangles).contains(&coarse.mesh.face_count()));
     }
     // Both goals: the first one reached stops it.
@@ -196,7 +196,7 @@ fn both_directions_keep_the_tolerance_on_the_models() {
 fn triangles_do_not_fold_over() {
     for name in ["bunny", "radish"] {
         let fine = limit_reference(&model(name), &Loop, 2).unwrap();
-        let coarse = run(&fine, &OptimizeOptions::default().triangles(Some(2000)));
+        let coarse = run(&fine, &SimplifyOptions::default().triangles(Some(2000)));
         let fine_surface = Bvh::new(fine.as_triangles()).unwrap();
         for face in 0..coarse.mesh.face_count() {
             let [a, b, c] = coarse.mesh.as_triangles().corners(face).map(vector);
@@ -212,18 +212,18 @@ fn triangles_do_not_fold_over() {
 fn options_and_features_out_of_range_are_refused() {
     let mesh = model("tetrahedron");
     for tolerance in [-1.0, f64::NAN, f64::INFINITY] {
-        let error = optimize(&mesh, &Features::default(), &within(tolerance)).unwrap_err();
-        assert!(matches!(error, RefineError::Mesh(MeshError::BadOption { name: "tolerance", .. })));
+        let error = simplify(&mesh, &Features::default(), &within(tolerance)).unwrap_err();
+        assert!(matches!(error, SimplifyError::Mesh(MeshError::BadOption { name: "tolerance", .. })));
     }
-    let none = OptimizeOptions::default().triangles(Some(0));
-    let error = optimize(&mesh, &Features::default(), &none).unwrap_err();
-    assert!(matches!(error, RefineError::Mesh(MeshError::BadOption { name: "triangles", .. })));
+    let none = SimplifyOptions::default().triangles(Some(0));
+    let error = simplify(&mesh, &Features::default(), &none).unwrap_err();
+    assert!(matches!(error, SimplifyError::Mesh(MeshError::BadOption { name: "triangles", .. })));
     for features in [
         Features { vertices: vec![4], ..Features::default() },
         Features { edges: vec![[0, 4]], ..Features::default() },
         Features { edges: vec![[1, 1]], ..Features::default() },
     ] {
-        assert!(optimize(&mesh, &features, &within(0.1)).is_err());
+        assert!(simplify(&mesh, &features, &within(0.1)).is_err());
     }
 }
 
@@ -242,7 +242,7 @@ fn the_same_bytes_for_any_number_of_threads() {
     let fine = limit_reference(&model("cusp"), &Loop, 3).unwrap();
     let with_threads = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| run(&fine, &OptimizeOptions::default().triangles(Some(3000))))
+        pool.install(|| run(&fine, &SimplifyOptions::default().triangles(Some(3000))))
     };
     let (one, three) = (with_threads(1), with_threads(3));
     assert_eq!((&one.mesh, &one.vertices), (&three.mesh, &three.vertices));
@@ -277,7 +277,7 @@ fn creases_stay_where_they_are() {
         let p = vector(fine.positions()[ridge(j) as usize]);
         let nearest = edges
             .iter()
-            .map(|&[a, b]| plane::squared_to_segment(p, vector(a), vector(b)))
+            .map(|&[a, b]| triangle_plane::squared_to_segment(p, vector(a), vector(b)))
             .fold(f64::INFINITY, f64::min);
         assert!(nearest.sqrt() <= tolerance);
     }
@@ -307,14 +307,14 @@ proptest! {
 #[test]
 fn the_bound_holds_for_a_given_number_of_triangles() {
     let fine = limit_reference(&model("head"), &Loop, 3).unwrap();
-    let coarse = run(&fine, &OptimizeOptions::default().triangles(Some(1500)));
+    let coarse = run(&fine, &SimplifyOptions::default().triangles(Some(1500)));
     assert!((1499..=1500).contains(&coarse.mesh.face_count()));
     let options = SamplingOptions::default().samples(200_000);
     let distance = hausdorff(coarse.mesh.as_triangles(), fine.as_triangles(), &options).unwrap().symmetric();
     let bound = coarse.bound.unwrap();
     assert!(distance <= bound && bound < 1.1 * distance, "{distance} and {bound}");
     // Without proof it is made in one go, and never better.
-    let quick = run(&fine, &OptimizeOptions::default().triangles(Some(1500)).certify(false));
+    let quick = run(&fine, &SimplifyOptions::default().triangles(Some(1500)).certify(false));
     assert_eq!(quick.bound, None);
     let quick = hausdorff(quick.mesh.as_triangles(), fine.as_triangles(), &options).unwrap().symmetric();
     assert!(distance <= 1.01 * quick);

@@ -19,7 +19,7 @@ pub(super) fn previous(h: u32) -> u32 {
 
 /// Connectivity that shrinks.
 #[derive(Clone)]
-pub(super) struct Surface {
+pub(super) struct EditableMesh {
     origins: Vec<u32>,
     twins: Vec<u32>,
     outgoing: Vec<u32>,
@@ -29,7 +29,7 @@ pub(super) struct Surface {
     open: bool,
 }
 
-impl Surface {
+impl EditableMesh {
     /// A copy of `topology` in which no edge is sharp but the boundaries.
     pub(super) fn new(topology: &Topology) -> Self {
         let twins = topology.raw_twins().to_vec();

@@ -1,17 +1,17 @@
 //! A piece of the surface, by its samples, and triangles that would stand for it: how far they are from each other.
 //!
 //! The error is looked for in both directions: samples of the surface against the nearest triangle, and points of the
-//! triangles against the surface ([`super::probe`]).
+//! triangles against the surface ([`super::backward_error`]).
 
-use super::ground::Ground;
-use super::plane::{Plane, nearest};
-use super::probe::Probes;
-use super::samples::Samples;
+use super::backward_error::BackwardProbes;
+use super::fine_samples::FineSamples;
+use super::reference::Reference;
+use super::triangle_plane::{Plane, nearest};
 use crate::vector::DVec3;
 
-/// Samples, triangles, and the face that each triangle would be; filled anew for each piece.
+/// FineSamples, triangles, and the face that each triangle would be; filled anew for each piece.
 #[derive(Default)]
-pub(super) struct Region {
+pub(super) struct StarRegion {
     /// Fine vertices that the faces care for.
     samples: Vec<u32>,
     points: Vec<DVec3>,
@@ -19,11 +19,11 @@ pub(super) struct Region {
     rim: Vec<(u32, DVec3)>,
     planes: Vec<Plane>,
     faces: Vec<u32>,
-    probes: Probes,
+    probes: BackwardProbes,
     reserve: f64,
 }
 
-impl Region {
+impl StarRegion {
     /// Starts anew.
     pub(super) fn clear(&mut self) {
         self.samples.clear();
@@ -35,7 +35,7 @@ impl Region {
 
     /// Adds a sample.
     #[inline]
-    pub(super) fn add_sample(&mut self, sample: u32, samples: &Samples) {
+    pub(super) fn add_sample(&mut self, sample: u32, samples: &FineSamples) {
         self.samples.push(sample);
         self.points.push(samples.position(sample));
         self.reserve = self.reserve.max(samples.reserve_at(sample));
@@ -43,7 +43,7 @@ impl Region {
 
     /// Adds the samples of a face.
     #[inline]
-    pub(super) fn add_face(&mut self, face: u32, samples: &Samples) {
+    pub(super) fn add_face(&mut self, face: u32, samples: &FineSamples) {
         for sample in samples.of(face) {
             self.add_sample(sample, samples);
         }
@@ -51,7 +51,7 @@ impl Region {
 
     /// Adds a corner.
     #[inline]
-    pub(super) fn add_corner(&mut self, vertex: u32, samples: &Samples) {
+    pub(super) fn add_corner(&mut self, vertex: u32, samples: &FineSamples) {
         self.rim.push((vertex, samples.position(vertex)));
         self.reserve = self.reserve.max(samples.reserve_at(vertex));
     }
@@ -111,7 +111,7 @@ impl Region {
 
     /// The greatest distance from the surface of the triangles' centroids and of the edges given to [`Self::probe_edge`],
     /// which are forgotten.
-    pub(super) fn backward_error(&mut self, ground: &Ground<'_>) -> f64 {
+    pub(super) fn backward_error(&mut self, ground: &Reference<'_>) -> f64 {
         if self.probes.is_empty() {
             let samples = self.samples.iter().copied().zip(self.points.iter().copied());
             self.probes.surround(samples.chain(self.rim.iter().copied()));
@@ -123,7 +123,7 @@ impl Region {
     }
 
     /// Gives the samples to the triangles nearest to them, which are there now; `cleared` are the faces that had them.
-    pub(super) fn hand_over(&self, samples: &mut Samples, cleared: impl Iterator<Item = u32>) {
+    pub(super) fn hand_over(&self, samples: &mut FineSamples, cleared: impl Iterator<Item = u32>) {
         cleared.for_each(|face| samples.clear(face));
         for (&sample, &point) in self.samples.iter().zip(&self.points) {
             let (distance, i) = nearest(&self.planes, point);

@@ -6,46 +6,57 @@
 //!
 //! Each collapse is judged by the distance that it would leave between the coarse mesh and the surface, in both
 //! directions and locally: the vertices that are gone are samples of the surface, each cared for by the face nearest to
-//! it (`samples.rs`); points of the new faces are measured from the tangent planes of the samples around (`probe.rs`); and
-//! where samples are few, the normals at the ends of an edge tell how far the surface bulges over it (`ground.rs`). Where
+//! it (`fine_samples.rs`); points of the new faces are measured from the tangent planes of the samples around (`backward_error.rs`); and
+//! where samples are few, the normals at the ends of an edge tell how far the surface bulges over it (`reference.rs`). Where
 //! the surface is curved more in one direction than in the other, long triangles come out of this by themselves.
 //!
 //! How good the result can be is known: a smooth surface with Gaussian curvature K needs about
 //! 0.19245·∫√|K| dA / ε vertices for inscribed triangles within a distance ε where K > 0 (and fewer where K < 0).
 
-mod certify;
-mod collapse;
-mod features;
-mod flip;
-mod ground;
-mod output;
-mod plane;
-mod probe;
-mod region;
-mod samples;
-mod star;
-mod surface;
+mod backward_error;
+mod compaction;
+mod edge_collapse;
+mod edge_flip;
+mod editable_mesh;
+mod fine_samples;
+mod kept_features;
+mod proof;
+mod reference;
+mod star_region;
 #[cfg(test)]
 mod tests;
+mod triangle_plane;
+mod vertex_star;
 
-pub use features::Features;
+pub use kept_features::Features;
 
-use super::RefineError;
 use crate::index::VertexId;
-use crate::measure::Bvh;
+use crate::measure::{Bvh, MeasureError};
 use crate::mesh::{Mesh, MeshError};
 use crate::parallel;
 use crate::vector::{DVec3, unit_or_zero, vector};
-use certify::Certifier;
-use collapse::Collapser;
-use ground::{Ground, LEAST_AGREEMENT};
-use samples::Samples;
-use surface::Surface;
+use edge_collapse::Collapser;
+use editable_mesh::EditableMesh;
+use fine_samples::FineSamples;
+use proof::Certifier;
+use reference::{LEAST_AGREEMENT, Reference};
+
+/// Why a mesh could not be simplified.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimplifyError {
+    /// An option is out of range, or a feature is none of the mesh's.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// A distance could not be measured.
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
+}
 
 /// When to stop: at whichever goal is reached first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct OptimizeOptions {
+pub struct SimplifyOptions {
     /// The greatest distance between the result and the fine mesh, in the mesh's units, in either direction. Without this
     /// and without [`Self::triangles`] it is [`Self::DEFAULT_SHARE`] of the bounding box's diagonal.
     pub tolerance: Option<f64>,
@@ -56,13 +67,13 @@ pub struct OptimizeOptions {
     pub certify: bool,
 }
 
-impl Default for OptimizeOptions {
+impl Default for SimplifyOptions {
     fn default() -> Self {
         Self { tolerance: None, triangles: None, certify: true }
     }
 }
 
-impl OptimizeOptions {
+impl SimplifyOptions {
     /// The tolerance where none is given, as a share of the bounding box's diagonal: hardly to be seen on a model that
     /// fills the screen.
     pub const DEFAULT_SHARE: f64 = 0.001;
@@ -143,7 +154,7 @@ const ROUNDING: f64 = 1e-12;
 /// A mesh with fewer triangles.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Optimized {
+pub struct Simplified {
     /// The mesh, with the tags and junctions of the fine one.
     pub mesh: Mesh,
     /// For each of its vertices the fine mesh's vertex that it is.
@@ -162,15 +173,15 @@ pub struct Optimized {
 ///
 /// ```
 /// use limitmesh::measure::limit_reference;
-/// use limitmesh::refine::optimize::{Features, OptimizeOptions, optimize};
+/// use limitmesh::simplify::{Features, SimplifyOptions, simplify};
 /// use limitmesh::scheme::Loop;
 /// use limitmesh::{Mesh, models};
 ///
 /// let soup = models::find("torus").expect("a built-in model").soup();
 /// let (control, _) = Mesh::from_soup(&soup, &Default::default())?;
 /// let fine = limit_reference(&control, &Loop, 3)?;
-/// let options = OptimizeOptions::default().triangles(Some(2000));
-/// let coarse = optimize(&fine, &Features::default(), &options)?;
+/// let options = SimplifyOptions::default().triangles(Some(2000));
+/// let coarse = simplify(&fine, &Features::default(), &options)?;
 /// assert!(coarse.mesh.face_count() <= 2000);
 /// assert_eq!(coarse.mesh.positions()[7], fine.positions()[coarse.vertices[7] as usize]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -178,17 +189,17 @@ pub struct Optimized {
 ///
 /// # Errors
 /// Options out of range, features that the mesh does not have.
-pub fn optimize(
+pub fn simplify(
     fine: &Mesh,
     features: &Features,
-    options: &OptimizeOptions,
-) -> Result<Optimized, RefineError> {
+    options: &SimplifyOptions,
+) -> Result<Simplified, SimplifyError> {
     let goals = options.goals(fine)?;
-    let mut surface = Surface::new(fine.topology());
-    let kinds = features::kinds(fine, features, &mut surface)?;
+    let mut surface = EditableMesh::new(fine.topology());
+    let kinds = kept_features::kinds(fine, features, &mut surface)?;
     let (normals, agreed): (Vec<DVec3>, Vec<bool>) = normals(fine).into_iter().unzip();
-    let ground = Ground { kinds: &kinds, normals: &normals, agreed: &agreed, fine };
-    let samples = Samples::new(fine.positions().iter().copied().map(vector).collect(), fine.face_count());
+    let ground = Reference { kinds: &kinds, normals: &normals, agreed: &agreed, fine };
+    let samples = FineSamples::new(fine.positions().iter().copied().map(vector).collect(), fine.face_count());
     let flat = ROUNDING * fine.diagonal();
     let mut collapser = Collapser::new(surface, samples, ground, flat);
     if options.certify {
@@ -204,7 +215,7 @@ fn certified(
     collapser: &mut Collapser<'_>,
     certifier: &Certifier<'_>,
     goals: Goals,
-) -> Result<Optimized, RefineError> {
+) -> Result<Simplified, SimplifyError> {
     let tolerance = goals.tolerance;
     let mut target = Goals { tolerance: tolerance * (1.0 - HEADROOM), ..goals };
     let early =
@@ -212,7 +223,7 @@ fn certified(
     let mut reserves = vec![0.0; collapser.ground.fine.vertex_count()];
     let fresh = collapser.snapshot();
     let mut sure = None;
-    let mut best: Option<Optimized> = None;
+    let mut best: Option<Simplified> = None;
     for attempt in 0..MOST_ATTEMPTS {
         if attempt == 0 || attempt >= FROM_THE_START {
             collapser.collapse_up_to(early, target);
@@ -232,7 +243,7 @@ fn certified(
         }
         let earlier_bound = best.as_ref().and_then(|best| best.bound);
         if kept && earlier_bound.is_none_or(|bound| counted && upper < bound) {
-            best = Some(Optimized { bound: Some(upper), ..coarse });
+            best = Some(Simplified { bound: Some(upper), ..coarse });
         }
         if (kept && last) || earlier_bound.is_some_and(|_| !kept) {
             break;
@@ -248,7 +259,7 @@ fn certified(
     }
     // The fine mesh itself is at no distance.
     collapser.restore(&fresh, &reserves);
-    Ok(Optimized { bound: Some(0.0), ..result(collapser)? })
+    Ok(Simplified { bound: Some(0.0), ..result(collapser)? })
 }
 
 /// Normals of the vertices, as the areas of the faces around weigh them (those of a fine mesh on a smooth surface are off
@@ -262,9 +273,9 @@ fn normals(fine: &Mesh) -> Vec<(DVec3, bool)> {
     })
 }
 
-fn result(collapser: &Collapser<'_>) -> Result<Optimized, RefineError> {
+fn result(collapser: &Collapser<'_>) -> Result<Simplified, SimplifyError> {
     let Collapser { surface, samples, ground, .. } = collapser;
-    let (mesh, vertices) = output::mesh(ground.fine, surface, ground.kinds)?;
+    let (mesh, vertices) = compaction::mesh(ground.fine, surface, ground.kinds)?;
     let errors = surface.faces().map(|face| samples.error(face));
-    Ok(Optimized { mesh, vertices, estimate: errors.fold(collapser.reached, f64::max), bound: None })
+    Ok(Simplified { mesh, vertices, estimate: errors.fold(collapser.reached, f64::max), bound: None })
 }

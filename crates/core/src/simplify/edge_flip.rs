@@ -1,10 +1,10 @@
 //! Edge flips that bring the mesh nearer to the surface.
 
-use super::ground::{Ground, LEAST_TURN, Worst, bulge};
-use super::plane::Plane;
-use super::region::Region;
-use super::samples::Samples;
-use super::surface::{Surface, previous};
+use super::editable_mesh::{EditableMesh, previous};
+use super::fine_samples::FineSamples;
+use super::reference::{LEAST_TURN, Reference, Worst, bulge};
+use super::star_region::StarRegion;
+use super::triangle_plane::Plane;
 use crate::mesh::NONE;
 use crate::vector::DVec3;
 
@@ -14,7 +14,7 @@ const GAIN: f64 = 0.95;
 /// Looks at edges one after the other.
 #[derive(Default)]
 pub(super) struct Flipper {
-    region: Region,
+    region: StarRegion,
 }
 
 /// The two faces at an edge: their corners counter-clockwise, the edge running from the first to the third.
@@ -39,7 +39,7 @@ struct Cut {
 }
 
 impl Quadrilateral {
-    fn at(h: u32, surface: &Surface, samples: &Samples) -> Self {
+    fn at(h: u32, surface: &EditableMesh, samples: &FineSamples) -> Self {
         let t = surface.twin(h);
         let corners =
             [surface.origin(h), surface.origin(previous(t)), surface.target(h), surface.origin(previous(h))];
@@ -51,14 +51,14 @@ impl Quadrilateral {
     }
 
     /// How far the surface bulges over a triangle, by the normals at its corners.
-    fn bulge(&self, [i, j, k]: [usize; 3], ground: &Ground<'_>) -> f64 {
+    fn bulge(&self, [i, j, k]: [usize; 3], ground: &Reference<'_>) -> f64 {
         let sagitta = |i: usize, j: usize| {
             ground.sagitta([self.corners[i], self.corners[j]], [self.positions[i], self.positions[j]])
         };
         bulge([sagitta(i, j), sagitta(j, k), sagitta(k, i)])
     }
 
-    fn standard(&self, ground: &Ground<'_>) -> Standard {
+    fn standard(&self, ground: &Reference<'_>) -> Standard {
         let mut standard = Standard { worst: Worst::NONE, facing: DVec3::ZERO };
         for triangle in BEFORE {
             let plane = self.plane(triangle);
@@ -76,9 +76,9 @@ impl Flipper {
         &mut self,
         h: u32,
         flat: f64,
-        surface: &mut Surface,
-        samples: &mut Samples,
-        ground: &Ground<'_>,
+        surface: &mut EditableMesh,
+        samples: &mut FineSamples,
+        ground: &Reference<'_>,
     ) -> Option<[u32; 4]> {
         if surface.is_sharp(h) || surface.twin(h) == NONE {
             return None;
@@ -113,7 +113,7 @@ impl Flipper {
         triangles: [[usize; 3]; 2],
         bound: f64,
         standard: Option<Standard>,
-        ground: &Ground<'_>,
+        ground: &Reference<'_>,
     ) -> Option<Cut> {
         self.region.clear_triangles();
         let (mut estimate, mut shape) = (0.0f64, 1.0f64);
@@ -143,7 +143,7 @@ const BEFORE: [[usize; 3]; 2] = [[0, 2, 3], [2, 0, 1]];
 const AFTER: [[usize; 3]; 2] = [[3, 1, 2], [1, 3, 0]];
 
 /// All edges of a mesh once, by a half-edge of each.
-pub(super) fn edges(surface: &Surface) -> Vec<u32> {
+pub(super) fn edges(surface: &EditableMesh) -> Vec<u32> {
     let lower_half =
         |h: &u32| surface.origin(*h) != NONE && surface.twin(*h) != NONE && *h < surface.twin(*h);
     (0..surface.half_edge_places()).filter(lower_half).collect()

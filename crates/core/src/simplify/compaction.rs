@@ -1,12 +1,16 @@
 //! The mesh that is left: its vertices renumbered, with the tags and junctions of what is still there.
 
-use super::features::Kind;
-use super::surface::Surface;
+use super::editable_mesh::EditableMesh;
+use super::kept_features::Kind;
 use crate::index::VertexId;
 use crate::mesh::{CornerTag, CreaseTag, Junctions, Mesh, MeshError, NONE, Tags, Topology};
 
 /// Builds the mesh, and tells which fine vertex each of its vertices is.
-pub(super) fn mesh(fine: &Mesh, surface: &Surface, kinds: &[Kind]) -> Result<(Mesh, Vec<u32>), MeshError> {
+pub(super) fn mesh(
+    fine: &Mesh,
+    surface: &EditableMesh,
+    kinds: &[Kind],
+) -> Result<(Mesh, Vec<u32>), MeshError> {
     let vertices: Vec<u32> = (0..fine.vertex_count() as u32).filter(|&v| surface.is_alive(v)).collect();
     let mut numbers = vec![NONE; fine.vertex_count()];
     for (number, &v) in vertices.iter().enumerate() {
@@ -22,13 +26,18 @@ pub(super) fn mesh(fine: &Mesh, surface: &Surface, kinds: &[Kind]) -> Result<(Me
 }
 
 /// Each crease edge of the coarse mesh once, with the sharpness of the fine ones that it stands for.
-fn creases(fine: &Mesh, surface: &Surface, kinds: &[Kind], number: impl Fn(u32) -> u32) -> Vec<CreaseTag> {
+fn creases(
+    fine: &Mesh,
+    surface: &EditableMesh,
+    kinds: &[Kind],
+    number: impl Fn(u32) -> u32,
+) -> Vec<CreaseTag> {
     let mut creases = Vec::new();
     for tag in &fine.tags().creases {
         let [a, b] = tag.vertices;
         for [start, step] in [[a, b], [b, a]] {
             if surface.is_alive(start) {
-                let end = super::features::end_of_chain(start, step, surface, kinds);
+                let end = super::kept_features::end_of_chain(start, step, surface, kinds);
                 let ends = [number(start), number(end)];
                 // Seen from both ends, told from one.
                 if ends[0] < ends[1] {

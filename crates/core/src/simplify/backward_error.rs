@@ -1,19 +1,19 @@
 //! Points of new triangles against the surface around them: the direction from the mesh to the surface.
 //!
-//! The surface near a sample is its tangent plane there ([`Ground::distance`]); of the samples around, the nearest one
+//! The surface near a sample is its tangent plane there ([`Reference::distance`]); of the samples around, the nearest one
 //! speaks for a point.
 
 use glam::{Vec3, Vec4};
 
-use super::ground::Ground;
+use super::reference::Reference;
 use crate::vector::DVec3;
 
 /// Points that are searched for together, one in each lane.
 const LANES: usize = 4;
 
-/// Samples of the surface, and the points to be measured.
+/// FineSamples of the surface, and the points to be measured.
 #[derive(Default)]
-pub(super) struct Probes {
+pub(super) struct BackwardProbes {
     origin: DVec3,
     sites: Vec<(u32, DVec3)>,
     /// The same relative to the first of them; single precision is enough to tell which is nearest.
@@ -21,7 +21,7 @@ pub(super) struct Probes {
     points: Vec<DVec3>,
 }
 
-impl Probes {
+impl BackwardProbes {
     /// Drops all samples.
     #[inline]
     pub(super) fn forget(&mut self) {
@@ -50,7 +50,7 @@ impl Probes {
     }
 
     /// The greatest distance of the points from the surface at their nearest samples; drops the points.
-    pub(super) fn measure(&mut self, ground: &Ground<'_>) -> f64 {
+    pub(super) fn measure(&mut self, ground: &Reference<'_>) -> f64 {
         let mut error = 0.0f64;
         for points in self.points.chunks(LANES) {
             let nearest = self.nearest_sites(points);

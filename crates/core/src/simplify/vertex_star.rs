@@ -1,18 +1,18 @@
 //! The faces around a vertex, gathered into one place, and what they would become if the vertex were collapsed into one
 //! of its neighbours.
 
-use super::features::{Kind, walk_chain};
-use super::ground::{Ground, LEAST_TURN, Worst, bulge};
-use super::plane::{Plane, squared_to_segment};
-use super::region::Region;
-use super::samples::Samples;
-use super::surface::{Surface, previous};
+use super::editable_mesh::{EditableMesh, previous};
+use super::fine_samples::FineSamples;
+use super::kept_features::{Kind, walk_chain};
+use super::reference::{LEAST_TURN, Reference, Worst, bulge};
+use super::star_region::StarRegion;
+use super::triangle_plane::{Plane, squared_to_segment};
 use crate::mesh::NONE;
 use crate::vector::DVec3;
 
 /// A vertex, its neighbours, and the samples of its faces; filled anew for each vertex.
 #[derive(Default)]
-pub(super) struct Star {
+pub(super) struct VertexStar {
     pub(super) centre: u32,
     position: DVec3,
     /// Outgoing half-edges, counter-clockwise; one for each face.
@@ -20,7 +20,7 @@ pub(super) struct Star {
     /// Neighbours, counter-clockwise; an open ring has one more than faces.
     pub(super) ring: Vec<u32>,
     ring_positions: Vec<DVec3>,
-    region: Region,
+    region: StarRegion,
     /// For each pair of neighbours how far the surface bulges over their chord.
     sagittas: Vec<f64>,
     ways: Vec<Way>,
@@ -41,9 +41,15 @@ pub(super) struct Way {
     pub(super) bulge: f64,
 }
 
-impl Star {
+impl VertexStar {
     /// Gathers the star of `centre`.
-    pub(super) fn gather(&mut self, centre: u32, surface: &Surface, samples: &Samples, ground: &Ground<'_>) {
+    pub(super) fn gather(
+        &mut self,
+        centre: u32,
+        surface: &EditableMesh,
+        samples: &FineSamples,
+        ground: &Reference<'_>,
+    ) {
         self.centre = centre;
         self.position = samples.position(centre);
         self.spokes.clear();
@@ -71,7 +77,7 @@ impl Star {
     }
 
     /// Walks from the centre along its crease or boundary to the next vertices that are still there.
-    fn gather_chain(&mut self, surface: &Surface, samples: &Samples, ground: &Ground<'_>) {
+    fn gather_chain(&mut self, surface: &EditableMesh, samples: &FineSamples, ground: &Reference<'_>) {
         self.chain.clear();
         let Kind::Chain(ways) = ground.kind(self.centre) else { return };
         self.chain.push(self.position);
@@ -94,7 +100,7 @@ impl Star {
     }
 
     /// The worst of the triangles that are there, and all their normals.
-    fn look_at_faces(&mut self, ground: &Ground<'_>) -> Worst {
+    fn look_at_faces(&mut self, ground: &Reference<'_>) -> Worst {
         if let Some(worst) = self.worst {
             return worst;
         }
@@ -110,7 +116,7 @@ impl Star {
     }
 
     /// Finds the neighbours that the centre may go to, those with the least bulge first.
-    pub(super) fn find_ways(&mut self, ground: &Ground<'_>) {
+    pub(super) fn find_ways(&mut self, ground: &Reference<'_>) {
         self.ways.clear();
         let ends = match ground.kind(self.centre) {
             Kind::Smooth => None,
@@ -135,7 +141,7 @@ impl Star {
     }
 
     /// Measures how far the surface bulges over each chord between two neighbours.
-    fn measure_chords(&mut self, ground: &Ground<'_>) {
+    fn measure_chords(&mut self, ground: &Reference<'_>) {
         let n = self.ring.len();
         self.sagittas.clear();
         self.sagittas.resize(n * n, 0.0);
@@ -159,7 +165,7 @@ impl Star {
 
     /// Looks at the triangles of the star once the centre has gone to the neighbour at `slot`: whether all of them stand
     /// well.
-    pub(super) fn collapse_into(&mut self, slot: usize, ground: &Ground<'_>) -> bool {
+    pub(super) fn collapse_into(&mut self, slot: usize, ground: &Reference<'_>) -> bool {
         let worst = self.look_at_faces(ground);
         let (apex, at) = (self.ring[slot], self.ring_positions[slot]);
         let normal = ground.normal(self.centre);
@@ -188,7 +194,7 @@ impl Star {
 
     /// The cost of the triangles that [`Self::collapse_into`] left for this way: their greatest error, and the reserve.
     /// `None` if that is not below `bound`.
-    pub(super) fn cost(&mut self, way: Way, ground: &Ground<'_>, bound: f64) -> Option<f64> {
+    pub(super) fn cost(&mut self, way: Way, ground: &Reference<'_>, bound: f64) -> Option<f64> {
         let reserve = self.region.reserve();
         let bound = bound - reserve;
         let error = self.region.forward_error(self.chain_error().max(way.bulge), bound)?;
@@ -225,7 +231,7 @@ impl Star {
     }
 
     /// Gives all samples of the star to the triangles of the last [`Self::collapse_into`], which are there now.
-    pub(super) fn hand_over(&self, samples: &mut Samples) {
+    pub(super) fn hand_over(&self, samples: &mut FineSamples) {
         self.region.hand_over(samples, self.spokes.iter().map(|h| h / 3));
     }
 }
