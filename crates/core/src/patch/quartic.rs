@@ -1,9 +1,9 @@
 //! Regular pieces of Loop's surface as polynomials, evaluated point by point or in rows.
 //!
-//! Takes a [`BezierTriangle`] and gives positions, derivatives and unit normals at parameters (u, v): u is the weight of the second
-//! corner and v that of the third, counted from any corner of the piece. Rows run along constant v. A value depends on
-//! the net, the first corner, u and v alone: not on the row in which it is asked for, nor on its place there, so that
-//! whoever shares an edge or the work gets the same bits.
+//! Takes a [`BezierTriangle`] and gives positions, derivatives and unit normals at parameters (u, v): u is the weight of
+//! the second corner and v that of the third, counted from any corner of the piece. Rows run along constant v. A value
+//! depends on the net, the first corner, u and v alone: not on the row in which it is asked for, nor on its place there,
+//! so that whoever shares an edge or the work gets the same bits.
 //!
 //! The polynomial is `Σ a_pk uᵖ vᵏ` with `a_pk = 4!/(p! k! (4−p−k)!) · Δᵤᵖ Δᵥᵏ b` by forward differences of the net at its
 //! first corner (Farin, Curves and Surfaces for CAGD, on derivatives of triangular patches). It is evaluated by Horner's
@@ -20,25 +20,22 @@ const LANES: usize = 8;
 /// Short ends of rows take fewer.
 const HALF: usize = LANES / 2;
 
-/// `4!/(p! k! (4−p−k)!)` by p and k.
-const MULTINOMIAL: [[f64; 5]; 5] = [
-    [1.0, 4.0, 6.0, 4.0, 1.0],
-    [4.0, 12.0, 12.0, 4.0, 0.0],
-    [6.0, 12.0, 6.0, 0.0, 0.0],
-    [4.0, 4.0, 0.0, 0.0, 0.0],
-    [1.0, 0.0, 0.0, 0.0, 0.0],
-];
+/// `4!/(p! k! (4−p−k)!)` in the order of the coefficients.
+const MULTINOMIAL: [f64; 15] = [1.0, 4.0, 6.0, 4.0, 1.0, 4.0, 12.0, 12.0, 4.0, 6.0, 12.0, 6.0, 4.0, 4.0, 1.0];
 
-/// Rounding leaves no more of a cross product that is zero than this, where the greatest coefficient is near 1 and the
+/// Rounding leaves no more of a cross product that is zero than this, where the greatest coefficient is 1 and the
 /// piece stands at the origin: either tangent is some twenty terms of up to four times that, each off by 1e-16.
 const CROSS_ROUNDING: f64 = 1e-13;
+
+/// Pieces whose size is within these need no scaling: fourth powers of it neither vanish nor overflow.
+const SAFE_SIZES: core::ops::Range<f64> = 1e-60..1e60;
 
 /// A regular piece of the limit surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Quartic {
-    /// `a_pk` by p and k; zero for p + k > 4.
-    coefficients: [[DVec3; 5]; 5],
-    /// The power of two that brings derivatives near the size of 1, where squares of them neither vanish nor overflow.
+    /// `a_pk` in the order of p, then of k.
+    coefficients: [DVec3; 15],
+    /// A power of two that keeps squares of tangents' cross products from vanishing and overflowing, where it is not 1.
     tangent_scale: f64,
     /// Cross products of scaled tangents whose squared length is not above this have no direction.
     least_square: f64,
@@ -47,28 +44,27 @@ pub(crate) struct Quartic {
 impl Quartic {
     /// The polynomial of a net, with the net's corner `first` (0 to 2) at (0, 0), the next at (1, 0), the last at (0, 1).
     pub(crate) fn of(net: &BezierTriangle, first: usize) -> Self {
-        let mut a = [[DVec3::ZERO; 5]; 5];
-        let mut points = TURNED[first].iter().map(|&at| net.0[at]);
-        for (k, degree) in (0..5).rev().enumerate() {
-            let row = from_fn(|p| if p <= degree { points.next().unwrap_or_default() } else { DVec3::ZERO });
-            for (by_v, along_u) in a.iter_mut().zip(differences(row, degree)) {
-                by_v[k] = along_u;
-            }
-        }
-        for (p, column) in a.iter_mut().enumerate() {
-            let along_v = differences(*column, 4 - p);
-            *column = from_fn(|k| MULTINOMIAL[p][k] * along_v[k]);
-        }
-        Self::with_scale(a)
+        let b = TURNED[first].map(|at| net.0[at]);
+        let d0 = differences([b[0], b[1], b[2], b[3], b[4]]);
+        let d1 = differences([b[5], b[6], b[7], b[8]]);
+        let d2 = differences([b[9], b[10], b[11]]);
+        let d3 = differences([b[12], b[13]]);
+        let [a00, a01, a02, a03, a04] = differences([d0[0], d1[0], d2[0], d3[0], b[14]]);
+        let [a10, a11, a12, a13] = differences([d0[1], d1[1], d2[1], d3[1]]);
+        let [a20, a21, a22] = differences([d0[2], d1[2], d2[2]]);
+        let [a30, a31] = differences([d0[3], d1[3]]);
+        let all = [a00, a01, a02, a03, a04, a10, a11, a12, a13, a20, a21, a22, a30, a31, d0[4]];
+        Self::with_scale(from_fn(|i| MULTINOMIAL[i] * all[i]))
     }
 
-    fn with_scale(coefficients: [[DVec3; 5]; 5]) -> Self {
-        let others = coefficients.as_flattened()[1..].iter();
+    #[inline]
+    fn with_scale(coefficients: [DVec3; 15]) -> Self {
+        let others = coefficients[1..].iter();
         let size = others.fold(DVec3::ZERO, |most, a| most.max(a.abs())).max_element();
-        let tangent_scale = reciprocal_power(size);
+        let tangent_scale = if SAFE_SIZES.contains(&size) { 1.0 } else { reciprocal_power(size) };
+        let scaled = tangent_scale * size;
         // Coordinates far from the origin have fewer digits to spare for differences.
-        let distance = tangent_scale * coefficients[0][0].abs().max_element();
-        let least = CROSS_ROUNDING * (1.0 + distance);
+        let least = CROSS_ROUNDING * scaled * (scaled + tangent_scale * coefficients[0].abs().max_element());
         Self { coefficients, tangent_scale, least_square: least * least }
     }
 
@@ -96,24 +92,18 @@ impl Quartic {
     /// The second derivatives at (u, v): by u twice, by u and v, by v twice.
     pub(crate) fn second_derivatives(&self, u: f64, v: f64) -> [DVec3; 3] {
         let (c, d) = (self.positions(v), self.slopes(v));
-        let e: [DVec3; 3] = from_fn(|p| horner(&second_derivative(&self.coefficients[p]), v));
+        let a = &self.coefficients;
+        let e = [(12.0 * a[4] * v + 6.0 * a[3]) * v + 2.0 * a[2], 6.0 * a[8] * v + 2.0 * a[7], 2.0 * a[11]];
         [horner(&second_derivative(&c), u), horner(&derivative::<4, 3>(&d), u), horner(&e, u)]
     }
 
     /// The points at u = `start` + i · `step` along constant v.
     pub(crate) fn points_along(&self, v: f64, start: f64, step: f64, points: &mut [[f64; 3]]) {
-        let row = PointRow::of(&self.positions(v));
-        for (chunk, points) in points.chunks_mut(LANES).enumerate() {
-            let u = parameters(start, step, chunk);
-            match u.first_chunk::<HALF>().filter(|_| points.len() <= HALF) {
-                Some(u) => row.points(u, points),
-                None => row.points(&u, points),
-            }
-        }
+        fill(&PointRow(by_axis(&self.positions(v))), start, step, points);
     }
 
     /// The points at u = `start` + i · `step` along constant v, and their unit normals on the side from which the corners
-    /// run counter-clockwise; zero where the tangents span no plane. Both slices have the same length.
+    /// run counter-clockwise; zero where the tangents span no plane. The slices may differ in length.
     pub(crate) fn points_and_normals_along(
         &self,
         v: f64,
@@ -122,115 +112,120 @@ impl Quartic {
         points: &mut [[f64; 3]],
         normals: &mut [[f64; 3]],
     ) {
-        let (c, d) = (self.positions(v), self.slopes(v));
-        let (row, normal_row) = (PointRow::of(&c), NormalRow::of(&c, &d, self));
-        let chunks = points.chunks_mut(LANES).zip(normals.chunks_mut(LANES));
-        for (chunk, (points, normals)) in chunks.enumerate() {
-            let u = parameters(start, step, chunk);
-            match u.first_chunk::<HALF>().filter(|_| points.len() <= HALF) {
-                Some(u) => {
-                    row.points(u, points);
-                    normal_row.normals(u, normals);
-                }
-                None => {
-                    row.points(&u, points);
-                    normal_row.normals(&u, normals);
-                }
-            }
+        let by_u = self.positions(v);
+        fill(&PointRow(by_axis(&by_u)), start, step, points);
+        let [mut by_u, mut by_v] = [derivative(&by_u), self.slopes(v)];
+        if self.tangent_scale != 1.0 {
+            by_u.iter_mut().chain(&mut by_v).for_each(|a| *a *= self.tangent_scale);
         }
+        let tangents = [by_axis(&by_u), by_axis(&by_v)];
+        fill(&NormalRow { tangents, least_square: self.least_square }, start, step, normals);
     }
 
     /// The coefficients of powers of u along constant v.
     #[inline]
     fn positions(&self, v: f64) -> [DVec3; 5] {
-        from_fn(|p| horner(self.powers_of_v(p), v))
+        let a = &self.coefficients;
+        [horner(&a[..5], v), horner(&a[5..9], v), horner(&a[9..12], v), horner(&a[12..14], v), a[14]]
     }
 
     /// The same for the derivative by v.
     #[inline]
     fn slopes(&self, v: f64) -> [DVec3; 4] {
-        from_fn(|p| horner(&derivative::<5, 4>(&self.coefficients[p])[..4 - p], v))
-    }
-
-    #[inline]
-    fn powers_of_v(&self, p: usize) -> &[DVec3] {
-        &self.coefficients[p][..5 - p]
+        let a = &self.coefficients;
+        let cubic = ((4.0 * a[4] * v + 3.0 * a[3]) * v + 2.0 * a[2]) * v + a[1];
+        [cubic, (3.0 * a[8] * v + 2.0 * a[7]) * v + a[6], 2.0 * a[11] * v + a[10], a[13]]
     }
 }
 
-/// The positions along constant v.
+/// What stands along constant v.
+trait Row {
+    /// At several values of u, by axis.
+    fn at_each<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 3];
+}
+
+/// Positions, by axis and power of u.
 struct PointRow([[f64; 5]; 3]);
 
-impl PointRow {
-    #[inline]
-    fn of(by_u: &[DVec3; 5]) -> Self {
-        Self(by_axis(by_u))
-    }
-
-    /// The points at the first of the given parameters, as many as there are slots.
-    #[inline]
-    fn points<const N: usize>(&self, u: &[f64; N], slots: &mut [[f64; 3]]) {
-        let [x, y, z] = self.0.map(|c| horner_of_each(&c, u));
-        for (l, slot) in slots.iter_mut().take(N).enumerate() {
-            *slot = [x[l], y[l], z[l]];
-        }
-    }
-}
-
-/// The normals along constant v, by scaled tangents.
+/// Unit normals, by scaled tangents.
 struct NormalRow {
-    by_u: [[f64; 4]; 3],
-    by_v: [[f64; 4]; 3],
+    /// The derivatives by u and by v, by axis and power of u.
+    tangents: [[[f64; 4]; 3]; 2],
     least_square: f64,
 }
 
-impl NormalRow {
+impl Row for PointRow {
     #[inline]
-    fn of(c: &[DVec3; 5], d: &[DVec3; 4], piece: &Quartic) -> Self {
-        let scaled = |a: DVec3| piece.tangent_scale * a;
-        let by_u = by_axis(&derivative::<5, 4>(c).map(scaled));
-        Self { by_u, by_v: by_axis(&d.map(scaled)), least_square: piece.least_square }
-    }
-
-    /// The unit normals at the first of the given parameters, as many as there are slots.
-    #[inline]
-    fn normals<const N: usize>(&self, u: &[f64; N], slots: &mut [[f64; 3]]) {
-        let [ux, uy, uz] = self.by_u.map(|c| horner_of_each(&c, u));
-        let [vx, vy, vz] = self.by_v.map(|c| horner_of_each(&c, u));
-        let mut unit = [[0.0; N]; 3];
-        for l in 0..N {
-            let x = uy[l] * vz[l] - uz[l] * vy[l];
-            let y = uz[l] * vx[l] - ux[l] * vz[l];
-            let z = ux[l] * vy[l] - uy[l] * vx[l];
-            let square = x * x + y * y + z * z;
-            let length = if square > self.least_square { 1.0 / square.sqrt() } else { 0.0 };
-            unit[0][l] = x * length;
-            unit[1][l] = y * length;
-            unit[2][l] = z * length;
+    fn at_each<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 3] {
+        let mut points = [[0.0; N]; 3];
+        for (points, [c0, c1, c2, c3, c4]) in points.iter_mut().zip(self.0) {
+            for l in 0..N {
+                points[l] = (((c4 * u[l] + c3) * u[l] + c2) * u[l] + c1) * u[l] + c0;
+            }
         }
-        let [x, y, z] = unit;
-        for (l, slot) in slots.iter_mut().take(N).enumerate() {
-            *slot = [x[l], y[l], z[l]];
-        }
+        points
     }
 }
 
-/// The parameters of one chunk of a row.
+impl Row for NormalRow {
+    #[inline]
+    fn at_each<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 3] {
+        let [mut s, mut t] = [[[0.0; N]; 3]; 2];
+        for axis in 0..3 {
+            let [[c0, c1, c2, c3], [d0, d1, d2, d3]] = self.tangents.map(|tangent| tangent[axis]);
+            for l in 0..N {
+                s[axis][l] = ((c3 * u[l] + c2) * u[l] + c1) * u[l] + c0;
+                t[axis][l] = ((d3 * u[l] + d2) * u[l] + d1) * u[l] + d0;
+            }
+        }
+        let mut normals = [[0.0; N]; 3];
+        for l in 0..N {
+            let x = s[1][l] * t[2][l] - s[2][l] * t[1][l];
+            let y = s[2][l] * t[0][l] - s[0][l] * t[2][l];
+            let z = s[0][l] * t[1][l] - s[1][l] * t[0][l];
+            let square = x * x + y * y + z * z;
+            let factor = if square > self.least_square { 1.0 / square.sqrt() } else { 0.0 };
+            (normals[0][l], normals[1][l], normals[2][l]) = (x * factor, y * factor, z * factor);
+        }
+        normals
+    }
+}
+
+/// Fills slots with what stands at u = `start` + i · `step`.
 #[inline]
-fn parameters(start: f64, step: f64, chunk: usize) -> [f64; LANES] {
-    from_fn(|l| start + (chunk * LANES + l) as f64 * step)
+fn fill(row: &impl Row, start: f64, step: f64, slots: &mut [[f64; 3]]) {
+    let mut first = 0.0;
+    let (chunks, rest) = slots.as_chunks_mut::<LANES>();
+    for chunk in chunks {
+        *chunk = chunk_at(row, start, step, first);
+        first += LANES as f64;
+    }
+    let (chunks, rest) = rest.as_chunks_mut::<HALF>();
+    for chunk in chunks {
+        *chunk = chunk_at(row, start, step, first);
+        first += HALF as f64;
+    }
+    if !rest.is_empty() {
+        let chunk: [_; HALF] = chunk_at(row, start, step, first);
+        rest.copy_from_slice(&chunk[..rest.len()]);
+    }
+}
+
+/// What stands at N places from number `first` on.
+#[inline]
+fn chunk_at<const N: usize>(row: &impl Row, start: f64, step: f64, first: f64) -> [[f64; 3]; N] {
+    let mut u = [0.0; N];
+    for (l, u) in u.iter_mut().enumerate() {
+        *u = start + (first + l as f64) * step;
+    }
+    let [x, y, z] = row.at_each(&u);
+    from_fn(|l| [x[l], y[l], z[l]])
 }
 
 /// A polynomial by its coefficients of powers, from the lowest.
 #[inline]
 fn horner(c: &[DVec3], t: f64) -> DVec3 {
     c.iter().rev().copied().reduce(|sum, c| sum * t + c).unwrap_or_default()
-}
-
-/// One coordinate of a polynomial at several parameters.
-#[inline]
-fn horner_of_each<const C: usize, const N: usize>(c: &[f64; C], t: &[f64; N]) -> [f64; N] {
-    t.map(|t| c.iter().rev().copied().reduce(|sum, c| sum * t + c).unwrap_or_default())
 }
 
 /// The coefficients of a polynomial's derivative.
@@ -251,11 +246,11 @@ fn by_axis<const N: usize>(points: &[DVec3; N]) -> [[f64; N]; 3] {
     from_fn(|axis| points.map(|p| p[axis]))
 }
 
-/// The first forward differences of each order of the first `degree` + 1 values.
+/// The first forward differences of each order.
 #[inline]
-fn differences(mut values: [DVec3; 5], degree: usize) -> [DVec3; 5] {
-    for order in 1..=degree {
-        for i in (order..=degree).rev() {
+fn differences<const N: usize>(mut values: [DVec3; N]) -> [DVec3; N] {
+    for order in 1..N {
+        for i in (order..N).rev() {
             values[i] -= values[i - 1];
         }
     }
