@@ -46,6 +46,7 @@
 mod certificate;
 pub mod criterion;
 pub mod emit;
+mod geometry;
 pub mod index;
 pub mod limit;
 mod masks;

@@ -162,6 +162,15 @@ pub(crate) fn for_each_chunk_polled<T: Send, F: Fn(usize, &mut [T]) + Sync>(
     Ok(())
 }
 
+/// `f` of each item, in order, that can be cancelled; it should take a few milliseconds at most.
+pub(crate) fn each_polled<B: Send, T: Send, F: Fn(B) -> T + Sync>(
+    items: Vec<B>,
+    poll: &mut Poll<'_>,
+    f: F,
+) -> Result<Vec<T>, Cancelled> {
+    hand_out(items.into_iter(), poll, f)
+}
+
 /// [`map`] that can be cancelled.
 pub(crate) fn map_polled<T: Send + Clone + Default, F: Fn(usize) -> T + Sync>(
     n: usize,

@@ -93,6 +93,11 @@ pub(crate) fn unobserved(_: &Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
+/// What `work` gives if nobody watches: then nothing cancels it.
+pub(crate) fn uncancelled<T>(work: impl FnOnce(&mut Observer<'_>) -> Result<T, Cancelled>) -> T {
+    work(&mut unobserved).unwrap_or_else(|Cancelled| unreachable!("cancelled, but nobody asked for it"))
+}
+
 /// An observer and what it is told: what long functions pass on to the loops that they consist of.
 pub(crate) struct Watch<'a> {
     observer: &'a mut Observer<'a>,

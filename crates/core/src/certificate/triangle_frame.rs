@@ -1,6 +1,6 @@
 //! A triangle of the result, prepared for the distances of many points to it, its plane and its edges.
 
-use crate::measure::closest_to_origin;
+use crate::geometry::closest_to_origin;
 use crate::vector::{DVec3, unit_or_zero};
 
 /// Triangles with a smaller sine of the angle between their first edges have no plane to speak of: rounding turns it by

@@ -8,6 +8,7 @@
 use super::bvh::Bvh;
 use super::samples::Samples;
 use crate::parallel;
+use crate::progress::{Cancelled, Watch};
 use crate::vector::DVec3;
 
 /// Triangles in which a first lattice is measured, and the best of them that are searched further: as many as make
@@ -36,7 +37,8 @@ pub(super) fn climb(
     distances: &[f64],
     from: &Bvh<'_>,
     to: &Bvh<'_>,
-) -> Option<(DVec3, f64)> {
+    watch: &mut Watch<'_>,
+) -> Result<Option<(DVec3, f64)>, Cancelled> {
     let mut candidates: Vec<Candidate> = farthest_triangles(samples, distances)
         .into_iter()
         .map(|slot| {
@@ -55,9 +57,10 @@ pub(super) fn climb(
             .collect();
         // Each triangle is measured by itself: the next one may be far away.
         let mut distances = vec![0.0; points.len()];
-        parallel::for_each_chunk(&mut distances, lattice.len(), |i, distances| {
+        let poll = &mut |_| watch.poll();
+        parallel::for_each_chunk_polled(&mut distances, lattice.len(), poll, |i, distances| {
             to.distances(&points[i * lattice.len()..(i + 1) * lattice.len()], distances);
-        });
+        })?;
         for (i, candidate) in candidates.iter_mut().enumerate() {
             let own = i * lattice.len()..(i + 1) * lattice.len();
             for (&point, &distance) in points[own.clone()].iter().zip(&distances[own]) {
@@ -71,7 +74,7 @@ pub(super) fn climb(
         candidates.sort_by(|a, b| b.distance.total_cmp(&a.distance));
         candidates.truncate(SEARCHED);
     }
-    candidates.first().map(|best| (best.best, best.distance))
+    Ok(candidates.first().map(|best| (best.best, best.distance)))
 }
 
 /// The triangles of the farthest samples, each once, in the tree's order.

@@ -11,6 +11,7 @@ use super::samples::Samples;
 use super::{MeasureError, check_finite};
 use crate::mesh::Triangles;
 use crate::parallel;
+use crate::progress::{Cancelled, Observer, Stage, Watch, uncancelled, unobserved};
 use crate::vector::{DVec3, vector};
 
 /// How densely to sample.
@@ -113,25 +114,58 @@ pub fn hausdorff(
     reference: Triangles<'_>,
     options: &SamplingOptions,
 ) -> Result<Hausdorff, MeasureError> {
-    let surface = Bvh::named(surface, "measured")?;
-    let reference = Bvh::named(reference, "reference")?;
-    Ok(hausdorff_between(&surface, &reference, options))
+    hausdorff_observed(surface, reference, options, &mut unobserved)
 }
 
-/// The same between surfaces whose hierarchies are at hand, for measuring several against one.
+/// [`hausdorff`], telling an observer how it goes on.
+///
+/// # Errors
+/// The same, or the observer asked to stop.
+pub fn hausdorff_observed(
+    surface: Triangles<'_>,
+    reference: Triangles<'_>,
+    options: &SamplingOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Hausdorff, MeasureError> {
+    let surface = Bvh::named(surface, "measured", observer)?;
+    let reference = Bvh::named(reference, "reference", observer)?;
+    Ok(hausdorff_between_observed(&surface, &reference, options, observer)?)
+}
+
+/// [`hausdorff`] between surfaces whose hierarchies are at hand, for measuring several against one.
 pub fn hausdorff_between(surface: &Bvh<'_>, reference: &Bvh<'_>, options: &SamplingOptions) -> Hausdorff {
-    Hausdorff {
-        forward: one_sided(surface, reference, options),
-        backward: one_sided(reference, surface, options),
+    uncancelled(|observer| hausdorff_between_observed(surface, reference, options, observer))
+}
+
+/// [`hausdorff_between`], telling an observer how it goes on.
+///
+/// # Errors
+/// The observer asked to stop.
+pub fn hausdorff_between_observed(
+    surface: &Bvh<'_>,
+    reference: &Bvh<'_>,
+    options: &SamplingOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Hausdorff, Cancelled> {
+    let mut watch = Watch::new(observer, Stage::Sampling);
+    Ok(Hausdorff {
+        forward: one_sided(surface, reference, options, &mut watch)?,
+        backward: one_sided(reference, surface, options, &mut watch)?,
         reference_diagonal: reference.diagonal(),
-    }
+    })
 }
 
 /// Distances from samples of one surface to another.
-fn one_sided(from: &Bvh<'_>, to: &Bvh<'_>, options: &SamplingOptions) -> OneSided {
+fn one_sided(
+    from: &Bvh<'_>,
+    to: &Bvh<'_>,
+    options: &SamplingOptions,
+    watch: &mut Watch<'_>,
+) -> Result<OneSided, Cancelled> {
     let samples = Samples::new(from, options.samples.min(SamplingOptions::MOST_SAMPLES));
-    let distances =
-        measure_points(to, samples.len(), |range, run| samples.visit(range, |point| run.push(point)));
+    watch.triangles(from.surface().triangles.len());
+    let collect = |range, run: &mut Vec<DVec3>| samples.visit(range, |point| run.push(point));
+    let distances = measure_points(to, samples.len(), collect, watch)?;
     let (mut farthest, mut max) = (0, 0.0);
     for (index, &distance) in distances.iter().enumerate() {
         if distance > max {
@@ -142,11 +176,12 @@ fn one_sided(from: &Bvh<'_>, to: &Bvh<'_>, options: &SamplingOptions) -> OneSide
     let insides = samples.insides();
     let (mean, rms) = means(if insides.is_empty() { &distances } else { &distances[insides] }, max);
     let mut at = samples.point(farthest);
-    if let Some((point, distance)) = climb(&samples, &distances, from, to).filter(|found| found.1 > max) {
+    let climbed = climb(&samples, &distances, from, to, watch)?;
+    if let Some((point, distance)) = climbed.filter(|found| found.1 > max) {
         (at, max) = (point, distance);
     }
     let at = at.to_array();
-    OneSided { max, mean, rms, samples: distances.len(), at, to: to.closest(at).point }
+    Ok(OneSided { max, mean, rms, samples: distances.len(), at, to: to.closest(at).point })
 }
 
 /// The distances of `count` points to a surface; `collect` adds those of a range to a list. Consecutive ones should be
@@ -155,14 +190,17 @@ fn measure_points(
     to: &Bvh<'_>,
     count: usize,
     collect: impl Fn(Range<usize>, &mut Vec<DVec3>) + Sync + Send,
-) -> Vec<f64> {
+    watch: &mut Watch<'_>,
+) -> Result<Vec<f64>, Cancelled> {
+    watch.stage(Stage::Sampling, Some(count))?;
     let mut distances = vec![0.0; count];
-    parallel::for_each_chunk(&mut distances, RUN, |run, distances| {
+    let poll = &mut |done| watch.done(done);
+    parallel::for_each_chunk_polled(&mut distances, RUN, poll, |run, distances| {
         let mut points = Vec::with_capacity(distances.len());
         collect(run * RUN..run * RUN + distances.len(), &mut points);
         to.distances(&points, distances);
-    });
-    distances
+    })?;
+    Ok(distances)
 }
 
 /// Mean and root mean square of distances none of which exceeds `max`; divided by it first, so that no square
@@ -191,11 +229,25 @@ fn means(distances: &[f64], max: f64) -> (f64, f64) {
 /// # Errors
 /// A reference without triangles, an index out of range, a coordinate that is not finite, the points' included.
 pub fn distances_to(points: &[[f64; 3]], reference: Triangles<'_>) -> Result<Vec<f64>, MeasureError> {
-    let reference = Bvh::named(reference, "reference")?;
+    distances_to_observed(points, reference, &mut unobserved)
+}
+
+/// [`distances_to`], telling an observer how it goes on.
+///
+/// # Errors
+/// The same, or the observer asked to stop.
+pub fn distances_to_observed(
+    points: &[[f64; 3]],
+    reference: Triangles<'_>,
+    observer: &mut Observer<'_>,
+) -> Result<Vec<f64>, MeasureError> {
+    let reference = Bvh::new_observed(reference, observer)?;
     check_finite(points, "measured")?;
     let collect =
         |range: Range<usize>, run: &mut Vec<DVec3>| run.extend(points[range].iter().copied().map(vector));
-    Ok(measure_points(&reference, points.len(), collect))
+    let mut watch = Watch::new(observer, Stage::Sampling);
+    watch.triangles(reference.surface().triangles.len());
+    Ok(measure_points(&reference, points.len(), collect, &mut watch)?)
 }
 
 #[cfg(test)]

@@ -10,21 +10,24 @@ mod hausdorff;
 mod limit_reference;
 mod quality;
 mod samples;
-mod triangle;
 mod watertight;
 
 pub use bvh::{Bvh, ClosestPoint};
 pub use certified::{
     Bounds, CertifiedHausdorff, CertifiedOptions, certified_hausdorff, certified_hausdorff_between,
+    certified_hausdorff_between_observed, certified_hausdorff_observed,
 };
-pub use hausdorff::{Hausdorff, OneSided, SamplingOptions, distances_to, hausdorff, hausdorff_between};
+pub use hausdorff::{
+    Hausdorff, OneSided, SamplingOptions, distances_to, distances_to_observed, hausdorff, hausdorff_between,
+    hausdorff_between_observed, hausdorff_observed,
+};
 pub use limit_reference::limit_reference;
 pub use quality::{TriangleQuality, triangle_quality};
-pub(crate) use triangle::closest_to_origin;
-pub use watertight::{Watertightness, watertightness};
+pub use watertight::{Watertightness, watertightness, watertightness_observed};
 
 use crate::mesh::Triangles;
 use crate::parallel;
+use crate::progress::Cancelled;
 
 /// Why something could not be measured.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -78,6 +81,9 @@ pub enum MeasureError {
         /// The greatest allowed.
         greatest: f64,
     },
+    /// The observer asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// Refuses what has no distances: no triangles, an index out of range, a coordinate that is not finite. `which`

@@ -1,17 +1,24 @@
 //! Watertightness: boundary edges, non-manifold edges, T-junctions, Euler characteristic.
 //!
-//! Takes any triangles, manifold or not, and reads their connections off the vertex indices: edges are sorted, so
-//! that all faces of an edge lie side by side. Positions matter only to T-junctions.
+//! Takes any triangles, manifold or not, at most 2^32 / 3 of them, and reads their connections off the vertex indices.
+//! Positions matter only to T-junctions.
+
+use std::borrow::Cow;
 
 use super::bvh::Bvh;
+use crate::geometry::{DisjointSets, for_each_edge};
 use crate::mesh::Triangles;
 use crate::parallel;
+use crate::progress::{Cancelled, Observer, Stage, Watch, uncancelled};
 use crate::vector::vector;
 
 /// How near to a boundary edge, as a share of its length, a vertex counts as lying on it, and how far from its ends
 /// it must be to lie inside. Wide enough for midpoints rounded to single precision in edges down to about a hundredth
 /// of the model; a gap this narrow cannot be told from a crack.
 const ON_EDGE: f64 = 1e-5;
+
+/// Places looked up in one go.
+const PLACES: usize = 1 << 12;
 
 /// What keeps a surface from being a closed, conforming manifold.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,95 +52,62 @@ impl Watertightness {
 ///
 /// Indices that name no position are counted like any other, but lie on no edge.
 pub fn watertightness(surface: Triangles<'_>) -> Watertightness {
-    let sides = sorted_sides(surface.triangles);
-    let mut components = Components::new(surface.triangles.len());
-    let mut result = Watertightness {
-        boundary_edges: 0,
-        non_manifold_edges: 0,
-        inconsistent_edges: 0,
-        t_junctions: 0,
-        degenerate_faces: surface.triangles.iter().filter(|t| is_degenerate(t)).count(),
-        components: 0,
-        euler_characteristic: 0,
-    };
-    let mut edges = 0;
-    let mut boundary = Vec::new();
-    for uses in sides.chunk_by(|a, b| a.edge == b.edge) {
-        edges += 1;
-        for pair in uses.windows(2) {
-            components.join(pair[0].face(), pair[1].face());
-        }
-        match uses {
-            [_] => boundary.push(uses[0].ends()),
-            [a, b] => result.inconsistent_edges += usize::from(a.runs_up() == b.runs_up()),
-            _ => result.non_manifold_edges += 1,
-        }
-    }
-    drop(sides);
-    result.boundary_edges = boundary.len();
-    let faces = surface.triangles.len() - result.degenerate_faces;
-    result.components = faces - components.joins;
+    uncancelled(|observer| watertightness_observed(surface, observer))
+}
+
+/// [`watertightness`], telling an observer how it goes on.
+///
+/// # Errors
+/// The observer asked to stop.
+pub fn watertightness_observed(
+    surface: Triangles<'_>,
+    observer: &mut Observer<'_>,
+) -> Result<Watertightness, Cancelled> {
+    let mut watch = Watch::new(observer, Stage::Matching);
+    watch.triangles(surface.triangles.len());
+    watch.stage(Stage::Matching, Some(surface.triangles.len()))?;
     let vertices = used_vertices(surface.triangles);
-    result.euler_characteristic = vertices.len() as i64 - edges + faces as i64;
-    result.t_junctions = t_junctions(surface.positions, vertices, &boundary);
-    result
+    let greatest = vertices.last().map_or(0, |&v| v as usize + 1);
+    // Indices far beyond the number of corners must not make lists as long as the greatest of them.
+    let (triangles, names) = if greatest / 8 > 3 * surface.triangles.len() {
+        let place = |v: &u32| vertices.binary_search(v).unwrap_or_default() as u32;
+        (surface.triangles.iter().map(|t| t.each_ref().map(place)).collect(), Some(&vertices))
+    } else {
+        (Cow::Borrowed(surface.triangles), None)
+    };
+    let name = |v: u32| names.map_or(v, |names| names[v as usize]);
+    let mut sets = DisjointSets::new(triangles.len());
+    let degenerate_faces = triangles.iter().filter(|t| is_degenerate(t)).count();
+    let faces = triangles.len() - degenerate_faces;
+    let [mut non_manifold_edges, mut inconsistent_edges, mut edges, mut components] = [0, 0, 0, faces];
+    let mut boundary = Vec::new();
+    let origins = triangles.as_flattened();
+    let vertex_count = names.map_or(greatest, Vec::len);
+    for_each_edge(&triangles, vertex_count, &mut |done| watch.done(done), |lower, edge| {
+        edges += 1;
+        for pair in edge.windows(2) {
+            components -= usize::from(sets.unite(pair[0].side / 3, pair[1].side / 3));
+        }
+        match edge {
+            [side] => boundary.push([name(lower), name(side.higher)]),
+            [a, b] => inconsistent_edges += usize::from(origins[a.side as usize] == origins[b.side as usize]),
+            _ => non_manifold_edges += 1,
+        }
+    })?;
+    Ok(Watertightness {
+        boundary_edges: boundary.len(),
+        non_manifold_edges,
+        inconsistent_edges,
+        degenerate_faces,
+        components,
+        euler_characteristic: vertices.len() as i64 - edges as i64 + faces as i64,
+        t_junctions: t_junctions(surface.positions, vertices, &boundary, &mut watch)?,
+    })
 }
 
 /// Whether a triangle names a vertex twice.
 fn is_degenerate([a, b, c]: &[u32; 3]) -> bool {
     a == b || b == c || c == a
-}
-
-/// One side of a face.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Side {
-    /// The lesser vertex in the high half, the greater in the low one.
-    edge: u64,
-    /// Twice the face, plus one if the side runs from the lesser to the greater vertex.
-    face_and_way: u64,
-}
-
-impl Side {
-    fn new(from: u32, to: u32, face: usize) -> Self {
-        let edge = (from.min(to) as u64) << 32 | from.max(to) as u64;
-        Self { edge, face_and_way: (face as u64) << 1 | u64::from(from < to) }
-    }
-
-    fn ends(&self) -> [u32; 2] {
-        [(self.edge >> 32) as u32, self.edge as u32]
-    }
-
-    fn face(&self) -> usize {
-        (self.face_and_way >> 1) as usize
-    }
-
-    fn runs_up(&self) -> bool {
-        self.face_and_way & 1 == 1
-    }
-}
-
-/// The sides of all faces, those of one edge side by side.
-fn sorted_sides(triangles: &[[u32; 3]]) -> Vec<Side> {
-    let mut sides = Vec::with_capacity(3 * triangles.len());
-    for (face, corners) in triangles.iter().enumerate() {
-        if !is_degenerate(corners) {
-            let [a, b, c] = *corners;
-            sides.extend([Side::new(a, b, face), Side::new(b, c, face), Side::new(c, a, face)]);
-        }
-    }
-    sort(&mut sides);
-    sides
-}
-
-/// Sorts distinct elements, on several threads where there are any.
-fn sort<T: Ord + Send>(elements: &mut [T]) {
-    #[cfg(feature = "parallel")]
-    {
-        use rayon::slice::ParallelSliceMut;
-        elements.par_sort_unstable();
-    }
-    #[cfg(not(feature = "parallel"))]
-    elements.sort_unstable();
 }
 
 /// The vertices of faces, each once, ascending.
@@ -154,39 +128,16 @@ fn used_vertices(triangles: &[[u32; 3]]) -> Vec<u32> {
     (0..greatest as u32).filter(|&v| used[v as usize]).collect()
 }
 
-/// Sets of faces joined through edges (union-find with path halving; the lesser root stays).
-struct Components {
-    parent: Vec<u32>,
-    joins: usize,
-}
-
-impl Components {
-    fn new(count: usize) -> Self {
-        Self { parent: (0..count as u32).collect(), joins: 0 }
-    }
-
-    fn root(&mut self, mut face: usize) -> usize {
-        while self.parent[face] as usize != face {
-            self.parent[face] = self.parent[self.parent[face] as usize];
-            face = self.parent[face] as usize;
-        }
-        face
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        if a != b {
-            self.parent[a.max(b)] = a.min(b) as u32;
-            self.joins += 1;
-        }
-    }
-}
-
 /// Number of `vertices` that lie inside an edge of `boundary`.
 ///
 /// Vertices at one place are looked up once and edges between the same two places are kept once, so that soups of
 /// unconnected triangles, where many meet in a point, take no longer than others.
-fn t_junctions(positions: &[[f64; 3]], mut vertices: Vec<u32>, boundary: &[[u32; 2]]) -> usize {
+fn t_junctions(
+    positions: &[[f64; 3]],
+    mut vertices: Vec<u32>,
+    boundary: &[[u32; 2]],
+    watch: &mut Watch<'_>,
+) -> Result<usize, Cancelled> {
     let place = |v: u32| positions.get(v as usize).filter(|p| p.iter().all(|x| x.is_finite()));
     // Adding zero makes both zeros the same place.
     let bits = |v: u32| positions[v as usize].map(|x| (x + 0.0).to_bits());
@@ -198,13 +149,14 @@ fn t_junctions(positions: &[[f64; 3]], mut vertices: Vec<u32>, boundary: &[[u32;
     edges.sort_unstable_by_key(|&[a, b, _]| (bits(a), bits(b)));
     edges.dedup_by_key(|&mut [a, b, _]| (bits(a), bits(b)));
     if edges.is_empty() {
-        return 0;
+        return Ok(0);
     }
     vertices.retain(|&v| place(v).is_some());
     vertices.sort_unstable_by_key(|&v| (bits(v), v));
     let places: Vec<&[u32]> = vertices.chunk_by(|&a, &b| bits(a) == bits(b)).collect();
-    let tree = Bvh::padded(Triangles { positions, triangles: &edges }, ON_EDGE);
-    let counts = parallel::pieces(places.len(), |range| {
+    let tree = Bvh::padded(Triangles { positions, triangles: &edges }, ON_EDGE, watch)?;
+    watch.stage(Stage::Sampling, Some(places.len()))?;
+    let counts = parallel::pieces_polled(places.len(), PLACES, &mut |done| watch.done(done), |range| {
         let inside = |vertices: &&&[u32]| {
             let at = vector(positions[vertices[0] as usize]);
             tree.any_around(at, |[a, b, _], p| {
@@ -215,8 +167,8 @@ fn t_junctions(positions: &[[f64; 3]], mut vertices: Vec<u32>, boundary: &[[u32;
             })
         };
         places[range].iter().filter(inside).map(|vertices| vertices.len()).sum::<usize>()
-    });
-    counts.into_iter().sum()
+    })?;
+    Ok(counts.into_iter().sum())
 }
 
 #[cfg(test)]

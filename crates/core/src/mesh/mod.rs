@@ -13,6 +13,7 @@ mod soup;
 mod tags;
 mod topology;
 
+pub(crate) use crate::geometry::NONE;
 pub use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule};
 pub use build::{BuildOptions, Weld};
 pub use diagnosis::{Diagnosis, Finding};
@@ -22,7 +23,7 @@ pub(crate) use ring_shapes::RingShapes;
 pub use sharpness::{Sector, Sharpness};
 pub use soup::{PolygonFaces, PolygonSoup};
 pub use tags::{CornerTag, CreaseTag, Tags};
-pub(crate) use topology::{MAX_FACES, NONE, outgoing_half_edges};
+pub(crate) use topology::{MAX_FACES, outgoing_half_edges};
 pub use topology::{RingNeighbours, Topology};
 
 use crate::index::{FaceId, HalfEdgeId, VertexId};

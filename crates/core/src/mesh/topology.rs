@@ -7,10 +7,8 @@
 //! from it meets every face.
 
 use super::MeshError;
+use crate::geometry::{EdgeSide, NONE, every_edge};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
-
-/// Stands for "no half-edge".
-pub(crate) const NONE: u32 = u32::MAX;
 
 /// Faces that half-edge indices can number: 3·faces − 1 must stay below [`NONE`].
 pub(crate) const MAX_FACES: usize = (u32::MAX as usize) / 3 - 1;
@@ -320,46 +318,35 @@ fn check_indices(triangles: &[[u32; 3]], vertex_count: usize) -> Result<(), Mesh
     Ok(())
 }
 
-/// Finds the twin of every half-edge: the half-edges that leave each vertex are sorted by where they go.
+/// Finds the twin of every half-edge.
 fn match_twins(triangles: &[[u32; 3]], vertex_count: usize) -> Result<Vec<u32>, MeshError> {
     let origins = triangles.as_flattened();
-    let target = |h: u32| origins[HalfEdgeId(h).next().index()];
-    let (starts, mut leaving) = half_edges_by_origin(origins, vertex_count);
-    for v in 0..vertex_count {
-        let list = &mut leaving[starts[v] as usize..starts[v + 1] as usize];
-        list.sort_unstable_by_key(|&h| (target(h), h));
-        if let Some(pair) = list.windows(2).find(|pair| target(pair[0]) == target(pair[1])) {
-            let (to, face) = (target(pair[0]) as usize, (pair[1] / 3) as usize);
-            return Err(MeshError::EdgeUsedTwice { from: v, to, face });
-        }
-    }
     let mut twins = vec![NONE; origins.len()];
-    for (h, &from) in origins.iter().enumerate() {
-        let to = target(h as u32) as usize;
-        let list = &leaving[starts[to] as usize..starts[to + 1] as usize];
-        if let Ok(i) = list.binary_search_by_key(&from, |&g| target(g)) {
-            twins[h] = list[i];
+    let mut twice = None;
+    every_edge(triangles, vertex_count, |_, edge| {
+        let from = |side: &EdgeSide| origins[side.side as usize];
+        match edge {
+            [_] => {}
+            [a, b] if from(a) != from(b) => {
+                (twins[a.side as usize], twins[b.side as usize]) = (b.side, a.side);
+            }
+            // Of two that run the same way, or of three or more, two have the same origin.
+            _ if twice.is_none() => {
+                twice = (1..edge.len())
+                    .find(|&i| edge[..i].iter().any(|e| from(e) == from(&edge[i])))
+                    .map(|i| edge[i].side);
+            }
+            _ => {}
         }
+    });
+    match twice.map(HalfEdgeId) {
+        None => Ok(twins),
+        Some(h) => Err(MeshError::EdgeUsedTwice {
+            from: origins[h.index()] as usize,
+            to: origins[h.next().index()] as usize,
+            face: h.face().index(),
+        }),
     }
-    Ok(twins)
-}
-
-/// The half-edges that leave each vertex, in ascending order: list starts, and the lists.
-pub(crate) fn half_edges_by_origin(origins: &[u32], vertex_count: usize) -> (Vec<u32>, Vec<u32>) {
-    let mut starts = vec![0u32; vertex_count + 1];
-    for &v in origins {
-        starts[v as usize + 1] += 1;
-    }
-    for v in 0..vertex_count {
-        starts[v + 1] += starts[v];
-    }
-    let mut fill = starts.clone();
-    let mut leaving = vec![0u32; origins.len()];
-    for (h, &v) in origins.iter().enumerate() {
-        leaving[fill[v as usize] as usize] = h as u32;
-        fill[v as usize] += 1;
-    }
-    (starts, leaving)
 }
 
 /// One outgoing half-edge a vertex, the boundary one where there is one; [`NONE`] for isolated vertices.

@@ -12,6 +12,7 @@ use super::{Bvh, Node, Slot, WIDTH};
 use crate::measure::frame::Frame;
 use crate::mesh::Triangles;
 use crate::parallel;
+use crate::progress::{Cancelled, Stage, Watch};
 use crate::vector::{DVec3, vector};
 
 /// Boxes are enlarged by this much, in the frame, where coordinates are within ±1: four times the rounding of a
@@ -19,27 +20,36 @@ use crate::vector::{DVec3, vector};
 /// the triangle's own distance are covered together.
 pub(super) const MARGIN: f32 = 1.0 / 4_194_304.0;
 
-/// Ranges shorter than this are cut on the thread they are on.
-#[cfg(feature = "parallel")]
-const PARALLEL_ABOVE: usize = 8192;
+/// Ranges shorter than this are cut to the end in one go.
+const CUT_AT_ONCE: usize = 8192;
 
 /// Builds the tree of a checked surface; each triangle's box is enlarged by `padding` times its diagonal.
-pub(super) fn build(surface: Triangles<'_>, padding: f64) -> Bvh<'_> {
+pub(super) fn build<'a>(
+    surface: Triangles<'a>,
+    padding: f64,
+    watch: &mut Watch<'_>,
+) -> Result<Bvh<'a>, Cancelled> {
+    watch.triangles(surface.triangles.len());
+    watch.stage(Stage::Indexing, Some(surface.triangles.len()))?;
     let bounds = bounds(surface);
     let frame = Frame::new(bounds[0], bounds[1]);
-    let mut centres = parallel::map(surface.triangles.len(), |face| Centre::new(surface, &frame, face));
+    let poll = &mut |_| watch.poll();
+    let mut centres =
+        parallel::map_polled(surface.triangles.len(), poll, |face| Centre::new(surface, &frame, face))?;
     let mut capacity = WIDTH;
     while capacity < centres.len() {
         capacity *= WIDTH;
     }
-    order(&mut centres, capacity);
-    let slots = parallel::map(centres.len(), |place| {
+    order(&mut centres, capacity, watch)?;
+    let poll = &mut |_| watch.poll();
+    let slots = parallel::map_polled(centres.len(), poll, |place| {
         let face = centres[place].face;
         Slot { corners: surface.triangles[face as usize], face }
-    });
+    })?;
     drop(centres);
-    let (nodes, starts) = boxes(surface, &frame, &slots, padding);
-    Bvh { surface, frame, bounds, slots, nodes, starts }
+    let (nodes, starts) = boxes(surface, &frame, &slots, padding, watch)?;
+    watch.done(surface.triangles.len())?;
+    Ok(Bvh { surface, frame, bounds, slots, nodes, starts })
 }
 
 /// The box of the triangles.
@@ -56,7 +66,7 @@ fn bounds(surface: Triangles<'_>) -> [DVec3; 2] {
 }
 
 /// A triangle standing for its place in the order: the centre of its box.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Centre {
     at: [f32; 3],
     face: u32,
@@ -80,25 +90,38 @@ impl Centre {
 }
 
 /// Orders `centres` so that every aligned run of 4^k is compact; `capacity` is a power of four times one or two.
-fn order(centres: &mut [Centre], capacity: usize) {
+///
+/// Cut by cut, all ranges of one size together, until they are small enough to be cut to the end in one go.
+fn order(centres: &mut [Centre], mut capacity: usize, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
+    let count = centres.len();
+    let mut ranges = vec![centres];
+    while capacity > CUT_AT_ONCE {
+        capacity /= 2;
+        let halves = parallel::each_polled(ranges, &mut |_| watch.poll(), |range| cut(range, capacity))?;
+        ranges = halves.into_iter().flatten().filter(|half| !half.is_empty()).collect();
+    }
+    let poll = &mut |ranges: usize| watch.done((ranges * capacity).min(count));
+    parallel::each_polled(ranges, poll, |range| order_at_once(range, capacity))?;
+    Ok(())
+}
+
+/// Cuts a range so that `half` of its centres lie before the cut; the part behind it is empty where there are no more.
+fn cut(centres: &mut [Centre], half: usize) -> [&mut [Centre]; 2] {
+    if centres.len() <= half {
+        return [centres, &mut []];
+    }
+    let axis = longest_axis(centres);
+    centres.select_nth_unstable_by_key(half, |centre| centre.key(axis));
+    centres.split_at_mut(half).into()
+}
+
+/// Orders a range in one go.
+fn order_at_once(centres: &mut [Centre], capacity: usize) {
     if centres.len() <= WIDTH {
         centres.sort_unstable_by_key(|centre| centre.face);
         return;
     }
-    let half = capacity / 2;
-    if centres.len() <= half {
-        return order(centres, half);
-    }
-    let axis = longest_axis(centres);
-    centres.select_nth_unstable_by_key(half, |centre| centre.key(axis));
-    let (left, right) = centres.split_at_mut(half);
-    #[cfg(feature = "parallel")]
-    if left.len() >= PARALLEL_ABOVE {
-        rayon::join(|| order(left, half), || order(right, half));
-        return;
-    }
-    order(left, half);
-    order(right, half);
+    cut(centres, capacity / 2).into_iter().for_each(|half| order_at_once(half, capacity / 2));
 }
 
 /// The axis along which the centres spread most; the first of equals.
@@ -112,7 +135,13 @@ fn longest_axis(centres: &[Centre]) -> usize {
 }
 
 /// The nodes, level by level from the root, and where each level starts.
-fn boxes(surface: Triangles<'_>, frame: &Frame, slots: &[Slot], padding: f64) -> (Vec<Node>, Vec<usize>) {
+fn boxes(
+    surface: Triangles<'_>,
+    frame: &Frame,
+    slots: &[Slot],
+    padding: f64,
+    watch: &mut Watch<'_>,
+) -> Result<(Vec<Node>, Vec<usize>), Cancelled> {
     let mut sizes = vec![slots.len().div_ceil(WIDTH)];
     while sizes[sizes.len() - 1] > 1 {
         sizes.push(sizes[sizes.len() - 1].div_ceil(WIDTH));
@@ -125,7 +154,8 @@ fn boxes(surface: Triangles<'_>, frame: &Frame, slots: &[Slot], padding: f64) ->
     let mut nodes = vec![Node::EMPTY; starts[sizes.len()]];
     for level in (0..sizes.len()).rev() {
         let (above, below) = nodes.split_at_mut(starts[level + 1]);
-        parallel::for_each_chunk(&mut above[starts[level]..], 256, |piece, chunk| {
+        let own = &mut above[starts[level]..];
+        parallel::for_each_chunk_polled(own, 256, &mut |_| watch.poll(), |piece, chunk| {
             for (i, node) in chunk.iter_mut().enumerate() {
                 let first = (piece * 256 + i) * WIDTH;
                 if level + 1 == sizes.len() {
@@ -135,9 +165,9 @@ fn boxes(surface: Triangles<'_>, frame: &Frame, slots: &[Slot], padding: f64) ->
                     *node = box_nodes(&below[first..sizes[level + 1].min(first + WIDTH)]);
                 }
             }
-        });
+        })?;
     }
-    (nodes, starts)
+    Ok((nodes, starts))
 }
 
 /// The node over up to four triangles.

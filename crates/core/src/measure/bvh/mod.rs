@@ -15,8 +15,9 @@ use glam::Vec4;
 
 use super::MeasureError;
 use super::frame::{Frame, Located, distance};
-use super::triangle::{Foot, closest_to_origin};
+use crate::geometry::{Foot, closest_to_origin};
 use crate::mesh::Triangles;
+use crate::progress::{Cancelled, Observer, Stage, Watch, unobserved};
 use crate::vector::{DVec3, vector};
 
 /// Children of a node.
@@ -30,7 +31,7 @@ struct Node {
 }
 
 /// The corners of a triangle and which triangle it is, in the order of the tree.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Slot {
     corners: [u32; 3],
     face: u32,
@@ -113,19 +114,35 @@ impl<'a> Bvh<'a> {
     /// # Errors
     /// No triangles, an index out of range, a coordinate that is not finite.
     pub fn new(surface: Triangles<'a>) -> Result<Self, MeasureError> {
-        Self::named(surface, "reference")
+        Self::new_observed(surface, &mut unobserved)
+    }
+
+    /// [`Self::new`], telling an observer how it goes on.
+    ///
+    /// # Errors
+    /// No triangles, an index out of range, a coordinate that is not finite, or the observer asked to stop.
+    pub fn new_observed(surface: Triangles<'a>, observer: &mut Observer<'_>) -> Result<Self, MeasureError> {
+        Self::named(surface, "reference", observer)
     }
 
     /// The same; `which` names the surface in errors.
-    pub(super) fn named(surface: Triangles<'a>, which: &'static str) -> Result<Self, MeasureError> {
+    pub(super) fn named(
+        surface: Triangles<'a>,
+        which: &'static str,
+        observer: &mut Observer<'_>,
+    ) -> Result<Self, MeasureError> {
         super::check(surface, which)?;
-        Ok(build::build(surface, 0.0))
+        Ok(build::build(surface, 0.0, &mut Watch::new(observer, Stage::Indexing))?)
     }
 
     /// A hierarchy of boxes enlarged by a share of the triangle's size, to find triangles near which a point lies.
     /// The surface has triangles, and all that they name exists and is finite.
-    pub(super) fn padded(surface: Triangles<'a>, share: f64) -> Self {
-        build::build(surface, share)
+    pub(super) fn padded(
+        surface: Triangles<'a>,
+        share: f64,
+        watch: &mut Watch<'_>,
+    ) -> Result<Self, Cancelled> {
+        build::build(surface, share, watch)
     }
 
     /// Whether `test` holds for any triangle whose box contains the point. It is given the corners and the point,

@@ -28,10 +28,8 @@
 use super::scale::ROUNDOFF;
 use super::seen::Seen;
 use super::target::Target;
+use crate::geometry::NONE;
 use crate::vector::DVec3;
-
-/// No side: the triangle that a sheet was gathered from was not entered through one.
-const NONE: u32 = u32::MAX;
 
 /// A side is not crossed if the triangle beyond is higher than the goal and steeper than this: squared cosine of its
 /// angle to the direction. Beyond 72° a sideways step to the ridge is shorter than the height by a factor of three.
@@ -171,7 +169,7 @@ impl Cover {
             return;
         }
         let side = 3 * patch.face + corner as u32;
-        let Some(across) = target.neighbours.across(side) else {
+        let Some(across) = target.across(side) else {
             self.ends.push([from, to]);
             return;
         };

@@ -16,7 +16,6 @@
 //! asks for one nearest point and three scalar products a triangle.
 
 mod cover;
-mod neighbours;
 mod piece;
 mod scale;
 mod search;
@@ -25,9 +24,10 @@ mod target;
 
 use super::MeasureError;
 use super::bvh::Bvh;
+use crate::geometry::{NONE, for_each_edge};
 use crate::mesh::Triangles;
+use crate::progress::{Observer, Stage, Watch, unobserved};
 use crate::vector::vector;
-use neighbours::Neighbours;
 use scale::Scale;
 use search::Search;
 use target::Target;
@@ -171,12 +171,25 @@ pub fn certified_hausdorff(
     reference: Triangles<'_>,
     options: &CertifiedOptions,
 ) -> Result<CertifiedHausdorff, MeasureError> {
-    let surface = Bvh::named(surface, "measured")?;
-    let reference = Bvh::named(reference, "reference")?;
-    certified_hausdorff_between(&surface, &reference, options)
+    certified_hausdorff_observed(surface, reference, options, &mut unobserved)
 }
 
-/// The same between surfaces whose hierarchies are at hand, for measuring several against one.
+/// [`certified_hausdorff`], telling an observer how it goes on.
+///
+/// # Errors
+/// The same, or the observer asked to stop.
+pub fn certified_hausdorff_observed(
+    surface: Triangles<'_>,
+    reference: Triangles<'_>,
+    options: &CertifiedOptions,
+    observer: &mut Observer<'_>,
+) -> Result<CertifiedHausdorff, MeasureError> {
+    let surface = Bvh::named(surface, "measured", observer)?;
+    let reference = Bvh::named(reference, "reference", observer)?;
+    certified_hausdorff_between_observed(&surface, &reference, options, observer)
+}
+
+/// [`certified_hausdorff`] between surfaces whose hierarchies are at hand, for measuring several against one.
 ///
 /// # Errors
 /// A surface with more than 2^32 / 3 triangles or with a coordinate beyond 1e300.
@@ -185,12 +198,27 @@ pub fn certified_hausdorff_between(
     reference: &Bvh<'_>,
     options: &CertifiedOptions,
 ) -> Result<CertifiedHausdorff, MeasureError> {
+    certified_hausdorff_between_observed(surface, reference, options, &mut unobserved)
+}
+
+/// [`certified_hausdorff_between`], telling an observer how it goes on.
+///
+/// # Errors
+/// The same, or the observer asked to stop.
+pub fn certified_hausdorff_between_observed(
+    surface: &Bvh<'_>,
+    reference: &Bvh<'_>,
+    options: &CertifiedOptions,
+    observer: &mut Observer<'_>,
+) -> Result<CertifiedHausdorff, MeasureError> {
     let reference_diagonal = reference.diagonal();
     let gap = options.gap.unwrap_or(DEFAULT_GAP * reference_diagonal);
-    let (forward, forward_work) =
-        Search::run(surface, &target(surface, reference, "reference")?, gap, options);
-    let (backward, backward_work) =
-        Search::run(reference, &target(reference, surface, "measured")?, gap, options);
+    let watch = &mut Watch::new(observer, Stage::Bounding);
+    let to_reference = target(surface, reference, "reference", watch)?;
+    let (forward, forward_work) = Search::run(surface, &to_reference, gap, options, watch)?;
+    drop(to_reference);
+    let to_surface = target(reference, surface, "measured", watch)?;
+    let (backward, backward_work) = Search::run(reference, &to_surface, gap, options, watch)?;
     Ok(CertifiedHausdorff { forward, backward, reference_diagonal, work: forward_work + backward_work })
 }
 
@@ -205,6 +233,7 @@ fn target<'s, 'a>(
     from: &Bvh<'_>,
     to: &'s Bvh<'a>,
     which: &'static str,
+    watch: &mut Watch<'_>,
 ) -> Result<Target<'s, 'a>, MeasureError> {
     let magnitude = |bvh: &Bvh<'_>| {
         bvh.bounding_box().as_flattened().iter().fold(0.0f64, |greatest, x| greatest.max(x.abs()))
@@ -216,9 +245,17 @@ fn target<'s, 'a>(
     let [low, high] = to.bounding_box().map(vector);
     let scale = Scale::new(value.max(magnitude(from)), (high - low).max_element());
     let surface = to.surface();
-    let neighbours = Neighbours::new(surface.triangles, surface.positions.len())
-        .ok_or(MeasureError::TooMany { which, count: surface.triangles.len() })?;
-    Ok(Target { bvh: to, neighbours, scale })
+    watch.stage(Stage::Matching, Some(surface.triangles.len()))?;
+    if surface.triangles.len() > NONE as usize / 3 {
+        return Err(MeasureError::TooMany { which, count: surface.triangles.len() });
+    }
+    let mut twins = vec![NONE; 3 * surface.triangles.len()];
+    for_each_edge(surface.triangles, surface.positions.len(), &mut |done| watch.done(done), |_, edge| {
+        if let [a, b] = edge {
+            (twins[a.side as usize], twins[b.side as usize]) = (b.side, a.side);
+        }
+    })?;
+    Ok(Target { bvh: to, twins, scale })
 }
 
 #[cfg(test)]

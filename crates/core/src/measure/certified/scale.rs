@@ -21,7 +21,7 @@ const POINT_ROUNDINGS: f64 = 320.0;
 
 /// Relative to the size of the surface searched, how far the distance that a search returns may be from the truth.
 /// The worst are points above the inside of a sliver: with the least sine that
-/// [`closest_to_origin`](crate::measure::triangle::closest_to_origin) trusts, 3e-4, the direction of its normal is known
+/// [`closest_to_origin`](crate::geometry::closest_to_origin) trusts, 3e-4, the direction of its normal is known
 /// to 8 / 3e-4 roundings, and its plane at the foot of the point to that share of its size, 3e-12; 2^-36 is five times
 /// that.
 const SEARCH: f64 = 1.0 / (1u64 << 36) as f64;

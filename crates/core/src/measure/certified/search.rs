@@ -15,6 +15,7 @@ use crate::measure::bvh::Bvh;
 use crate::measure::climb::climb;
 use crate::measure::samples::Samples;
 use crate::parallel;
+use crate::progress::{Cancelled, Stage, Watch};
 use crate::vector::{DVec3, vector};
 
 /// Points that the first lower bound is sampled at, beside the vertices: enough for the climb to start near the
@@ -94,7 +95,8 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
         target: &'t Target<'s, 'a>,
         gap: f64,
         options: &CertifiedOptions,
-    ) -> (Bounds, u64) {
+        watch: &mut Watch<'_>,
+    ) -> Result<(Bounds, u64), Cancelled> {
         // No interval can be narrower than what rounding is allowed for.
         let least = 4.0 * (target.scale.slack + target.scale.search_slack);
         let mut search = Self {
@@ -109,10 +111,11 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
             dropped: f64::NEG_INFINITY,
             work: 0,
         };
-        let faces = search.sample();
-        search.first_pass(&faces);
-        search.refine();
-        (search.bounds(), search.work)
+        watch.triangles(from.surface().triangles.len());
+        let faces = search.sample(watch)?;
+        search.first_pass(&faces, watch)?;
+        search.refine(watch)?;
+        Ok((search.bounds(), search.work))
     }
 
     /// The proven lower bound so far.
@@ -128,15 +131,16 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
     }
 
     /// Measures samples and climbs from the farthest; returns the triangle nearest to each vertex in use.
-    fn sample(&mut self) -> Vec<u32> {
+    fn sample(&mut self, watch: &mut Watch<'_>) -> Result<Vec<u32>, Cancelled> {
         let samples = Samples::new(self.from, SAMPLES);
-        let runs = parallel::pieces_of(samples.len(), RUN, |range| {
+        watch.stage(Stage::Sampling, Some(samples.len()))?;
+        let runs = parallel::pieces_polled(samples.len(), RUN, &mut |done| watch.done(done), |range| {
             let mut points = Vec::with_capacity(range.len());
             samples.visit(range, |point| points.push(point));
             let mut near = Vec::with_capacity(points.len());
             self.target.bvh.each_nearest(&points, |_, distance, face| near.push((distance, face)));
             near
-        });
+        })?;
         let near = runs.concat();
         let mut faces = vec![0; self.from.surface().positions.len()];
         for (&vertex, &(_, face)) in samples.vertices().iter().zip(&near) {
@@ -152,10 +156,10 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
         let scale = self.target.scale;
         let sample = |point, distance| Sample { point: scale.point(point), distance: scale.length(distance) };
         self.farthest = sample(samples.point(best), most);
-        if let Some((point, distance)) = climb(&samples, &distances, self.from, self.target.bvh) {
+        if let Some((point, distance)) = climb(&samples, &distances, self.from, self.target.bvh, watch)? {
             self.farthest = self.farthest.farther(sample(point, distance));
         }
-        faces
+        Ok(faces)
     }
 
     /// Triangles in a sheet at most.
@@ -170,9 +174,11 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
     }
 
     /// Bounds every triangle and keeps those that may be farther away than the goal.
-    fn first_pass(&mut self, faces: &[u32]) {
+    fn first_pass(&mut self, faces: &[u32], watch: &mut Watch<'_>) -> Result<(), Cancelled> {
         let goal = self.goal();
-        let runs = parallel::pieces_of(self.from.surface().triangles.len(), RUN, |range| {
+        let count = self.from.surface().triangles.len();
+        watch.stage(Stage::Bounding, Some(count))?;
+        let runs = parallel::pieces_polled(count, RUN, &mut |done| watch.done(done), |range| {
             let mut worker = self.worker();
             let (mut kept, mut dropped) = (Vec::new(), f64::NEG_INFINITY);
             for slot in range {
@@ -186,12 +192,15 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
                 }
             }
             Found { kept, dropped, farthest: worker.farthest, work: worker.work() }
-        });
+        })?;
         self.take(runs);
+        Ok(())
     }
 
     /// Splits pieces until all are within the goal or the work is used up.
-    fn refine(&mut self) {
+    fn refine(&mut self, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
+        let mut split = 0;
+        watch.stage(Stage::Bounding, None)?;
         let mut batch = Vec::with_capacity(BATCH);
         let most_waiting = self.waiting.len() + WAITING;
         while self.work < self.most_work && self.waiting.len() < most_waiting {
@@ -206,18 +215,21 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
                 }
             }
             if batch.is_empty() {
-                return;
+                break;
             }
-            let runs = parallel::pieces_of(batch.len(), PIECES, |range| {
+            let poll = &mut |done| watch.done(split + done);
+            let runs = parallel::pieces_polled(batch.len(), PIECES, poll, |range| {
                 let mut worker = self.worker();
                 let (mut kept, mut dropped) = (Vec::new(), f64::NEG_INFINITY);
                 for piece in &batch[range] {
                     dropped = dropped.max(worker.split(piece, goal, &mut kept));
                 }
                 Found { kept, dropped, farthest: worker.farthest, work: worker.work() }
-            });
+            })?;
+            split += batch.len();
             self.take(runs);
         }
+        Ok(())
     }
 
     /// Takes in what the runs found, in order.

@@ -1,15 +1,15 @@
 //! The surface that distances are measured to, in the common scale: its triangles, their neighbours, nearest points.
 
-use super::neighbours::Neighbours;
 use super::scale::Scale;
+use crate::geometry::{NONE, closest_to_origin};
 use crate::measure::bvh::Bvh;
-use crate::measure::triangle::closest_to_origin;
 use crate::vector::{DVec3, vector};
 
 /// A surface to which distances are measured.
 pub(super) struct Target<'s, 'a> {
     pub(super) bvh: &'s Bvh<'a>,
-    pub(super) neighbours: Neighbours,
+    /// For each side that exactly two triangles share the other one's side, [`NONE`] for others.
+    pub(super) twins: Vec<u32>,
     pub(super) scale: Scale,
 }
 
@@ -23,6 +23,12 @@ pub(super) struct Near {
 }
 
 impl Target<'_, '_> {
+    /// The side of the other triangle at this side, if there is exactly one other. Sides are numbered 3 · triangle + corner.
+    #[inline]
+    pub(super) fn across(&self, side: u32) -> Option<u32> {
+        Some(self.twins[side as usize]).filter(|&other| other != NONE)
+    }
+
     #[inline]
     pub(super) fn vertices(&self, face: u32) -> [u32; 3] {
         self.bvh.surface().triangles[face as usize]

@@ -8,9 +8,9 @@
 use std::collections::HashMap;
 
 use super::orient::Neighbours;
+use crate::geometry::{DisjointSets, NONE};
 use crate::index::{HalfEdgeId, VertexId};
-use crate::mesh::topology::{NONE, outgoing_half_edges};
-use crate::mesh::{Diagnosis, Groups, Junctions, Topology};
+use crate::mesh::{Diagnosis, Groups, Junctions, Topology, outgoing_half_edges};
 
 /// Manifold sheets.
 pub(super) struct Sheets {
@@ -119,14 +119,7 @@ impl Cutting {
 
     /// Vertices whose fans do not hang together through cut edges.
     fn bow_ties(&self, cuts: &Groups) -> Vec<u32> {
-        let mut parents: Vec<u32> = (0..(self.vertex_count + self.copied.len()) as u32).collect();
-        let root = |parents: &mut [u32], mut v: u32| {
-            while parents[v as usize] != v {
-                parents[v as usize] = parents[parents[v as usize] as usize];
-                v = parents[v as usize];
-            }
-            v
-        };
+        let mut sets = DisjointSets::new(self.vertex_count + self.copied.len());
         for edge in cuts.iter() {
             let mut first = self.ends(edge[0]);
             first.sort_unstable_by_key(|&v| self.original(v));
@@ -134,16 +127,13 @@ impl Cutting {
                 let mut ends = self.ends(h);
                 ends.sort_unstable_by_key(|&v| self.original(v));
                 for (a, b) in first.into_iter().zip(ends) {
-                    let (a, b) = (root(&mut parents, a), root(&mut parents, b));
-                    parents[a.max(b) as usize] = a.min(b);
+                    sets.unite(a, b);
                 }
             }
         }
         // The root of a set is its lowest member; one set at each vertex holds the vertex itself.
         let mut found: Vec<u32> = (0..self.copied.len())
-            .filter(|&copy| {
-                root(&mut parents, (self.vertex_count + copy) as u32) as usize >= self.vertex_count
-            })
+            .filter(|&copy| sets.root((self.vertex_count + copy) as u32) as usize >= self.vertex_count)
             .map(|copy| self.copied[copy])
             .collect();
         found.sort_unstable();

@@ -15,8 +15,8 @@ mod triangulate;
 mod weld;
 mod zero_area;
 
-use super::topology::NONE;
 use super::{Diagnosis, Mesh, MeshError, PolygonSoup, check_finite};
+use crate::geometry::NONE;
 use crate::vector::vector;
 use cut::Sheets;
 use retag::VertexMaps;

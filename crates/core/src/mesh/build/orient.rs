@@ -4,8 +4,8 @@
 //! with more than two faces, and in a one-sided component those where turning back is unavoidable.
 
 use super::triangulate::Faces;
+use crate::geometry::{NONE, every_edge};
 use crate::index::{FaceId, HalfEdgeId};
-use crate::mesh::topology::NONE;
 use crate::mesh::{Diagnosis, Groups};
 
 /// Who lies across each half-edge, and who was cut apart.
@@ -26,53 +26,16 @@ pub(super) fn connect(
     let mut twins = vec![NONE; 3 * triangles.len()];
     let mut cuts = Groups::default();
     let mut named = Vec::new();
-    for_each_edge(triangles, vertex_count, |lower, edge| match *edge {
+    every_edge(triangles, vertex_count, |lower, edge| match edge {
         [_] => {}
-        [a, b] => {
-            let (a, b) = (a as u32, b as u32);
-            (twins[a as usize], twins[b as usize]) = (b, a);
-        }
+        [a, b] => (twins[a.side as usize], twins[b.side as usize]) = (b.side, a.side),
         _ => {
-            cuts.push(edge.iter().map(|&h| h as u32));
+            cuts.push(edge.iter().map(|side| side.side));
             named.push(name(lower));
         }
     });
     diagnosis.non_manifold_edges.add_all(named);
     Neighbours { twins, cuts }
-}
-
-/// Calls `visit` with the lower end of each edge and its half-edges, which stand in the low halves of the
-/// numbers given, in ascending order.
-fn for_each_edge(triangles: &[[u32; 3]], vertex_count: usize, mut visit: impl FnMut(u32, &[u64])) {
-    let sides = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
-    let mut starts = vec![0u32; vertex_count + 1];
-    for t in triangles {
-        for [a, b] in sides(t) {
-            starts[a.min(b) as usize + 1] += 1;
-        }
-    }
-    for v in 0..vertex_count {
-        starts[v + 1] += starts[v];
-    }
-    // The higher end above, the half-edge below: sorting the numbers sorts by both.
-    let mut lists = vec![0u64; 3 * triangles.len()];
-    let mut h = 0u64;
-    for t in triangles {
-        for [a, b] in sides(t) {
-            // Filling moves each start up to the next one.
-            let slot = &mut starts[a.min(b) as usize];
-            lists[*slot as usize] = u64::from(a.max(b)) << 32 | h;
-            *slot += 1;
-            h += 1;
-        }
-    }
-    let mut start = 0;
-    for (v, &end) in starts[..vertex_count].iter().enumerate() {
-        let list = &mut lists[start..end as usize];
-        list.sort_unstable();
-        list.chunk_by(|a, b| a >> 32 == b >> 32).for_each(|edge| visit(v as u32, edge));
-        start = end as usize;
-    }
 }
 
 /// Turns faces so that neighbours run opposite ways along their edge. In each component the smaller part is

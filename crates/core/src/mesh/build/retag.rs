@@ -1,8 +1,8 @@
 //! The soup's crease and corner tags on the vertices and edges of the mesh.
 
 use super::cut::Middle;
+use crate::geometry::NONE;
 use crate::index::VertexId;
-use crate::mesh::topology::NONE;
 use crate::mesh::{CornerTag, CreaseTag, Diagnosis, PolygonSoup, Tags, Topology};
 
 /// How the soup's vertices and the mesh's belong together.

@@ -6,6 +6,7 @@
 //! no care for distances far smaller or larger than the coordinates.
 
 use super::super::MeshError;
+use crate::geometry::DisjointSets;
 use crate::vector::{DVec3, vector};
 
 /// Up to this many vertices a tree node is a leaf: pairs are tested one by one.
@@ -43,41 +44,18 @@ pub(super) fn within(positions: &[[f64; 3]], used: &[bool], distance: f64) -> Re
             expected: "a finite number of at least 0",
         });
     }
-    let mut kept = exact(positions, used);
+    let kept = exact(positions, used);
     if distance == 0.0 {
         return Ok(kept);
     }
     let first = |&v: &u32| used[v as usize] && kept[v as usize] == v;
     let mut order: Vec<u32> = (0..positions.len() as u32).filter(first).collect();
+    let mut sets = DisjointSets::from_parents(kept);
     if !order.is_empty() {
-        let mut sets = Sets(kept);
         let nodes = Tree::build(positions, &mut order);
         SelfJoin { positions, order: &order, tree: &nodes, distance, sets: &mut sets }.join_all();
-        kept = sets.0;
     }
-    // A parent never has the higher index, so that one ascending pass resolves all chains.
-    for v in 0..kept.len() {
-        kept[v] = kept[kept[v] as usize];
-    }
-    Ok(kept)
-}
-
-/// Disjoint sets whose root is their lowest member.
-struct Sets(Vec<u32>);
-
-impl Sets {
-    fn root(&mut self, mut v: u32) -> u32 {
-        while self.0[v as usize] != v {
-            self.0[v as usize] = self.0[self.0[v as usize] as usize];
-            v = self.0[v as usize];
-        }
-        v
-    }
-
-    fn unite(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
+    Ok(sets.into_roots())
 }
 
 /// A node: a run of the order, its box, and its children (none for a leaf).
@@ -130,7 +108,7 @@ struct SelfJoin<'a> {
     order: &'a [u32],
     tree: &'a Tree,
     distance: f64,
-    sets: &'a mut Sets,
+    sets: &'a mut DisjointSets,
 }
 
 impl SelfJoin<'_> {
@@ -140,7 +118,9 @@ impl SelfJoin<'_> {
             let Node { start, end, low, high, children } = self.tree.nodes[node];
             if self.is_within(high - low) {
                 let run = &self.order[start..end];
-                run.iter().for_each(|&v| self.sets.unite(run[0], v));
+                for &v in run {
+                    self.sets.unite(run[0], v);
+                }
             } else if let Some([left, right]) = children {
                 self.join(left, right);
             } else {

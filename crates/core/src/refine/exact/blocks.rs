@@ -3,7 +3,7 @@
 
 use super::emit::Emission;
 use super::grow::Growth;
-use crate::measure::closest_to_origin;
+use crate::geometry::closest_to_origin;
 use crate::vector::DVec3;
 
 /// The boxes of the control faces' triangles.

@@ -1,0 +1,13 @@
+//! What several rooms need of triangles and sets of numbers, once: edges and their triangles, disjoint sets, the closest
+//! point of a triangle. Knows no mesh.
+
+mod disjoint_sets;
+mod edges;
+mod triangle;
+
+pub(crate) use disjoint_sets::DisjointSets;
+pub(crate) use edges::{EdgeSide, every_edge, for_each_edge};
+pub(crate) use triangle::{Foot, closest_to_origin};
+
+/// Stands for "no element" among indices.
+pub(crate) const NONE: u32 = u32::MAX;
