@@ -9,7 +9,7 @@ use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, RingShapes, Sharpness, Topology};
 use crate::parallel;
 use crate::ring::{EdgeShape, RingShape};
-use crate::scheme::{EdgeMask, Scheme, Support, VertexMask};
+use crate::scheme::{EdgeMask, Scheme, Support, VertexMask, declared};
 use crate::vector::{DVec3, vector};
 use incident_edge::IncidentEdge;
 use views::{EdgeView, LabelledRing, View, edge_views, vertex_views};
@@ -52,6 +52,7 @@ struct Diamond {
 impl<'a> Masks<'a> {
     /// Prepared for points all over the mesh.
     pub(crate) fn new(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Self {
+        let scheme = declared(scheme);
         let shapes = RingShapes::of(mesh);
         let vertex_masks = shapes.distinct.iter().map(|&shape| scheme.vertex_mask(shape)).collect();
         let is_closed = shapes.distinct.iter().all(|shape| !shape.open);
@@ -63,6 +64,7 @@ impl<'a> Masks<'a> {
 
     /// For a few points.
     pub(crate) fn on_demand(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Self {
+        let scheme = declared(scheme);
         let regular = || scheme.edge_mask(EdgeShape::between(RingShape::interior(6), RingShape::interior(6)));
         let diamond = (scheme.support() == Support::OneRing).then(|| Diamond::of(&regular())).flatten();
         let sharpness = Sharpness::of(mesh);

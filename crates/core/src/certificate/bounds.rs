@@ -54,6 +54,7 @@ use super::deviation::{Borders, Deviation, DeviationBound, INSIDE};
 use super::sampled::Samples;
 use super::sub_triangle::SubTriangle;
 use super::triangle_frame::TriangleFrame;
+use super::{exceeds, greater};
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::characteristic::{Characteristic, MapSector};
 use crate::patch::extraordinary::ExtraordinaryPatch;
@@ -116,6 +117,9 @@ impl<'a> Pieces<'a> {
         rules: &'a Rules<'a>,
         effort: Effort,
     ) -> Deviation {
+        if !frame.is_finite() {
+            return Deviation::alone(f64::INFINITY);
+        }
         let bound = DeviationBound { frame, open: effort.open };
         let mut search = Search { bound, rules, effort, found: Deviation::default() };
         match (self.patch, part) {
@@ -184,7 +188,7 @@ impl Search<'_> {
 
     fn add(&mut self, deviation: Deviation) {
         // A slope that is too great must not spoil what others are good for.
-        let alone = deviation.slope > self.effort.slope;
+        let alone = exceeds(deviation.slope, self.effort.slope);
         self.found = self.found.max(if alone { Deviation::alone(deviation.own) } else { deviation });
     }
 
@@ -271,8 +275,8 @@ impl Search<'_> {
         let tangents = [1, 2].map(|i| sums[i] * (2.0 / valence as f64));
         let image = |at: DVec3| limit + at.x * tangents[0] + at.y * tangents[1];
         let rest = piece.points().zip(map.control.points());
-        let rest = rest.map(|(point, at)| point.distance_squared(image(at))).fold(0.0, f64::max).sqrt();
-        if rest > self.aim() {
+        let rest = rest.map(|(point, at)| point.distance_squared(image(at))).fold(0.0, greater).sqrt();
+        if exceeds(rest, self.aim()) {
             return None;
         }
         let mut curves = [(0, DVec3::ZERO); 13];
@@ -305,9 +309,9 @@ impl Search<'_> {
         let frame = self.bound.frame;
         let mut greatest = 0.0f64;
         patch.for_each_hull_point(|point| {
-            greatest = greatest.max(frame.squared(point));
+            greatest = greater(greatest, frame.squared(point));
             for border in borders.into_iter().filter(|&border| border != INSIDE) {
-                greatest = greatest.max(frame.squared_to_edge(border as usize, point));
+                greatest = greater(greatest, frame.squared_to_edge(border as usize, point));
             }
         });
         greatest.sqrt()

@@ -2,6 +2,7 @@
 //! greatest of.
 
 use super::triangle_frame::{Beside, TriangleFrame};
+use super::{exceeds, greater};
 use crate::patch::bezier_triangle::{BezierTriangle, EDGES, INNER};
 use crate::vector::DVec3;
 
@@ -32,10 +33,10 @@ impl Deviation {
     /// The greater of each.
     pub(crate) fn max(self, other: Self) -> Self {
         Self {
-            own: self.own.max(other.own),
-            height: self.height.max(other.height),
-            drift: self.drift.max(other.drift),
-            slope: self.slope.max(other.slope),
+            own: greater(self.own, other.own),
+            height: greater(self.height, other.height),
+            drift: greater(self.drift, other.drift),
+            slope: greater(self.slope, other.slope),
         }
     }
 
@@ -54,8 +55,8 @@ impl Deviation {
         if moved == 0.0 {
             return self;
         }
-        let height = self.height.max(moved).hypot(2.0 * aside);
-        Self { own: self.own.max(moved), height, drift: self.drift + aside, ..self }
+        let height = greater(self.height, moved).hypot(2.0 * aside);
+        Self { own: greater(self.own, moved), height, drift: self.drift + aside, ..self }
     }
 
     /// The bound where the neighbours' planes are turned by angles with this chord (2 sin(θ/2)) at most, and `slope`
@@ -77,7 +78,7 @@ pub(crate) struct DeviationBound<'a> {
     pub(crate) open: [bool; 3],
 }
 
-/// The greatest of what was met, for a triangle that has a plane and neighbours all round.
+/// The greatest of what was met, for a triangle that has a plane and neighbours all round. All points are finite.
 #[derive(Default)]
 struct Greatest {
     height: f64,
@@ -107,12 +108,12 @@ impl Greatest {
         let mut side = 0.0f64;
         for edge in 0..3 {
             let outside = frame.outside_from_first(edge, offset);
-            if outside > frame.on_edge() {
+            if exceeds(outside, frame.on_edge()) {
                 let room = frame.room_from_first(edge, offset);
                 side = side.max(outside);
                 self.drift = self.drift.max(outside);
                 self.slope = self.slope.max(outside / room);
-                self.beyond |= room <= 0.0;
+                self.beyond |= exceeds(0.0, room);
             }
         }
         self.stands(height, side);
@@ -125,12 +126,12 @@ impl Greatest {
         let room = frame.room_from_first(edge, offset);
         self.stands(height, outside);
         if outside.abs() <= frame.on_edge() {
-            self.beyond |= room < -frame.on_edge();
+            self.beyond |= exceeds(-room, frame.on_edge());
             return;
         }
-        self.beyond |= room <= 0.0;
+        self.beyond |= exceeds(0.0, room);
         self.swing = self.swing.max(outside.abs() / room);
-        if outside > 0.0 {
+        if exceeds(outside, 0.0) {
             self.drift = self.drift.max(outside);
             self.slope = self.slope.max(outside / room);
         }
@@ -157,6 +158,9 @@ impl DeviationBound<'_> {
         }
         let frame = self.frame;
         let offsets = net.0.map(|point| frame.seen_from_first(point));
+        if !offsets.iter().sum::<DVec3>().is_finite() {
+            return (Deviation::alone(f64::INFINITY), 0.0);
+        }
         let heights = offsets.map(|offset| frame.height_from_first(offset));
         let mut greatest = Greatest::default();
         for at in INNER {
@@ -189,7 +193,9 @@ impl DeviationBound<'_> {
         curves: &[(usize, DVec3)],
     ) -> Deviation {
         let frame = self.frame;
-        if !frame.is_flat() && self.open == [false; 3] {
+        let is_finite =
+            inner.clone().chain(curves.iter().map(|&(_, point)| point)).sum::<DVec3>().is_finite();
+        if is_finite && !frame.is_flat() && self.open == [false; 3] {
             let mut greatest = Greatest::default();
             for offset in inner.clone().map(|point| frame.seen_from_first(point)) {
                 greatest.inner(frame, offset, frame.height_from_first(offset));
@@ -242,10 +248,10 @@ impl DeviationBound<'_> {
         let mut alone = height;
         for edge in 0..3 {
             let beside = self.frame.beside(edge, point);
-            if beside.outside > 0.0 {
+            if exceeds(beside.outside, 0.0) {
                 own = f64::INFINITY;
                 if self.open[edge] {
-                    alone = alone.max(height.hypot(beside.outside));
+                    alone = greater(alone, height.hypot(beside.outside));
                 } else {
                     self.drifted(edge, beside, deviation);
                 }
@@ -254,11 +260,11 @@ impl DeviationBound<'_> {
         if own.is_infinite() {
             own = self.frame.squared(point).sqrt();
             if alone > height {
-                alone = alone.max(own);
+                alone = greater(alone, own);
             }
         }
-        deviation.own = deviation.own.max(own);
-        deviation.height = deviation.height.max(alone);
+        deviation.own = greater(deviation.own, own);
+        deviation.height = greater(deviation.height, alone);
     }
 
     /// A hull point of the curve over an edge of the triangle.
@@ -268,18 +274,18 @@ impl DeviationBound<'_> {
             self.found_alone(own, deviation);
             return;
         }
-        deviation.own = deviation.own.max(own);
+        deviation.own = greater(deviation.own, own);
         if self.open[edge] {
-            deviation.height = deviation.height.max(own);
+            deviation.height = greater(deviation.height, own);
         } else {
-            deviation.height = deviation.height.max(self.frame.height(point).abs());
+            deviation.height = greater(deviation.height, self.frame.height(point).abs());
             let beside = self.frame.beside(edge, point);
-            if beside.outside > 0.0 {
+            if exceeds(beside.outside, 0.0) {
                 self.drifted(edge, beside, deviation);
             }
         }
         for other in [(edge + 1) % 3, (edge + 2) % 3] {
-            if self.frame.beside(other, point).outside > 0.0 {
+            if exceeds(self.frame.beside(other, point).outside, 0.0) {
                 deviation.slope = f64::INFINITY;
             }
         }
@@ -293,9 +299,9 @@ impl DeviationBound<'_> {
 
     fn drifted(&self, edge: usize, beside: Beside, deviation: &mut Deviation) {
         let room = beside.along.min(self.frame.length(edge) - beside.along);
-        deviation.drift = deviation.drift.max(beside.outside);
+        deviation.drift = greater(deviation.drift, beside.outside);
         let slope = if room > 0.0 { beside.outside / room } else { f64::INFINITY };
-        deviation.slope = deviation.slope.max(slope);
+        deviation.slope = greater(deviation.slope, slope);
     }
 }
 

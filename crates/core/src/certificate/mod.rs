@@ -1,7 +1,9 @@
 //! How far a triangle can be from the piece of the limit surface that it stands for. Knows no forest.
 //!
-//! [`Pieces::deviation`] bounds that distance, both ways: proven for schemes of Loop's family, an estimate from samples
-//! for others. A triangle is prepared once as a [`TriangleFrame`], and stands for a [`SubTriangle`] of a patch.
+//! [`Pieces::deviation`] bounds that distance, both ways: proven for the Loop family, an estimate from samples for other
+//! schemes. A triangle is prepared once as a [`TriangleFrame`], and stands for a [`SubTriangle`] of a patch.
+//!
+//! What is not a number fails: wherever something is compared with a limit, it must be known to be below it.
 
 mod bounds;
 mod deviation;
@@ -14,3 +16,16 @@ pub(crate) use deviation::Deviation;
 pub(crate) use sampled::Samples;
 pub(crate) use sub_triangle::SubTriangle;
 pub(crate) use triangle_frame::TriangleFrame;
+
+/// Whether a value is not known to be within a limit: also where either is not a number.
+#[inline]
+#[expect(clippy::neg_cmp_op_on_partial_ord, reason = "what is not a number must not pass")]
+fn exceeds(value: f64, limit: f64) -> bool {
+    !(value <= limit)
+}
+
+/// The greater of two, infinite where either is not a number.
+#[inline]
+fn greater(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::INFINITY } else { a.max(b) }
+}

@@ -1,5 +1,6 @@
 //! A triangle of the result, prepared for the distances of many points to it, its plane and its edges.
 
+use super::exceeds;
 use crate::geometry::closest_to_origin;
 use crate::vector::{DVec3, unit_or_zero};
 
@@ -95,6 +96,11 @@ impl TriangleFrame {
         self.normal
     }
 
+    /// Whether all coordinates are numbers.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.corners.iter().all(|corner| corner.is_finite())
+    }
+
     /// Whether the triangle has no plane to speak of.
     pub(crate) fn is_flat(&self) -> bool {
         self.normal == DVec3::ZERO
@@ -117,7 +123,7 @@ impl TriangleFrame {
         let offset = point - self.corners[edge];
         let outside = self.outward[edge].dot(offset);
         Beside {
-            outside: if outside > self.on_edge { outside } else { 0.0 },
+            outside: if exceeds(outside, self.on_edge) { outside } else { 0.0 },
             along: self.along[edge].dot(offset),
         }
     }
@@ -126,13 +132,16 @@ impl TriangleFrame {
     #[inline]
     pub(crate) fn squared_to_edge(&self, edge: usize, point: DVec3) -> f64 {
         let offset = point - self.corners[edge];
-        let foot = offset.dot(self.along[edge]).clamp(0.0, self.lengths[edge]);
+        let foot = offset.dot(self.along[edge]).max(0.0).min(self.lengths[edge]);
         (offset - foot * self.along[edge]).length_squared()
     }
 
     /// Squared distance of a point to the triangle.
     #[inline]
     pub(crate) fn squared(&self, point: DVec3) -> f64 {
+        if !point.is_finite() {
+            return f64::INFINITY;
+        }
         let inside = (0..3).all(|edge| self.outward[edge].dot(point - self.corners[edge]) <= 0.0);
         if inside && self.normal != DVec3::ZERO {
             let height = self.height(point);

@@ -10,7 +10,7 @@ use super::sharp::{SharpKey, SharpStencil};
 use super::stencil::LimitStencil;
 use super::{LimitError, closed, dart, open};
 use crate::ring::RingShape;
-use crate::scheme::Scheme;
+use crate::scheme::{Scheme, declared};
 
 /// What is known of each ring.
 type Known<K, S> = RwLock<HashMap<K, Result<Arc<S>, LimitError>>>;
@@ -31,7 +31,7 @@ impl fmt::Debug for LimitTable<'_> {
 impl<'s> LimitTable<'s> {
     /// An empty table for `scheme`; stencils are built when first asked for.
     pub fn new(scheme: &'s dyn Scheme) -> Self {
-        Self { scheme, stencils: RwLock::default(), sharp: RwLock::default() }
+        Self { scheme: declared(scheme), stencils: RwLock::default(), sharp: RwLock::default() }
     }
 
     /// The scheme.

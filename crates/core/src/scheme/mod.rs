@@ -4,10 +4,10 @@
 //! meshes nor positions. Everything else (refinement, limit positions, limit normals) follows from the masks.
 
 mod butterfly;
-mod loop_scheme;
+mod loop_family;
 
 pub use butterfly::ModifiedButterfly;
-pub use loop_scheme::{Loop, LoopWarren};
+pub use loop_family::{Loop, LoopFamily, LoopWarren};
 
 use crate::ring::{EdgeShape, RingShape};
 
@@ -77,6 +77,20 @@ pub trait Scheme: Send + Sync {
 
     /// Position of the new vertex on an edge.
     fn edge_mask(&self, shape: EdgeShape) -> EdgeMask;
+
+    /// The member of the Loop family that this scheme is, if it is one. Distances are proven for these only, and a scheme
+    /// that says so has that member's masks everywhere, whatever it answers itself.
+    fn loop_family(&self) -> Option<LoopFamily> {
+        None
+    }
+}
+
+/// The scheme whose masks count: the member of the Loop family that a scheme says it is, else the scheme itself.
+pub(crate) fn declared(scheme: &dyn Scheme) -> &dyn Scheme {
+    match scheme.loop_family() {
+        Some(family) => family.scheme(),
+        None => scheme,
+    }
 }
 
 #[cfg(test)]

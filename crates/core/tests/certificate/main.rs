@@ -7,6 +7,7 @@
 
 mod cages;
 mod extremes;
+mod liars;
 #[path = "../support/mod.rs"]
 mod support;
 

@@ -138,3 +138,45 @@ fn bounds_hold_for_every_part_and_valence() {
         }
     }
 }
+
+/// What is not a number is within nothing, whichever point it is a coordinate of.
+#[test]
+fn nothing_is_within_a_distance_of_what_is_not_a_number() {
+    let rules = Rules::of(&Loop);
+    let mut numbers = Numbers(3);
+    let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let effort = Effort { target: 1e9, halvings: 1, open: [false; 3], chord: 0.1, slope: 0.5 };
+    let fails = |patch: &Patch, corners: [DVec3; 3], open: bool, what: &str| {
+        let effort = Effort { open: [open; 3], ..effort };
+        let found =
+            Pieces::of(patch).deviation(SubTriangle::Whole, &TriangleFrame::new(corners), &rules, effort);
+        assert!(exceeds(found.bound(0.1, 0.5), f64::MAX), "{what}: {found:?}");
+    };
+    for bad in [f64::NAN, f64::INFINITY] {
+        for open in [false, true] {
+            for valence in [3, 5, 40] {
+                let piece = numbers.piece(valence, 0.1);
+                let whole = Patch::Extraordinary(Box::new(piece.clone()));
+                for corner in 0..3 {
+                    let mut corners = triangle;
+                    corners[corner].z = bad;
+                    fails(&whole, corners, open, "corner");
+                }
+                for at in 0..valence {
+                    let mut piece = piece.clone();
+                    piece.ring[at].y = bad;
+                    fails(&Patch::Extraordinary(Box::new(piece)), triangle, open, "ring");
+                }
+                let mut piece = piece;
+                piece.at.x = bad;
+                fails(&Patch::Extraordinary(Box::new(piece)), triangle, open, "vertex");
+            }
+            for at in 0..12 {
+                let mut points = [DVec3::ZERO; 12].map(|_| DVec3::new(numbers.next(), numbers.next(), 0.0));
+                points[at].x = bad;
+                fails(&Patch::Regular(points), triangle, open, "regular");
+                fails(&Patch::Regular(points), [DVec3::X; 3], open, "triangle without area");
+            }
+        }
+    }
+}

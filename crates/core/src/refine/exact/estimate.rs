@@ -38,7 +38,7 @@ pub fn exact_estimate(
         let triangles = triangles.min(options.budget().0).max(control.face_count());
         Estimate { triangles, memory_bytes: triangles.saturating_mul(BYTES_PER_TRIANGLE), is_counted }
     };
-    let mut growth = Growth::new(control, scheme, &rules, options)?;
+    let mut growth = Growth::new(control, &rules, options)?;
     if !growth.demand.is_some() {
         return Ok(of(options.budget().0, false));
     }

@@ -7,13 +7,12 @@ use super::forest::{Changes, Forest};
 use super::options::{ExactOptions, ExactProgress, ExactStop};
 use super::probe::rounding;
 use crate::certificate::Deviation;
-use crate::limit::{LimitTable, SidedNormals};
+use crate::limit::SidedNormals;
 use crate::mesh::{Mesh, Sharpness};
 use crate::patch::{LimitPoint, Rules};
 use crate::progress::Cancelled;
 use crate::refine::RefineError;
 use crate::refine::junctions::join_copies;
-use crate::scheme::Scheme;
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// Halvings of a net before a leaf is called too bad: the bound is within some per cent of the truth then.
@@ -94,11 +93,10 @@ pub(super) struct Growth<'a> {
 impl<'a> Growth<'a> {
     pub(super) fn new(
         control: &'a Mesh,
-        scheme: &dyn Scheme,
         rules: &'a Rules<'a>,
         options: &'a ExactOptions<'a>,
     ) -> Result<Self, RefineError> {
-        let table = LimitTable::new(scheme);
+        let table = rules.table();
         let (mut positions, sided) = (table.positions(control)?, table.sided_normals(control)?);
         join_copies(&mut positions, &control.junctions().vertices);
         let points = positions.into_iter().zip(sided.by_vertex());

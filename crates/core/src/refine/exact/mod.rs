@@ -53,7 +53,7 @@ pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions<'_>) ->
     }
     let rules = Rules::of(scheme);
     let grown = |levels: usize| {
-        let mut growth = Growth::new(control, scheme, &rules, options)?;
+        let mut growth = Growth::new(control, &rules, options)?;
         growth.split_all(levels)?;
         let (stop, emission) = growth.run()?;
         growth.finish(stop, emission)
@@ -71,8 +71,8 @@ pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions<'_>) ->
     }
 }
 
-/// Whether the distances that [`exact`] reports for a scheme are proven: those of Loop's scheme and its variants are, others
-/// are estimated from samples.
+/// Whether the distances that [`exact`] reports for a scheme are proven: those of the Loop family are
+/// ([`Scheme::loop_family`]), others are estimated from samples.
 pub fn is_certified(scheme: &dyn Scheme) -> bool {
-    Rules::of(scheme).is_certified()
+    scheme.loop_family().is_some()
 }

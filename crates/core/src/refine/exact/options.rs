@@ -238,7 +238,8 @@ pub struct ErrorBounds {
     /// A distance that is not exceeded where [`Self::certified`] holds. Otherwise an estimate, the greatest distance of
     /// the surface's points three levels below the triangles, which the true one may exceed by some per cent.
     pub upper: f64,
-    /// Whether `upper` is proven: so it is for Loop's scheme and its variants, whose masks are convex combinations.
+    /// Whether `upper` is proven: so it is for the Loop family ([`crate::scheme::LoopFamily`]), whose masks are convex
+    /// combinations.
     pub certified: bool,
     /// A point of the limit surface at the distance `lower` from the mesh.
     pub at: [f64; 3],
