@@ -5,13 +5,14 @@ use anyhow::Result;
 use limitmesh::Mesh;
 use limitmesh::limit::LimitTable;
 use limitmesh::measure::distances_to;
+use limitmesh::refine::SeamRule;
 use limitmesh::scheme::Loop;
+use limitmesh_paper::{match_angle, methods};
 use limitmesh_render::{
     Camera, ColourBar, GridStyle, Image, Lighting, Panel, Scale, Shading, Style, TextStyle, ViewDirection,
     dice, grid, render, render_scalar,
 };
 
-use super::methods;
 use crate::quality::{Judge, Reference, best, builtin, optimized};
 
 /// A model with gently and with sharply bent parts.
@@ -22,6 +23,9 @@ const LEVEL: usize = 2;
 
 /// Steps of the paper's method.
 const STEPS: usize = 3;
+
+/// The angle at which the search for the paper's begins, in degrees.
+const FIRST_ANGLE: f64 = 10.0;
 
 /// From the front, a little from the right and above.
 const VIEW: ViewDirection = ViewDirection { sight: [-0.45, -0.2, -1.0], up: [0.0, 1.0, 0.0] };
@@ -51,12 +55,13 @@ pub(super) fn picture() -> Result<Vec<u8>> {
     let control = builtin(MODEL)?;
     let reference = Reference::new(&control)?;
     let judge = Judge::new(&reference)?;
-    let uniform = methods::uniform(&control, LEVEL, false)?;
+    let uniform = methods::uniform_plain(&control, LEVEL)?.mesh;
     let triangles = uniform.face_count();
-    let (angle, paper) = methods::paper_with(&control, triangles, STEPS)?;
+    let paper =
+        match_angle(triangles, FIRST_ANGLE, |angle| methods::paper(&control, angle, STEPS, SeamRule::All))?;
     let columns = [
         column(uniform, "uniform".to_owned(), &judge)?,
-        column(paper, format!("the paper’s method, {angle:.1}°"), &judge)?,
+        column(paper.refinement.mesh, format!("the paper’s method, {:.1}°", paper.angle_degrees), &judge)?,
         column(best(&control, triangles, false)?, "exact".to_owned(), &judge)?,
         column(optimized(&control, triangles)?, "exact, optimised".to_owned(), &judge)?,
     ];
@@ -70,7 +75,7 @@ pub(super) fn picture() -> Result<Vec<u8>> {
     for (letter, column) in ('e'..).zip(&columns) {
         let caption = format!(
             "({letter}) {} triangles, {:.3} %",
-            crate::quality::count(column.mesh.face_count()),
+            limitmesh_paper::format::thousands(column.mesh.face_count()),
             column.symmetric
         );
         panels.push(Panel::new(heat(column, &scale, &camera)?, caption));

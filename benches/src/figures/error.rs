@@ -2,9 +2,12 @@
 
 use anyhow::Result;
 use limitmesh::Mesh;
+use limitmesh::measure::limit_reference;
+use limitmesh::refine::SeamRule;
+use limitmesh::scheme::Loop;
+use limitmesh_paper::methods;
 use limitmesh_render::plot::{Axis, Plot, Series};
 
-use super::methods;
 use crate::quality::{Judge, Reference, best, builtin, optimized};
 
 const MODEL: &str = "cup";
@@ -26,10 +29,20 @@ pub(super) fn plot() -> Result<String> {
     // Twice as many from point to point, from a little more than the control mesh has.
     let counts: Vec<usize> =
         (0..).map(|i| (faces * 3 / 2) << i).take_while(|&n| n <= MOST_TRIANGLES).collect();
-    let stepwise = |refine: &dyn Fn(f64) -> Result<Mesh>| series(&judge, &ANGLES, refine);
     let counted = |refine: &dyn Fn(usize) -> Result<Mesh>| series(&judge, &counts, refine);
     let levels: Vec<usize> = (0..=LEVELS).collect();
-    let uniform = |limit| series(&judge, &levels, &|level| methods::uniform(&control, level, limit));
+    let uniform = |limit: bool| {
+        series(&judge, &levels, &|level| {
+            Ok(if limit {
+                limit_reference(&control, &Loop, level)?
+            } else {
+                methods::uniform_plain(&control, level)?.mesh
+            })
+        })
+    };
+    let paper = |steps| {
+        series(&judge, &ANGLES, &|angle| Ok(methods::paper(&control, angle, steps, SeamRule::All)?.mesh))
+    };
     let title = format!("Distance to the limit surface, {MODEL}");
     let y = Axis::new("symmetric Hausdorff distance").unit("% of the diagonal").logarithmic();
     let plot = Plot::new(title, Axis::new("triangles").logarithmic(), y)
@@ -37,16 +50,13 @@ pub(super) fn plot() -> Result<String> {
         .with(
             named(
                 "Amresh, 4 steps",
-                stepwise(&|angle| methods::amresh(&control, angle, 4))?,
+                series(&judge, &ANGLES, &|angle| Ok(methods::amresh(&control, angle, 4)?.mesh))?,
                 [150, 150, 158],
             )
             .dashed(true),
         )
-        .with(named("paper, 3 steps", stepwise(&|angle| methods::paper(&control, angle, 3))?, [214, 96, 28]))
-        .with(
-            named("paper, 5 steps", stepwise(&|angle| methods::paper(&control, angle, 5))?, [214, 96, 28])
-                .dashed(true),
-        )
+        .with(named("paper, 3 steps", paper(3)?, [214, 96, 28]))
+        .with(named("paper, 5 steps", paper(5)?, [214, 96, 28]).dashed(true))
         .with(named("uniform", uniform(false)?, [204, 154, 24]))
         .with(named("uniform, limit vertices", uniform(true)?, [84, 168, 214]))
         .with(named("exact", counted(&|n| best(&control, n, false))?, [20, 92, 158]))

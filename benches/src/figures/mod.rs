@@ -3,7 +3,6 @@
 
 mod comparison;
 mod error;
-mod methods;
 
 use std::path::Path;
 

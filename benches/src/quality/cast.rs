@@ -39,7 +39,7 @@ impl Model {
 /// A built-in control mesh.
 pub(crate) fn builtin(name: &str) -> Result<Mesh> {
     let model =
-        limitmesh::models::find(name).with_context(|| format!("no built-in model is called {name}"))?;
+        limitmesh_models::find(name).with_context(|| format!("no built-in model is called {name}"))?;
     Ok(Mesh::from_soup(&model.soup(), &Default::default())?.0)
 }
 

@@ -19,6 +19,5 @@ pub(crate) use judge::{Judge, Reference};
 pub(crate) use optimum::{against_optimum, optimized};
 pub(crate) use paper::{against_paper, best};
 pub(crate) use simplified::against_simplified;
-pub(crate) use table::count;
 pub(crate) use throughput::{child as throughput_child, throughput};
 pub(crate) use uniform::against_uniform;

@@ -85,7 +85,7 @@ fn compare(
         let (optimizing, optimized) = one_thread(|| {
             let finer = exact(control, &Loop, &ExactOptions::default().triangles(FINER * triangles))?;
             let options = SimplifyOptions::default().triangles(Some(triangles)).certify(false);
-            simplify(&finer.mesh, &Features::default(), &options)
+            Ok::<_, anyhow::Error>(simplify(&finer.mesh, &Features::default(), &options)?)
         })?;
         let optimized = optimized?.mesh;
         let ours = [(judge.distance(&plain)?, time.all), (judge.distance(&optimized)?, optimizing.all)];

@@ -1,5 +1,7 @@
 //! Tables in Markdown, and the numbers in them.
 
+pub(crate) use limitmesh_paper::format::thousands as count;
+
 /// Prints a table: heads, then rows.
 pub(crate) fn print(heads: &[&str], rows: &[Vec<String>]) {
     println!("\n| {} |", heads.join(" | "));
@@ -16,19 +18,6 @@ pub(crate) fn digits(value: f64) -> String {
     }
     let before_the_point = value.abs().log10().floor() as i32 + 1;
     format!("{value:.*}", (3 - before_the_point).max(0) as usize)
-}
-
-/// Thousands apart.
-pub(crate) fn count(value: usize) -> String {
-    let digits = value.to_string();
-    let mut apart = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            apart.push(',');
-        }
-        apart.push(digit);
-    }
-    apart
 }
 
 /// The middle value, the mean of both where there are two; NaN of none.
@@ -50,8 +39,6 @@ mod tests {
         assert_eq!(digits(0.012345), "0.0123");
         assert_eq!(digits(1.23456), "1.23");
         assert_eq!(digits(1234.56), "1235");
-        assert_eq!(count(1234567), "1,234,567");
-        assert_eq!(count(123), "123");
         assert_eq!(median([3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median([4.0, 1.0, 2.0, 3.0]), 2.5);
     }

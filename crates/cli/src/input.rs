@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use limitmesh::mesh::{BuildOptions, Diagnosis, MeshError, Weld};
-use limitmesh::{Mesh, PolygonSoup, models};
+use limitmesh::{Mesh, PolygonSoup};
 use limitmesh_io::Format;
 
+use crate::format::{counted, thousands};
 use crate::progress::Progress;
 use crate::report;
-use crate::words::{counted, thousands};
 
 /// What marks the name of a built-in model.
 const BUILTIN: &str = "builtin:";
@@ -64,8 +64,8 @@ pub(crate) fn read(name: &str, progress: &Progress) -> anyhow::Result<Soup> {
 }
 
 fn builtin(name: &str) -> anyhow::Result<PolygonSoup> {
-    let model = models::find(name).with_context(|| {
-        let names: Vec<&str> = models::all().iter().map(|model| model.name).collect();
+    let model = limitmesh_models::find(name).with_context(|| {
+        let names: Vec<&str> = limitmesh_models::all().iter().map(|model| model.name).collect();
         format!("there is no built-in model '{name}'; there are: {}", names.join(", "))
     })?;
     Ok(model.soup())

@@ -6,17 +6,15 @@
 
 mod arguments;
 mod commands;
-mod comparison;
 mod failure;
+mod format;
 mod input;
 mod interrupt;
+mod mesh_info;
 mod output;
 mod progress;
 mod reference;
 mod report;
-mod reproduce;
-mod shape;
-mod words;
 
 use std::process::ExitCode;
 
@@ -62,7 +60,7 @@ fn run(command: &Command, progress: &Progress) -> anyhow::Result<Outcome> {
         Command::Measure(arguments) => commands::measure::run(arguments, progress),
         Command::Compare(arguments) => commands::compare::run(arguments, progress),
         Command::Render(arguments) => commands::render::run(arguments, progress),
-        Command::Reproduce(arguments) => reproduce::run(arguments, progress),
+        Command::Reproduce(arguments) => commands::reproduce::run(arguments, progress),
         Command::Info(arguments) => commands::info::run(arguments, progress),
         Command::Models(arguments) => commands::models::run(arguments),
     }

@@ -6,7 +6,7 @@ use limitmesh::refine::{Stop, UniformOptions, uniform};
 use limitmesh::scheme::Scheme;
 
 use crate::failure::usage;
-use crate::words::thousands;
+use crate::format::thousands;
 
 /// Levels that are enough for most: the distance of such a mesh to the limit surface is about a thousandth of the
 /// control mesh's.
@@ -33,7 +33,7 @@ pub(crate) fn affordable_levels(control_faces: usize, wanted: usize) -> usize {
 }
 
 /// Number of faces after so many levels of uniform refinement, if it can be counted.
-pub(crate) fn faces_at(control_faces: usize, levels: usize) -> Option<usize> {
+fn faces_at(control_faces: usize, levels: usize) -> Option<usize> {
     4usize.checked_pow(levels as u32)?.checked_mul(control_faces)
 }
 

@@ -8,7 +8,7 @@ use limitmesh::limit::LimitTable;
 use limitmesh::refine::{UniformOptions, uniform};
 use limitmesh::ring::{EdgeShape, RingShape};
 use limitmesh::scheme::{EdgeMask, Loop, Scheme, Support, VertexMask};
-use limitmesh::{Mesh, VertexId, models};
+use limitmesh::{Mesh, VertexId};
 
 struct Tense {
     tension: f64,
@@ -36,7 +36,7 @@ impl Scheme for Tense {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let soup = models::find("icosphere").ok_or("no such built-in model")?.soup();
+    let soup = limitmesh_models::find("icosphere").ok_or("no such built-in model")?.soup();
     let (mesh, _) = Mesh::from_soup(&soup, &Default::default())?;
     let vertex = VertexId(0);
     for tension in [0.0, 0.25, 0.5] {

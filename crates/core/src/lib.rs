@@ -10,10 +10,10 @@
 //! use limitmesh::measure::{SamplingOptions, hausdorff, limit_reference};
 //! use limitmesh::refine::{ExactOptions, exact};
 //! use limitmesh::scheme::Loop;
-//! use limitmesh::{Mesh, models};
+//! use limitmesh::Mesh;
 //!
-//! // A control mesh from whatever a file held; here a built-in model.
-//! let soup = models::find("torus").ok_or("no such model")?.soup();
+//! // A control mesh from whatever a file held; here a model from the crate limitmesh-models.
+//! let soup = limitmesh_models::find("torus").ok_or("no such model")?.soup();
 //! let (control, diagnosis) = Mesh::from_soup(&soup, &Default::default())?;
 //! assert!(diagnosis.is_clean());
 //!
@@ -41,7 +41,6 @@
 //! | [`mod@simplify`] | edge collapse within a proven distance |
 //! | [`progress`] | what long functions tell while they work, and how they are cancelled |
 //! | [`measure`] | distances, sampled and certified, watertightness, triangle quality |
-//! | [`models`] | built-in control meshes |
 
 mod certificate;
 pub mod criterion;
@@ -52,7 +51,8 @@ pub mod limit;
 mod masks;
 pub mod measure;
 pub mod mesh;
-pub mod models;
+#[cfg(test)]
+mod models;
 mod parallel;
 mod patch;
 pub mod progress;

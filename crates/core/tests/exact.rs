@@ -4,14 +4,14 @@
 
 mod support;
 
+use limitmesh::Mesh;
 use limitmesh::measure::{SamplingOptions, hausdorff, limit_reference};
 use limitmesh::refine::{Camera, ExactOptions, ExactStop, exact, exact_estimate};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
-use limitmesh::{Mesh, models};
 use support::vertices_are_of_uniform_refinement;
 
 fn model(name: &str) -> Mesh {
-    Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
 }
 
 /// Every vertex is a vertex of the uniform refinement that is as deep, at the same place.

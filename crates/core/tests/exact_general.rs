@@ -4,18 +4,18 @@
 
 mod support;
 
+use limitmesh::Mesh;
 use limitmesh::measure::{SamplingOptions, hausdorff, limit_reference};
 use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
 use limitmesh::refine::{ExactOptions, ExactStop, exact};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
-use limitmesh::{Mesh, models};
 use support::{Random, octahedron, tagged_obj, vertices_are_of_uniform_refinement};
 
 fn model(name: &str) -> Mesh {
     if name == "octahedron" {
         return octahedron();
     }
-    Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
 }
 
 /// Tags on about a fifth of the edges and a tenth of the vertices, most of them fading.

@@ -6,19 +6,19 @@
 use std::error::Error;
 use std::path::PathBuf;
 
+use limitmesh::Mesh;
 use limitmesh::criterion::LimitNormal;
 use limitmesh::limit::LimitTable;
 use limitmesh::measure::{SamplingOptions, hausdorff, limit_reference};
 use limitmesh::refine::{StepwiseOptions, stepwise};
 use limitmesh::scheme::Loop;
-use limitmesh::{Mesh, models};
 use limitmesh_io::{Output, WriteOptions, read, write};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
     let soup = match arguments.next() {
         Some(path) => read(&path)?,
-        None => models::find("cup").ok_or("no such built-in model")?.soup(),
+        None => limitmesh_models::find("cup").ok_or("no such built-in model")?.soup(),
     };
     let output = arguments.next().unwrap_or_else(|| std::env::temp_dir().join("limitmesh-cup.ply"));
 

@@ -24,7 +24,7 @@ pub(crate) use refine::{Method, RefineArguments};
 pub(crate) use render::RenderArguments;
 pub(crate) use reproduce::ReproduceArguments;
 pub(crate) use shared::{BuildArguments, SchemeName, Seam};
-pub(crate) use values::{Extent, MAX_LEVELS, Size};
+pub(crate) use values::{Extent, Size};
 
 use clap::{Args, Parser, Subcommand};
 

@@ -6,7 +6,7 @@ use limitmesh::measure::SamplingOptions;
 use limitmesh::mesh::Weld;
 
 /// Levels beyond this would need more than 4^12 (16 million) triangles for a single input triangle.
-pub(crate) const MAX_LEVELS: usize = 12;
+const MAX_LEVELS: usize = 12;
 
 /// Levels of exact refinement beyond this would divide an edge by more than ten million.
 const MAX_EXACT_LEVELS: usize = 24;

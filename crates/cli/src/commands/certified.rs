@@ -5,7 +5,7 @@ use limitmesh::measure::{Bounds, Bvh, CertifiedHausdorff, CertifiedOptions, cert
 
 use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
-use crate::words::{counted, number, point, table};
+use crate::format::{counted, number, point, table};
 
 /// Rounding to six digits changes a number by at most this share of it.
 const SIX_DIGITS: f64 = 5e-6;

@@ -11,8 +11,8 @@ use limitmesh::{Mesh, Triangles};
 
 use crate::arguments::MeasureArguments;
 use crate::failure::usage;
+use crate::format::{counted, number};
 use crate::progress::Progress;
-use crate::words::{counted, number};
 
 /// What was found, and the mesh that stands for the limit surface.
 pub(super) struct Certified {

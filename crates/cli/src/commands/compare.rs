@@ -3,21 +3,21 @@
 use std::time::{Duration, Instant};
 
 use limitmesh::Mesh;
-use limitmesh::criterion::LimitNormal;
+use limitmesh::criterion::{LimitNormal, NeighbourNormal};
 use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between, triangle_quality};
 use limitmesh::refine::{
     Exact, ExactOptions, StepwiseOptions, Stop, UniformOptions, exact, stepwise, uniform,
 };
+use limitmesh_paper::{match_angle, nearest_level};
 
 use crate::arguments::CompareArguments;
-use crate::comparison::{match_neighbour_angle, nearest_uniform_level};
 use crate::failure::Outcome;
+use crate::format::{counted, number, seconds, table, thousands, upper_bound};
 use crate::input;
 use crate::output;
 use crate::progress::Progress;
 use crate::reference::{self, Reference, USUAL_LEVELS};
 use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport};
-use crate::words::{counted, number, seconds, table, thousands, upper_bound};
 
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
@@ -50,14 +50,19 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     drop(proposed);
 
     progress.stage(format!("amresh: finding the angle for {} triangles", thousands(count)));
-    let matched = match_neighbour_angle(&control, scheme, arguments.levels, count, arguments.angle)?;
+    // Far too fine attempts are cut off: that they are too fine is all that matters of them.
+    let cap = count.saturating_mul(2).max(control.face_count());
+    let options = options.max_triangles(Some(cap));
+    let matched = match_angle(count, arguments.angle, |angle| {
+        stepwise(&control, scheme, &NeighbourNormal::new(angle.to_radians()), &options)
+    })?;
     let angle = Some(matched.angle_degrees);
     let refinement = &matched.refinement;
     let gives = (&refinement.mesh, refinement.steps.len());
     methods.push(judge.judge(("amresh", angle), gives, None, matched.duration)?);
     drop(matched);
 
-    let level = nearest_uniform_level(control.face_count(), count);
+    let level = nearest_level(control.face_count(), count);
     for (name, limit) in [("uniform", false), ("uniform-limit", true)] {
         progress.stage(name);
         let options = UniformOptions::default().levels(level).limit(limit);

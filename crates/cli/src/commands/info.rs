@@ -6,14 +6,14 @@ use limitmesh::Mesh;
 
 use crate::arguments::InfoArguments;
 use crate::failure::Outcome;
+use crate::format::{counted, number, point, thousands};
 use crate::input;
+use crate::mesh_info;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::diagnosis::{preparations_in_words, repairs_in_words};
 use crate::report::information::{PolygonCount, TagCounts};
 use crate::report::{InformationReport, InputReport, MeshInformation, VERSION};
-use crate::shape;
-use crate::words::{counted, number, point, thousands};
 
 /// Examines a file and prints what it holds.
 pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Result<Outcome> {
@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         polygons,
         tags,
         diagnosis: (&diagnosis).into(),
-        mesh: shape::examine(&mesh),
+        mesh: mesh_info::examine(&mesh),
     };
     progress.clear();
     if arguments.json {

@@ -8,13 +8,13 @@ use limitmesh::{Mesh, Triangles};
 use super::{certified, certified_limit, heatmap};
 use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
+use crate::format::{counted, number, point, table, thousands, upper_bound};
 use crate::input::{self, Input};
 use crate::output;
 use crate::progress::Progress;
 use crate::reference::{self, USUAL_LEVELS};
 use crate::report::measurement::MeasureSeconds;
 use crate::report::{DistanceReport, LimitReport, MeasureReport, SurfaceReport, VERSION};
-use crate::words::{counted, number, point, table, thousands, upper_bound};
 
 /// Measures one surface against another.
 pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::Result<Outcome> {

@@ -10,3 +10,4 @@ pub(crate) mod models;
 mod picture;
 pub(crate) mod refine;
 pub(crate) mod render;
+pub(crate) mod reproduce;

@@ -1,6 +1,5 @@
 //! `limitmesh models`: the built-in models and what each is.
 
-use limitmesh::models;
 use serde::Serialize;
 
 use crate::arguments::ModelsArguments;
@@ -15,7 +14,8 @@ struct ModelEntry {
 
 /// Lists the built-in models.
 pub(crate) fn run(arguments: &ModelsArguments) -> anyhow::Result<Outcome> {
-    let entries = models::all().iter().map(|model| ModelEntry { name: model.name, about: model.about });
+    let entries =
+        limitmesh_models::all().iter().map(|model| ModelEntry { name: model.name, about: model.about });
     if arguments.json {
         output::print(&output::json(&entries.collect::<Vec<_>>())?)?;
     } else {

@@ -5,9 +5,9 @@ use limitmesh_render::{Shading, Style};
 use super::picture;
 use crate::arguments::RenderArguments;
 use crate::failure::Outcome;
+use crate::format::counted;
 use crate::input;
 use crate::progress::Progress;
-use crate::words::counted;
 
 /// Reads a mesh and draws it.
 pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Outcome> {

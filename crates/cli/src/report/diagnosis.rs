@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use limitmesh::mesh::{Diagnosis, Finding};
 use serde::Serialize;
 
-use crate::words::thousands;
+use crate::format::thousands;
 
 /// One finding: how many, and the first few by their number in the input, counted from 0.
 #[derive(Debug, Clone, Serialize)]

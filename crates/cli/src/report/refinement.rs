@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::InputReport;
 use super::diagnosis::DiagnosisReport;
 use crate::arguments::{Boundary, Method, RefineArguments, SchemeName, Seam};
-use crate::words::{lower_bound, upper_bound};
+use crate::format::{lower_bound, upper_bound};
 
 /// All of it.
 #[derive(Debug, Serialize)]

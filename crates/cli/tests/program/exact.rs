@@ -100,7 +100,7 @@ fn a_number_of_triangles_is_used_up_and_not_passed() {
         "triangles"
     );
     let too_few = refine(3, "builtin:shoe", &output, "--triangles 1");
-    let control = limitmesh::models::find("shoe").expect("a model").soup().faces.len() as u64;
+    let control = limitmesh_models::find("shoe").expect("a model").soup().faces.len() as u64;
     assert_eq!(triangles(&too_few), control);
 }
 
@@ -298,7 +298,7 @@ fn vertices_and_triangles_know_where_they_came_from() {
     let (names, vertices, faces) = rows(&output);
     assert_eq!(names[6..], ["parent_face", "parent_a", "parent_b", "parent_c"]);
     let control = limitmesh::Mesh::from_soup(
-        &limitmesh::models::find("cube").expect("a model").soup(),
+        &limitmesh_models::find("cube").expect("a model").soup(),
         &Default::default(),
     )
     .expect("a mesh")

@@ -53,7 +53,7 @@ fn check_steps(report: &Value) {
 fn every_built_in_model_is_refined_by_every_method() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    for model in limitmesh::models::all() {
+    for model in limitmesh_models::all() {
         let name = format!("builtin:{}", model.name);
         let methods = [
             "",
@@ -143,7 +143,7 @@ fn limit_positions_of_a_tetrahedron_follow_the_closed_form() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     refine("builtin:tetrahedron", &output, "--method uniform --levels 0 --limit");
-    let control = limitmesh::models::find("tetrahedron").expect("a model").soup();
+    let control = limitmesh_models::find("tetrahedron").expect("a model").soup();
     let limit = soup(&output);
     for (i, p) in limit.positions.iter().enumerate() {
         for axis in 0..3 {

@@ -110,7 +110,7 @@ fn measuring_needs_exactly_one_reference() {
 #[test]
 fn an_unknown_built_in_model_lists_those_there_are() {
     let run = run("info builtin:dragon", &[]).expect(1).saying("dragon");
-    for model in limitmesh::models::all() {
+    for model in limitmesh_models::all() {
         assert!(run.stderr.contains(model.name), "{} in {}", model.name, run.stderr);
     }
 }

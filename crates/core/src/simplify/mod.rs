@@ -175,9 +175,9 @@ pub struct Simplified {
 /// use limitmesh::measure::limit_reference;
 /// use limitmesh::simplify::{Features, SimplifyOptions, simplify};
 /// use limitmesh::scheme::Loop;
-/// use limitmesh::{Mesh, models};
+/// use limitmesh::Mesh;
 ///
-/// let soup = models::find("torus").expect("a built-in model").soup();
+/// let soup = limitmesh_models::find("torus").expect("a built-in model").soup();
 /// let (control, _) = Mesh::from_soup(&soup, &Default::default())?;
 /// let fine = limit_reference(&control, &Loop, 3)?;
 /// let options = SimplifyOptions::default().triangles(Some(2000));

@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use limitmesh::mesh::{BoundaryRule, BuildOptions, CreaseTag, PolygonFaces, Tags};
-use limitmesh::models;
 use limitmesh::refine::{UniformOptions, uniform};
 use limitmesh::scheme::{Loop, ModifiedButterfly, Scheme};
 use limitmesh::{Mesh, PolygonSoup};
@@ -20,7 +19,7 @@ fn refined(mesh: &Mesh, scheme: &dyn Scheme, levels: usize) -> Mesh {
 
 #[test]
 fn a_cube_with_creases_stays_the_cube() {
-    let soup = models::find("cube").unwrap().soup();
+    let soup = limitmesh_models::find("cube").unwrap().soup();
     let cube = Mesh::from_soup(&soup, &BuildOptions::default()).unwrap().0;
     let cube = cube.with_creases_above(30.0 * DEGREE).unwrap();
     assert_eq!(cube.tags().creases.len(), 12);

@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn a_closed_surface_runs_once_around_what_is_inside() {
-        let soup = limitmesh::models::find("torus").expect("a model").soup();
+        let soup = limitmesh_models::find("torus").expect("a model").soup();
         let (mesh, _) = Mesh::from_soup(&soup, &Default::default()).expect("a mesh");
         let around = |point| winding(point, mesh.positions(), mesh.triangles());
         // A vertex pushed inwards along the normal is inside; the middle of the hole is not.

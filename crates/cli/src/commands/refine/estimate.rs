@@ -5,12 +5,12 @@ use limitmesh::refine::{Estimate, exact_estimate};
 
 use super::exact::Goals;
 use crate::arguments::RefineArguments;
+use crate::format::{bytes, counted};
 use crate::output;
 use crate::progress::Progress;
 use crate::report::{
     DiagnosisReport, EstimateReport, InputReport, ParametersReport, PredictionReport, VERSION,
 };
-use crate::words::{bytes, counted};
 
 /// Predicts triangles and memory; prints them, or writes the report asked for.
 pub(super) fn run(

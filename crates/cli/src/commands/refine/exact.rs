@@ -10,12 +10,12 @@ use super::provenance::Provenance;
 use super::{Refined, cameras, view, view_report};
 use crate::arguments::{Extent, RefineArguments};
 use crate::failure::Outcome;
+use crate::format::{bytes, counted, thousands};
 use crate::progress::Progress;
 use crate::report::refinement::exact_stop_name;
 use crate::report::{
     CameraReport, ErrorReport, ExactParametersReport, MethodReport, ParametersReport, RoundEntry,
 };
-use crate::words::{bytes, counted, thousands};
 
 /// The tolerance where no goal is given: facets can hardly be seen then in a picture a thousand pixels wide.
 const USUAL_TOLERANCE: Extent = Extent::Percent(0.1);

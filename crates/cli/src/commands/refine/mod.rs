@@ -19,6 +19,7 @@ use limitmesh_render::Style;
 use super::picture;
 use crate::arguments::{Method, RefineArguments};
 use crate::failure::Outcome;
+use crate::format::{counted, seconds};
 use crate::input::{self, Input};
 use crate::interrupt;
 use crate::output;
@@ -26,7 +27,6 @@ use crate::progress::Progress;
 use crate::report::{
     InputReport, MethodReport, OutputReport, RefineReport, SecondsReport, VERSION, ViewReport,
 };
-use crate::words::{counted, seconds};
 use exact::Goals;
 use provenance::Provenance;
 

@@ -14,10 +14,10 @@ use limitmesh_io::Format;
 use super::{Refined, view, view_report};
 use crate::arguments::{Method, RefineArguments, Seam};
 use crate::failure::Outcome;
+use crate::format::{counted, thousands};
 use crate::progress::Progress;
 use crate::report::refinement::stop_name;
 use crate::report::{MethodReport, ParametersReport, StepEntry};
-use crate::words::{counted, thousands};
 
 /// The angle where none is given, in degrees: the paper's middle one.
 const USUAL_ANGLE: f64 = 10.0;
