@@ -21,12 +21,14 @@ pub(crate) fn reference_level(control_faces: usize) -> usize {
 pub(crate) struct Reference {
     pub(crate) mesh: Mesh,
     pub(crate) level: usize,
+    /// Of the control mesh's bounding box.
+    diagonal: f64,
 }
 
 impl Reference {
     pub(crate) fn new(control: &Mesh) -> Result<Self> {
         let level = reference_level(control.face_count());
-        Ok(Self { mesh: limit_reference(control, &Loop, level)?, level })
+        Ok(Self { mesh: limit_reference(control, &Loop, level)?, level, diagonal: control.diagonal() })
     }
 }
 
@@ -34,13 +36,12 @@ impl Reference {
 pub(crate) struct Judge<'a> {
     pub(crate) reference: &'a Reference,
     tree: Bvh<'a>,
-    diagonal: f64,
 }
 
 impl<'a> Judge<'a> {
     pub(crate) fn new(reference: &'a Reference) -> Result<Self> {
         let tree = Bvh::new(reference.mesh.as_triangles())?;
-        Ok(Self { reference, tree, diagonal: reference.mesh.diagonal() })
+        Ok(Self { reference, tree })
     }
 
     /// The symmetric Hausdorff distance found, as a length.
@@ -49,8 +50,8 @@ impl<'a> Judge<'a> {
         Ok(hausdorff_between(&tree, &self.tree, &SamplingOptions::default()).symmetric())
     }
 
-    /// The same length in per cent of the diagonal of the limit surface's bounding box.
+    /// The same length in per cent of the diagonal of the control mesh's bounding box.
     pub(crate) fn percent(&self, length: f64) -> f64 {
-        100.0 * length / self.diagonal
+        100.0 * length / self.reference.diagonal
     }
 }

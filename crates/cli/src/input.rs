@@ -10,7 +10,6 @@ use limitmesh_io::Format;
 
 use crate::format::{counted, thousands};
 use crate::progress::Progress;
-use crate::report;
 
 /// What marks the name of a built-in model.
 const BUILTIN: &str = "builtin:";
@@ -88,7 +87,7 @@ pub(crate) fn load(name: &str, options: &BuildOptions, progress: &Progress) -> a
     if !left_out.is_empty() {
         progress.note(format!("{name}: left out: {}", left_out.join("; ")));
     }
-    for line in report::diagnosis::repairs_in_words(&diagnosis) {
+    for line in diagnosis.repairs() {
         progress.note(format!("{name}: {line}"));
     }
     if let Some(near) = near {

@@ -236,7 +236,7 @@ fn bounds_distances(name: &str, a: &Path, b: &Path) {
     let certified = &run("measure {} {} --certified --json", &[a, b]).expect(0).json()["hausdorff"];
     let sampled = &run("measure {} {} --samples 20000 --json", &[a, b]).expect(0).json()["hausdorff"];
     let number = |value: &Value| value.as_f64().expect("a number");
-    let least = 1e-6 * number(&certified["reference_diagonal"]);
+    let least = 1e-6 * number(&certified["diagonal"]);
     for direction in ["forward", "backward"] {
         let (lower, upper) = (number(&certified[direction]["lower"]), number(&certified[direction]["upper"]));
         let found = number(&sampled[direction]);

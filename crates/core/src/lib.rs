@@ -53,6 +53,7 @@ pub mod measure;
 pub mod mesh;
 #[cfg(test)]
 mod models;
+mod options;
 mod parallel;
 mod patch;
 pub mod progress;

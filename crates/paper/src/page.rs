@@ -120,7 +120,7 @@ fn table_1(results: &Results) -> String {
     let steps = results.settings.steps;
     let intro = format!(
         "Symmetric Hausdorff distance (SHD, equations 14 to 16) between the surface after {steps} steps and the limit \
-         surface, in per cent of the diagonal of the limit surface's bounding box. Amresh's method divides a face \
+         surface, in per cent of the diagonal of the control mesh's bounding box. Amresh's method divides a face \
          whose normal differs from an edge neighbour's; its threshold is searched for the same number of faces. \
          Ratio: the paper's method by Amresh's. Beside them, uniform refinement with its vertices moved to the limit \
          surface, at the level whose face count is nearest in ratio, and exact refinement, this project's own method: \

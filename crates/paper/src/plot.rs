@@ -72,7 +72,7 @@ pub(super) fn table_1(rows: &[Row]) -> Result<String, RenderError> {
         drawing.label([x, bottom + 16.0], &tick_label(tick), &small().align(Align::Centre));
     }
     let caption =
-        "symmetric Hausdorff distance, % of the bounding-box diagonal (logarithmic; left is better)";
+        "symmetric Hausdorff distance, % of the control mesh's diagonal (logarithmic; left is better)";
     drawing.label([0.5 * (left + right), bottom + 36.0], caption, &plain().size(12.0).align(Align::Centre));
     let entries = [
         (PAPER, "limit normal (paper)"),
@@ -130,7 +130,7 @@ pub(super) fn drift(points: &[DriftPoint], angle_degrees: f64) -> Result<String,
         panel(&mut drawing, model, points, [x, y, cell - 18.0, height - 44.0], column == 0);
     }
     let centre = [left + 0.5 * (width - left), top + rows as f64 * height + 14.0];
-    let caption = "steps; vertically the symmetric Hausdorff distance in % of the diagonal (logarithmic)";
+    let caption = "steps; vertically the symmetric Hausdorff distance in % of the control mesh's diagonal (logarithmic)";
     drawing.label(centre, caption, &plain().size(12.0).align(Align::Centre));
     drawing.finish()
 }

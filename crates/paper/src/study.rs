@@ -16,7 +16,7 @@ use super::methods;
 use super::settings::Settings;
 use crate::paper_models::{Origin, Player};
 
-/// A surface's distance to the limit surface. Lengths are in per cent of the diagonal of the limit surface's
+/// A surface's distance to the limit surface. Lengths are in per cent of the diagonal of the control mesh's
 /// bounding box.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Measured {
@@ -163,24 +163,21 @@ impl<'a> Bench<'a> {
         Self { model, control, reference, level, settings, uniform: vec![None; level], paper: Vec::new() }
     }
 
-    /// A length in per cent of the diagonal of the limit surface's bounding box.
+    /// A length in per cent of the diagonal of the control mesh's bounding box.
     fn percent(&self, length: f64) -> f64 {
-        let [low, high] = self.reference.bounding_box();
-        let diagonal = (0..3).map(|axis| (high[axis] - low[axis]).powi(2)).sum::<f64>().sqrt();
-        100.0 * length / diagonal
+        100.0 * length / self.control.diagonal()
     }
 
     fn measure(&self, surface: &Mesh) -> anyhow::Result<Measured> {
         let tree = Bvh::new(surface.as_triangles())?;
         let options = SamplingOptions::default().samples(self.settings.samples);
         let found = hausdorff_between(&tree, self.reference, &options);
-        let percent = |length: f64| 100.0 * length / found.reference_diagonal;
         Ok(Measured {
             faces: surface.face_count(),
-            shd_percent: found.symmetric_percent(),
-            forward_percent: percent(found.forward.max),
-            backward_percent: percent(found.backward.max),
-            forward_rms_percent: percent(found.forward.rms),
+            shd_percent: self.percent(found.symmetric()),
+            forward_percent: self.percent(found.forward.max),
+            backward_percent: self.percent(found.backward.max),
+            forward_rms_percent: self.percent(found.forward.rms),
             samples: found.forward.samples + found.backward.samples,
         })
     }

@@ -22,7 +22,7 @@ Examples:
 /// Measure the symmetric Hausdorff distance between two surfaces
 ///
 /// The distance is sampled on vertices, edges and faces of both: a lower bound of the true one. It is given
-/// as a length and in per cent of the bounding-box diagonal of the reference, which is B or the limit surface.
+/// as a length and in per cent of a bounding box's diagonal: the control mesh's with --limit-of, as in refine; else B's.
 /// With --certified it is bounded from both sides instead.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
@@ -64,9 +64,9 @@ pub(crate) struct MeasureArguments {
     #[arg(long, conflicts_with = "samples")]
     pub(crate) certified: bool,
 
-    /// How wide the interval may be: a length, or per cent of the reference's diagonal such as 0.01%
+    /// How wide the interval may be: a length, or per cent such as 0.01%
     ///
-    /// With --limit-of, of the control mesh's diagonal. Default: 1 % of the distance, with --limit-of 10 %; or 0.0001% of
+    /// Per cent are of the control mesh's diagonal with --limit-of, else of B's. Default: 1 % of the distance, with --limit-of 10 %; or 0.0001% of
     /// the diagonal where that is more. With --certified only.
     #[arg(long, value_name = "G", value_parser = values::extent, allow_hyphen_values = true)]
     pub(crate) gap: Option<Extent>,
@@ -91,7 +91,7 @@ pub(crate) struct MeasureArguments {
     /// Write A coloured by its distance to the reference: a mesh (.ply) or a picture (.png)
     ///
     /// The mesh has the distance of each vertex as its quality, in the mesh's unit; the picture shows it in per
-    /// cent of the reference's diagonal.
+    /// cent of the control mesh's diagonal with --limit-of, else of B's.
     #[arg(long, value_name = "FILE")]
     pub(crate) heatmap: Option<PathBuf>,
 }

@@ -6,6 +6,7 @@ use limitmesh::measure::{Bounds, Bvh, CertifiedHausdorff, CertifiedOptions, cert
 use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, point, table};
+use crate::report::measurement::Whole;
 
 /// Rounding to six digits changes a number by at most this share of it.
 const SIX_DIGITS: f64 = 5e-6;
@@ -72,20 +73,15 @@ fn at_most(bound: f64) -> String {
 }
 
 /// All that was found.
-pub(super) fn in_words(measured: &CertifiedHausdorff) -> String {
-    let diagonal = measured.reference_diagonal;
+pub(super) fn in_words(measured: &CertifiedHausdorff, whole: Whole) -> String {
     let mut text = format!(
         "symmetric Hausdorff distance  from {} to {}",
         at_least(measured.lower()),
         at_most(measured.upper())
     );
-    if diagonal > 0.0 {
-        text.push_str(&format!(
-            "  ({} % to {} % of the reference's diagonal {})",
-            at_least(100.0 * measured.lower() / diagonal),
-            at_most(100.0 * measured.upper() / diagonal),
-            number(diagonal)
-        ));
+    if let [Some(lower), Some(upper)] = [measured.lower(), measured.upper()].map(|x| whole.percent(x)) {
+        let (lower, upper) = (at_least(lower), at_most(upper));
+        text.push_str(&format!("  ({lower} % to {upper} % of {})", whole.in_words()));
     }
     text.push_str("\ncertified: the true distance lies in this interval\n\n");
     let mut rows = vec![["", "at least", "at most", ""].map(str::to_owned).to_vec()];

@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     progress.stage(format!("refining by {levels} levels to stand for the limit surface"));
     let reference = reference::at_level(&control, scheme, levels)?;
     let tree = Bvh::new(reference.mesh.as_triangles())?;
-    let judge = Judge { arguments, reference: &reference, tree: &tree };
+    let judge = Judge { arguments, reference: &reference, tree: &tree, diagonal: control.diagonal() };
 
     let mut methods = Vec::with_capacity(7);
     progress.stage("limit-normal");
@@ -112,6 +112,8 @@ struct Judge<'a> {
     reference: &'a Reference,
     /// The reference's search tree, built once for all methods.
     tree: &'a Bvh<'a>,
+    /// Of the control mesh's bounding box.
+    diagonal: f64,
 }
 
 impl Judge<'_> {
@@ -138,14 +140,14 @@ impl Judge<'_> {
         let options = SamplingOptions::default().samples(self.arguments.samples);
         let distance = hausdorff_between(&Bvh::new(surface)?, self.tree, &options);
         let quality = triangle_quality(surface);
-        let percent = 100.0 / distance.reference_diagonal.max(f64::MIN_POSITIVE);
+        let percent = 100.0 / self.diagonal.max(f64::MIN_POSITIVE);
         Ok(ComparedMethod {
             method,
             angle_degrees,
             levels,
             triangles: surface.triangles.len(),
             symmetric: distance.symmetric(),
-            symmetric_percent: distance.symmetric_percent(),
+            symmetric_percent: percent * distance.symmetric(),
             mean_percent: percent * distance.forward.mean,
             rms_percent: percent * distance.forward.rms,
             certified: certified.map(|[lower, upper]| CertifiedErrorReport {
@@ -183,7 +185,7 @@ fn in_words(arguments: &CompareArguments, judge: &Judge<'_>, methods: &[Compared
     }
     format!(
         "{}, against its limit surface ({}, {} levels)\n\n{}\n\
-         Distances are symmetric Hausdorff distances in per cent of the limit surface's diagonal, sampled: lower \
+         Distances are symmetric Hausdorff distances in per cent of the control mesh's diagonal, sampled: lower \
          bounds,\n{} samples a surface, or more where it has more vertices. What is proven is an upper bound.\n",
         arguments.input,
         counted(judge.reference.mesh.face_count(), "triangle", "triangles"),

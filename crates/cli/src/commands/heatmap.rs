@@ -14,6 +14,7 @@ use crate::arguments::Size;
 use crate::failure::usage;
 use crate::interrupt;
 use crate::output;
+use crate::report::measurement::Whole;
 
 /// A picture is drawn from about so many triangles: enough that one is a few pixels large.
 const PICTURE_TRIANGLES: usize = 300_000;
@@ -38,10 +39,10 @@ pub(super) fn write(
     path: &Path,
     surface: Triangles<'_>,
     reference: Triangles<'_>,
-    diagonal: f64,
+    whole: Whole,
 ) -> anyhow::Result<()> {
     if is_picture(path) {
-        draw(path, surface, reference, diagonal)
+        draw(path, surface, reference, whole)
     } else {
         write_mesh(path, surface, reference)
     }
@@ -59,19 +60,21 @@ fn write_mesh(path: &Path, surface: Triangles<'_>, reference: Triangles<'_>) -> 
 }
 
 /// A picture with a colour bar. Distances inside of triangles show too: large ones are cut up, flat as they are.
-fn draw(path: &Path, surface: Triangles<'_>, reference: Triangles<'_>, diagonal: f64) -> anyhow::Result<()> {
+fn draw(path: &Path, surface: Triangles<'_>, reference: Triangles<'_>, whole: Whole) -> anyhow::Result<()> {
     let (positions, triangles) = dice(surface, parts(surface.triangles.len()));
     let cut = Triangles { positions: &positions, triangles: &triangles };
     let mut distances = distances_to(&positions, reference)?;
-    if diagonal > 0.0 {
-        distances.iter_mut().for_each(|distance| *distance *= 100.0 / diagonal);
+    let per_length = whole.percent(1.0);
+    if let Some(percent) = per_length {
+        distances.iter_mut().for_each(|distance| *distance *= percent);
     }
     let Size { width, height } = SIZE;
     let style = Style::default().shading(Shading::Flat).lighting(Lighting::even());
     let scale = scale(&distances);
     let camera = Camera::fit_tightly(cut, ViewDirection::default(), width, height)?;
     let image = render_scalar(cut, None, &distances, &scale, &camera, &style, (width, height))?;
-    let bar = ColourBar::new(scale).title("distance").unit(if diagonal > 0.0 { "% of diagonal" } else { "" });
+    let unit = per_length.map_or_else(String::new, |_| format!("% of the {}'s diagonal", whole.of));
+    let bar = ColourBar::new(scale).title("distance").unit(unit);
     output::write_file(path, &bar.beside(&image, style.background)?.encode_png()?)
 }
 

@@ -11,7 +11,6 @@ use crate::input;
 use crate::mesh_info;
 use crate::output;
 use crate::progress::Progress;
-use crate::report::diagnosis::{preparations_in_words, repairs_in_words};
 use crate::report::information::{PolygonCount, TagCounts};
 use crate::report::{InformationReport, InputReport, MeshInformation, VERSION};
 
@@ -52,7 +51,7 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         output::print(&output::json(&report)?)?;
     } else {
         let mut text = describe_file(&report);
-        let found = [preparations_in_words(&diagnosis), repairs_in_words(&diagnosis)].concat();
+        let found = [diagnosis.preparations(), diagnosis.repairs()].concat();
         text.push_str("\nfound\n");
         if found.is_empty() {
             text.push_str("  nothing to prepare or repair\n");

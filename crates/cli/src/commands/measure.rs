@@ -13,8 +13,8 @@ use crate::input::{self, Input};
 use crate::output;
 use crate::progress::Progress;
 use crate::reference::{self, USUAL_LEVELS};
-use crate::report::measurement::MeasureSeconds;
-use crate::report::{DistanceReport, LimitReport, MeasureReport, SurfaceReport, VERSION};
+use crate::report::measurement::{HausdorffReport, MeasureSeconds, Whole};
+use crate::report::{CertifiedReport, DistanceReport, LimitReport, MeasureReport, SurfaceReport, VERSION};
 
 /// Measures one surface against another.
 pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::Result<Outcome> {
@@ -22,7 +22,7 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
     let start = Instant::now();
     let surface = input::load(&arguments.surface, &arguments.build.options(), progress)?;
     let a = surface.mesh.as_triangles();
-    let (control, reference_report) = load_reference(arguments, progress)?;
+    let (control, reference_report, whole) = load_reference(arguments, progress)?;
     let prepare = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
@@ -44,18 +44,18 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
         version: VERSION,
         surface: describe(&surface),
         reference: reference_report,
-        hausdorff: measured.report(),
+        hausdorff: measured.report(whole),
         seconds: MeasureSeconds { prepare, measure: start.elapsed().as_secs_f64() },
     };
     if let Some(path) = &arguments.heatmap {
         progress.stage(format!("writing {}", path.display()));
-        heatmap::write(path, a, b, measured.reference_diagonal())?;
+        heatmap::write(path, a, b, whole)?;
     }
     progress.clear();
     if arguments.json {
         output::print(&output::json(&report)?)?;
     } else {
-        output::print(&in_words(&report, &measured))?;
+        output::print(&in_words(&report, &measured, whole))?;
     }
     Ok(measured.outcome())
 }
@@ -75,17 +75,10 @@ impl Distance {
         Ok(Self::Sampled(hausdorff(a, b, &SamplingOptions::default().samples(arguments.samples))?))
     }
 
-    fn report(&self) -> DistanceReport {
+    fn report(&self, whole: Whole) -> DistanceReport {
         match self {
-            Self::Sampled(measured) => DistanceReport::Sampled(measured.into()),
-            Self::Certified(measured, _) => DistanceReport::Certified(measured.into()),
-        }
-    }
-
-    fn reference_diagonal(&self) -> f64 {
-        match self {
-            Self::Sampled(measured) => measured.reference_diagonal,
-            Self::Certified(measured, _) => measured.reference_diagonal,
+            Self::Sampled(measured) => DistanceReport::Sampled(HausdorffReport::new(measured, whole)),
+            Self::Certified(measured, _) => DistanceReport::Certified(CertifiedReport::new(measured, whole)),
         }
     }
 
@@ -118,21 +111,23 @@ fn against_limit(
 }
 
 /// The second surface: a mesh as it is, or one that stands for a limit surface; the control mesh itself, where the
-/// distance to its limit surface is to be certified.
+/// distance to its limit surface is to be certified. And what lengths are given in per cent of.
 fn load_reference(
     arguments: &MeasureArguments,
     progress: &Progress,
-) -> anyhow::Result<(Mesh, SurfaceReport)> {
+) -> anyhow::Result<(Mesh, SurfaceReport, Whole)> {
     let build = arguments.build.options();
     let Some(control) = &arguments.limit_of else {
         let name = arguments.reference.as_deref().unwrap_or_default();
         let input = input::load(name, &build, progress)?;
         let report = describe(&input);
-        return Ok((input.mesh, report));
+        let whole = Whole { diagonal: input.mesh.diagonal(), of: "second mesh" };
+        return Ok((input.mesh, report, whole));
     };
     let input = input::load(control, &build, progress)?;
     let scheme = arguments.scheme.unwrap_or_default();
     let report = describe(&input);
+    let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
     let mesh = arguments.features.apply(input.mesh)?;
     let (mesh, levels) = if arguments.certified {
         (mesh, 0)
@@ -157,7 +152,7 @@ fn load_reference(
         limit: Some(limit),
         ..report
     };
-    Ok((mesh, report))
+    Ok((mesh, report, whole))
 }
 
 fn describe(input: &Input) -> SurfaceReport {
@@ -170,26 +165,25 @@ fn describe(input: &Input) -> SurfaceReport {
     }
 }
 
-fn in_words(report: &MeasureReport, measured: &Distance) -> String {
+fn in_words(report: &MeasureReport, measured: &Distance, whole: Whole) -> String {
     let mut text = format!("from  {}\n", surface_in_words(&report.surface));
     text.push_str(&format!("to    {}\n\n", surface_in_words(&report.reference)));
     text.push_str(&match measured {
-        Distance::Sampled(measured) => sampled_in_words(measured),
-        Distance::Certified(measured, _) => certified::in_words(measured),
+        Distance::Sampled(measured) => sampled_in_words(measured, whole),
+        Distance::Certified(measured, _) => certified::in_words(measured, whole),
     });
     text
 }
 
-fn sampled_in_words(measured: &Hausdorff) -> String {
-    let diagonal = measured.reference_diagonal;
+fn sampled_in_words(measured: &Hausdorff, whole: Whole) -> String {
     let percent = |length: f64| {
-        if diagonal > 0.0 { format!("{} %", number(100.0 * length / diagonal)) } else { "-".to_owned() }
+        whole.percent(length).map_or_else(|| "-".to_owned(), |percent| format!("{} %", number(percent)))
     };
     let mut text = format!(
-        "symmetric Hausdorff distance  {}  ({} of the reference's diagonal {})\n",
+        "symmetric Hausdorff distance  {}  ({} of {})\n",
         number(measured.symmetric()),
         percent(measured.symmetric()),
-        number(diagonal)
+        whole.in_words()
     );
     text.push_str(&format!(
         "sampled: a lower bound, from {} samples of the first surface and {} of the second\n\n",

@@ -3,6 +3,8 @@
 use limitmesh::measure::{Bounds, CertifiedHausdorff};
 use serde::Serialize;
 
+use super::measurement::Whole;
+
 /// Both directions, and the symmetric distance. Lengths are in the meshes' units.
 #[derive(Debug, Serialize)]
 pub(crate) struct CertifiedReport {
@@ -11,53 +13,34 @@ pub(crate) struct CertifiedReport {
     pub(crate) lower: f64,
     /// The symmetric distance is at most this.
     pub(crate) upper: f64,
-    /// In per cent of `reference_diagonal`; null where that is 0.
+    /// In per cent of `diagonal`; null where that is 0.
     pub(crate) lower_percent: Option<f64>,
     pub(crate) upper_percent: Option<f64>,
     /// Whether both intervals are as narrow as was asked for.
     pub(crate) converged: bool,
     /// Triangles and pieces of them looked at.
     pub(crate) work: u64,
-    pub(crate) reference_diagonal: f64,
-    pub(crate) forward: BoundsReport,
-    pub(crate) backward: BoundsReport,
+    pub(crate) diagonal: f64,
+    /// `control mesh` or `second mesh`.
+    pub(crate) diagonal_of: &'static str,
+    pub(crate) forward: Bounds,
+    pub(crate) backward: Bounds,
 }
 
-/// One direction.
-#[derive(Debug, Serialize)]
-pub(crate) struct BoundsReport {
-    pub(crate) lower: f64,
-    pub(crate) upper: f64,
-    pub(crate) converged: bool,
-    /// The farthest point found.
-    pub(crate) at: [f64; 3],
-    /// The closest point of the other surface.
-    pub(crate) to: [f64; 3],
-}
-
-impl From<&CertifiedHausdorff> for CertifiedReport {
-    fn from(h: &CertifiedHausdorff) -> Self {
-        let percent = |length: f64| {
-            let percent = 100.0 * length / h.reference_diagonal;
-            percent.is_finite().then_some(percent)
-        };
+impl CertifiedReport {
+    pub(crate) fn new(h: &CertifiedHausdorff, whole: Whole) -> Self {
         Self {
             kind: "certified interval",
             lower: h.lower(),
             upper: h.upper(),
-            lower_percent: percent(h.lower()),
-            upper_percent: percent(h.upper()),
+            lower_percent: whole.percent(h.lower()),
+            upper_percent: whole.percent(h.upper()),
             converged: h.converged(),
             work: h.work,
-            reference_diagonal: h.reference_diagonal,
-            forward: (&h.forward).into(),
-            backward: (&h.backward).into(),
+            diagonal: whole.diagonal,
+            diagonal_of: whole.of,
+            forward: h.forward,
+            backward: h.backward,
         }
-    }
-}
-
-impl From<&Bounds> for BoundsReport {
-    fn from(b: &Bounds) -> Self {
-        Self { lower: b.lower, upper: b.upper, converged: b.converged, at: b.at, to: b.to }
     }
 }

@@ -16,7 +16,7 @@ pub(crate) struct ComparedMethod {
     pub(crate) triangles: usize,
     /// Symmetric Hausdorff distance to the limit surface, sampled: a lower bound, in the mesh's units.
     pub(crate) symmetric: f64,
-    /// In per cent of the diagonal of the limit surface's bounding box.
+    /// In per cent of the diagonal of the control mesh's bounding box.
     pub(crate) symmetric_percent: f64,
     /// Mean distance of the method's mesh to the limit surface, in the same per cent.
     pub(crate) mean_percent: f64,
@@ -41,7 +41,7 @@ pub(crate) struct CertifiedErrorReport {
     /// In the mesh's units.
     pub(crate) lower: f64,
     pub(crate) upper: f64,
-    /// In per cent of the diagonal of the limit surface's bounding box.
+    /// In per cent of the diagonal of the control mesh's bounding box.
     pub(crate) lower_percent: f64,
     pub(crate) upper_percent: f64,
 }

@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::certified::CertifiedReport;
 use super::diagnosis::DiagnosisReport;
 use crate::arguments::{Boundary, SchemeName};
+use crate::format::number;
 
 /// What a sampled distance is, in every report of one.
 pub(crate) const KIND: &str = "sampled lower bound";
@@ -55,13 +56,34 @@ pub(crate) struct LimitReport {
     pub(crate) crease_angle_degrees: Option<f64>,
 }
 
+/// What lengths are given in per cent of: the diagonal of the bounding box of the control mesh where one is known, of the
+/// mesh that is measured against else.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Whole {
+    pub(crate) diagonal: f64,
+    /// Whose diagonal it is.
+    pub(crate) of: &'static str,
+}
+
+impl Whole {
+    /// The share of a length; none where the mesh has no extent.
+    pub(crate) fn percent(self, length: f64) -> Option<f64> {
+        Some(100.0 * length / self.diagonal).filter(|percent| percent.is_finite())
+    }
+
+    /// `the control mesh's diagonal 2.5`.
+    pub(crate) fn in_words(self) -> String {
+        format!("the {}'s diagonal {}", self.of, number(self.diagonal))
+    }
+}
+
 /// The distances. Lengths are in the meshes' units.
 #[derive(Debug, Serialize)]
 pub(crate) struct HausdorffReport {
     pub(crate) kind: &'static str,
     /// The greater of `forward` and `backward`.
     pub(crate) symmetric: f64,
-    /// In per cent of `reference_diagonal`; null where that is 0.
+    /// In per cent of `diagonal`; null where that is 0.
     pub(crate) symmetric_percent: Option<f64>,
     /// Greatest distance found from the surface to the reference.
     pub(crate) forward: f64,
@@ -69,43 +91,27 @@ pub(crate) struct HausdorffReport {
     pub(crate) backward: f64,
     /// Samples of both directions together.
     pub(crate) samples: usize,
-    pub(crate) reference_diagonal: f64,
-    pub(crate) forward_detail: OneSidedReport,
-    pub(crate) backward_detail: OneSidedReport,
+    pub(crate) diagonal: f64,
+    /// `control mesh` or `second mesh`.
+    pub(crate) diagonal_of: &'static str,
+    pub(crate) forward_detail: OneSided,
+    pub(crate) backward_detail: OneSided,
 }
 
-impl From<&Hausdorff> for HausdorffReport {
-    fn from(h: &Hausdorff) -> Self {
+impl HausdorffReport {
+    pub(crate) fn new(h: &Hausdorff, whole: Whole) -> Self {
         Self {
             kind: KIND,
             symmetric: h.symmetric(),
-            symmetric_percent: (h.reference_diagonal > 0.0).then(|| h.symmetric_percent()),
+            symmetric_percent: whole.percent(h.symmetric()),
             forward: h.forward.max,
             backward: h.backward.max,
             samples: h.forward.samples + h.backward.samples,
-            reference_diagonal: h.reference_diagonal,
-            forward_detail: (&h.forward).into(),
-            backward_detail: (&h.backward).into(),
+            diagonal: whole.diagonal,
+            diagonal_of: whole.of,
+            forward_detail: h.forward,
+            backward_detail: h.backward,
         }
-    }
-}
-
-/// One direction.
-#[derive(Debug, Serialize)]
-pub(crate) struct OneSidedReport {
-    pub(crate) max: f64,
-    pub(crate) mean: f64,
-    pub(crate) rms: f64,
-    pub(crate) samples: usize,
-    /// The sample farthest away.
-    pub(crate) at: [f64; 3],
-    /// The closest point of the other surface.
-    pub(crate) to: [f64; 3],
-}
-
-impl From<&OneSided> for OneSidedReport {
-    fn from(o: &OneSided) -> Self {
-        Self { max: o.max, mean: o.mean, rms: o.rms, samples: o.samples, at: o.at, to: o.to }
     }
 }
 

@@ -8,6 +8,7 @@ pub(crate) mod information;
 pub(crate) mod measurement;
 pub(crate) mod refinement;
 
+pub(crate) use certified::CertifiedReport;
 pub(crate) use comparison::{CertifiedErrorReport, ComparedMethod};
 pub(crate) use diagnosis::DiagnosisReport;
 pub(crate) use information::{InformationReport, MeshInformation};

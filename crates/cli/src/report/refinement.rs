@@ -249,21 +249,24 @@ impl ErrorReport {
         }
     }
 
-    /// `within 0.0998 % (0.0123) of the limit surface, certified; at least 0.0962 %`.
+    /// `within 0.0998 % (0.0123) of the limit surface, certified; at least 0.0962 % of the control mesh's diagonal`.
     pub(crate) fn in_words(&self) -> String {
         let least = format!("at least {} %", lower_bound(self.lower_percent));
         match (self.upper, self.upper_percent) {
             (Some(upper), Some(percent)) if !self.certified => format!(
-                "about {} % ({}) from the limit surface by samples, not certified",
+                "about {} % of the control mesh's diagonal ({}) from the limit surface by samples, not certified",
                 upper_bound(percent),
                 upper_bound(upper)
             ),
             (Some(upper), Some(percent)) => format!(
-                "within {} % ({}) of the limit surface, certified; {least}",
+                "within {} % ({}) of the limit surface, certified; {least} of the control mesh's diagonal",
                 upper_bound(percent),
                 upper_bound(upper)
             ),
-            _ => format!("{least} ({}) from the limit surface, not certified", lower_bound(self.lower)),
+            _ => format!(
+                "{least} of the control mesh's diagonal ({}) from the limit surface, not certified",
+                lower_bound(self.lower)
+            ),
         }
     }
 }

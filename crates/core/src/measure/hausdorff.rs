@@ -10,39 +10,30 @@ use super::climb::climb;
 use super::samples::Samples;
 use super::{MeasureError, check_finite};
 use crate::mesh::Triangles;
+use crate::options::options;
 use crate::parallel;
 use crate::progress::{Cancelled, Observer, Stage, Watch, uncancelled, unobserved};
 use crate::vector::{DVec3, vector};
 
-/// How densely to sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct SamplingOptions {
-    /// Number of samples on each surface, spread over vertices, sides and insides of triangles. All vertices are
-    /// always taken and count; where they are nearly as many or more, a quarter of this number is still spread
-    /// over the rest of the surface. More than [`Self::MOST_SAMPLES`] count as that many.
-    pub samples: usize,
-}
-
-impl Default for SamplingOptions {
-    fn default() -> Self {
-        Self { samples: 100_000 }
+options! {
+    /// How densely to sample.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct SamplingOptions {
+        /// Number of samples on each surface, spread over vertices, sides and insides of triangles. All vertices are
+        /// always taken and count; where they are nearly as many or more, a quarter of this number is still spread
+        /// over the rest of the surface. More than [`Self::MOST_SAMPLES`] count as that many.
+        pub samples: usize = 100_000,
     }
 }
 
 impl SamplingOptions {
     /// Samples asked for at most: each takes 8 bytes while it is measured, so that these take 2 gigabytes.
     pub const MOST_SAMPLES: usize = 1 << 28;
-
-    /// Sets [`Self::samples`].
-    pub fn samples(mut self, samples: usize) -> Self {
-        self.samples = samples;
-        self
-    }
 }
 
 /// Sampled distance from one surface to another: a lower bound of the true maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct OneSided {
     /// Greatest distance found, at the samples and in a search around the farthest of them.

@@ -4,6 +4,7 @@ use core::fmt;
 
 /// How often something was found, and where first.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Finding {
     /// How many there are.
     pub count: usize,
@@ -74,57 +75,106 @@ pub struct Diagnosis {
     pub dropped_tags: Finding,
 }
 
-/// A finding's name in reports, whether it is a defect, its noun for one and for many, and what was done.
+/// How a finding is told.
 struct Wording {
+    /// In reports: the field's name.
     name: &'static str,
     defect: bool,
-    one: &'static str,
-    many: &'static str,
+    /// One of it, and many of it.
+    nouns: [&'static str; 2],
+    /// What is done about it.
     repair: &'static str,
+    /// What its numbers name.
+    place: &'static str,
 }
 
 const fn wording(
     name: &'static str,
     defect: bool,
-    one: &'static str,
-    many: &'static str,
+    nouns: [&'static str; 2],
     repair: &'static str,
+    place: &'static str,
 ) -> Wording {
-    Wording { name, defect, one, many, repair }
+    Wording { name, defect, nouns, repair, place }
 }
 
 /// In the order of the struct's fields.
 const WORDINGS: [Wording; 12] = [
-    wording("polygons", false, "polygon", "polygons", "triangulated"),
-    wording("welded_vertices", false, "vertex", "vertices", "welded to an earlier one"),
-    wording("collapsed_faces", true, "collapsed face", "collapsed faces", "dropped"),
+    wording(
+        "polygons",
+        false,
+        ["face with more than three corners", "faces with more than three corners"],
+        "cut into triangles",
+        "face",
+    ),
+    wording(
+        "welded_vertices",
+        false,
+        ["vertex at the place of another", "vertices at the place of another"],
+        "merged",
+        "vertex",
+    ),
+    wording(
+        "collapsed_faces",
+        true,
+        ["face with fewer than three different corners", "faces with fewer than three different corners"],
+        "left out",
+        "face",
+    ),
     wording(
         "twisted_polygons",
         false,
-        "polygon that crosses itself seen along its normal",
-        "polygons that cross themselves seen along their normals",
-        "triangulated as it may be",
+        ["polygon that crosses itself", "polygons that cross themselves"],
+        "cut into triangles as well as may be",
+        "face",
     ),
-    wording("zero_area_faces", true, "face of zero area", "faces of zero area", "removed"),
-    wording("repeated_faces", true, "repeated face", "repeated faces", "dropped"),
-    wording("isolated_vertices", true, "isolated vertex", "isolated vertices", "dropped"),
-    wording("flipped_faces", true, "face", "faces", "turned round to agree with the neighbours"),
+    wording("zero_area_faces", true, ["face without area", "faces without area"], "removed", "face"),
+    wording(
+        "repeated_faces",
+        true,
+        ["face that repeats another", "faces that repeat another"],
+        "left out",
+        "face",
+    ),
+    wording("isolated_vertices", true, ["vertex in no face", "vertices in no face"], "left out", "vertex"),
+    wording(
+        "flipped_faces",
+        true,
+        ["face turned against its neighbours", "faces turned against their neighbours"],
+        "turned round",
+        "face",
+    ),
     wording(
         "non_orientable_faces",
         true,
-        "face of a one-sided component",
-        "faces of one-sided components",
-        "cut apart",
+        [
+            "face where a one-sided surface meets itself the wrong way round",
+            "faces where a one-sided surface meets itself the wrong way round",
+        ],
+        "cut open there",
+        "face",
     ),
     wording(
         "non_manifold_edges",
         true,
-        "edge with more than two faces",
-        "edges with more than two faces",
+        ["edge with more than two faces", "edges with more than two faces"],
         "cut into sheets",
+        "lower vertex",
     ),
-    wording("bow_tie_vertices", true, "bow-tie vertex", "bow-tie vertices", "cut into fans"),
-    wording("dropped_tags", true, "tag that names nothing", "tags that name nothing", "dropped"),
+    wording(
+        "bow_tie_vertices",
+        true,
+        ["vertex where sheets touch at a point", "vertices where sheets touch at a point"],
+        "cut into one vertex a sheet",
+        "vertex",
+    ),
+    wording(
+        "dropped_tags",
+        true,
+        ["crease or corner tag of nothing in the mesh", "crease or corner tags of nothing in the mesh"],
+        "left out",
+        "tag",
+    ),
 ];
 
 impl Diagnosis {
@@ -156,31 +206,48 @@ impl Diagnosis {
         WORDINGS.iter().zip(self.in_order()).all(|(wording, finding)| !wording.defect || finding.is_empty())
     }
 
+    /// A line for each kind of defect that was found, and what was done about it.
+    pub fn repairs(&self) -> Vec<String> {
+        self.told(true, Wording::line)
+    }
+
+    /// A line for each finding that is no defect, and what was done about it.
+    pub fn preparations(&self) -> Vec<String> {
+        self.told(false, Wording::line)
+    }
+
     /// The defects in one line, for errors.
     pub(crate) fn defects(&self) -> String {
-        let defects = WORDINGS.iter().zip(self.in_order()).filter(|(w, f)| w.defect && !f.is_empty());
-        defects.map(|(w, f)| describe(w, f)).collect::<Vec<_>>().join("; ")
+        self.told(true, |wording, finding| wording.found(finding, "")).join("; ")
+    }
+
+    fn told(&self, defects: bool, tell: impl Fn(&Wording, &Finding) -> String) -> Vec<String> {
+        let all = WORDINGS.iter().zip(self.in_order());
+        let found = all.filter(|(wording, finding)| wording.defect == defects && !finding.is_empty());
+        found.map(|(wording, finding)| tell(wording, finding)).collect()
     }
 }
 
-/// For example `2 repeated faces (4, 9)`.
-fn describe(wording: &Wording, finding: &Finding) -> String {
-    let noun = if finding.count == 1 { wording.one } else { wording.many };
-    let mut places = finding.first.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
-    if finding.count > finding.first.len() {
-        places.push_str(", …");
+impl Wording {
+    /// For example `2 faces without area: removed (face 4, 9)`.
+    fn line(&self, finding: &Finding) -> String {
+        self.found(finding, &format!(": {}", self.repair))
     }
-    format!("{} {noun} ({places})", finding.count)
+
+    /// The same with other words, or none, before the places.
+    fn found(&self, finding: &Finding, words: &str) -> String {
+        let noun = self.nouns[usize::from(finding.count != 1)];
+        let mut places = finding.first.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
+        if finding.count > finding.first.len() {
+            places.push_str(", …");
+        }
+        format!("{} {noun}{words} ({} {places})", finding.count, self.place)
+    }
 }
 
 /// A line for each finding, without a line feed at the end; nothing where there is none.
 impl fmt::Display for Diagnosis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let found = WORDINGS.iter().zip(self.in_order()).filter(|(_, finding)| !finding.is_empty());
-        for (line, (wording, finding)) in found.enumerate() {
-            let break_before = if line == 0 { "" } else { "\n" };
-            write!(f, "{break_before}{}: {}", describe(wording, finding), wording.repair)?;
-        }
-        Ok(())
+        f.write_str(&[self.preparations(), self.repairs()].concat().join("\n"))
     }
 }

@@ -8,6 +8,7 @@ use crate::criterion::Criterion;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::limit::LimitTable;
 use crate::mesh::Mesh;
+use crate::options::options;
 use crate::parallel;
 use crate::progress::{Observer, unobserved};
 use crate::scheme::Scheme;
@@ -24,49 +25,18 @@ pub enum SeamRule {
     Inner,
 }
 
-/// How to refine step by step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct StepwiseOptions {
-    /// Greatest number of steps.
-    pub levels: usize,
-    /// Which vertices move.
-    pub seam: SeamRule,
-    /// Move the vertices to the limit surface of the last mesh at the end.
-    pub limit: bool,
-    /// Stop before the step that would give more triangles.
-    pub max_triangles: Option<usize>,
-}
-
-impl Default for StepwiseOptions {
-    fn default() -> Self {
-        Self { levels: 3, seam: SeamRule::All, limit: false, max_triangles: None }
-    }
-}
-
-impl StepwiseOptions {
-    /// Sets [`Self::levels`].
-    pub fn levels(mut self, levels: usize) -> Self {
-        self.levels = levels;
-        self
-    }
-
-    /// Sets [`Self::seam`].
-    pub fn seam(mut self, seam: SeamRule) -> Self {
-        self.seam = seam;
-        self
-    }
-
-    /// Sets [`Self::limit`].
-    pub fn limit(mut self, limit: bool) -> Self {
-        self.limit = limit;
-        self
-    }
-
-    /// Sets [`Self::max_triangles`].
-    pub fn max_triangles(mut self, max_triangles: Option<usize>) -> Self {
-        self.max_triangles = max_triangles;
-        self
+options! {
+    /// How to refine step by step.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct StepwiseOptions {
+        /// Greatest number of steps.
+        pub levels: usize = 3,
+        /// Which vertices move.
+        pub seam: SeamRule = SeamRule::All,
+        /// Move the vertices to the limit surface of the last mesh at the end.
+        pub limit: bool = false,
+        /// Stop before the step that would give more triangles.
+        pub max_triangles: Option<usize> = None,
     }
 }
 

@@ -26,52 +26,28 @@ use super::MeasureError;
 use super::bvh::Bvh;
 use crate::geometry::{NONE, for_each_edge};
 use crate::mesh::Triangles;
+use crate::options::options;
 use crate::progress::{Observer, Stage, Watch, unobserved};
 use crate::vector::vector;
 use scale::Scale;
 use search::Search;
 use target::Target;
 
-/// How narrow the interval is to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct CertifiedOptions {
-    /// An interval no wider than this is narrow enough, in the surfaces' unit. `None`, the default: a millionth of
-    /// the diagonal of the reference's bounding box. Negative numbers and NaN count as 0, and less than rounding
-    /// allows (about 1e-10 of the surfaces' size) as that.
-    pub gap: Option<f64>,
-    /// So is one no wider than this share of the lower bound; 0.01 by default. Negative numbers and NaN count as 0.
-    pub relative_gap: f64,
-    /// Work after which the search ends in each direction, with the interval that it has reached by then, which is
-    /// wider than asked for but as certain. A unit is a piece bounded, or a triangle or box of triangles looked at for
-    /// that; the default, 10⁹, is about half a minute on one thread. A first bound of every triangle is always made, and
-    /// the search also ends where more than four million pieces wait to be split.
-    pub max_work: u64,
-}
-
-impl Default for CertifiedOptions {
-    fn default() -> Self {
-        Self { gap: None, relative_gap: 0.01, max_work: 1_000_000_000 }
-    }
-}
-
-impl CertifiedOptions {
-    /// Sets [`Self::gap`].
-    pub fn gap(mut self, gap: Option<f64>) -> Self {
-        self.gap = gap;
-        self
-    }
-
-    /// Sets [`Self::relative_gap`].
-    pub fn relative_gap(mut self, relative_gap: f64) -> Self {
-        self.relative_gap = relative_gap;
-        self
-    }
-
-    /// Sets [`Self::max_work`].
-    pub fn max_work(mut self, max_work: u64) -> Self {
-        self.max_work = max_work;
-        self
+options! {
+    /// How narrow the interval is to be.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CertifiedOptions {
+        /// An interval no wider than this is narrow enough, in the surfaces' unit. `None`, the default: a millionth of
+        /// the diagonal of the reference's bounding box. Negative numbers and NaN count as 0, and less than rounding
+        /// allows (about 1e-10 of the surfaces' size) as that.
+        pub gap: Option<f64> = None,
+        /// So is one no wider than this share of the lower bound; 0.01 by default. Negative numbers and NaN count as 0.
+        pub relative_gap: f64 = 0.01,
+        /// Work after which the search ends in each direction, with the interval that it has reached by then, which is
+        /// wider than asked for but as certain. A unit is a piece bounded, or a triangle or box of triangles looked at for
+        /// that; the default, 10⁹, is about half a minute on one thread. A first bound of every triangle is always made, and
+        /// the search also ends where more than four million pieces wait to be split.
+        pub max_work: u64 = 1_000_000_000,
     }
 }
 
@@ -80,6 +56,7 @@ impl CertifiedOptions {
 /// [`lower`]: Self::lower
 /// [`upper`]: Self::upper
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Bounds {
     /// Some point, [`Self::at`], is at least this far away.

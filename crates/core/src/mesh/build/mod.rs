@@ -17,6 +17,7 @@ mod zero_area;
 
 use super::{Diagnosis, Mesh, MeshError, PolygonSoup, check_finite};
 use crate::geometry::NONE;
+use crate::options::options;
 use crate::vector::vector;
 use cut::Sheets;
 use retag::VertexMaps;
@@ -37,27 +38,14 @@ pub enum Weld {
     Within(f64),
 }
 
-/// How a mesh is built from a soup.
-#[derive(Clone, Copy, Debug, Default)]
-#[non_exhaustive]
-pub struct BuildOptions {
-    /// Which vertices are merged.
-    pub weld: Weld,
-    /// Refuse instead of repairing.
-    pub strict: bool,
-}
-
-impl BuildOptions {
-    /// Sets [`Self::weld`].
-    pub fn weld(mut self, weld: Weld) -> Self {
-        self.weld = weld;
-        self
-    }
-
-    /// Sets [`Self::strict`].
-    pub fn strict(mut self, strict: bool) -> Self {
-        self.strict = strict;
-        self
+options! {
+    /// How a mesh is built from a soup.
+    #[derive(Clone, Copy, Debug)]
+    pub struct BuildOptions {
+        /// Which vertices are merged.
+        pub weld: Weld = Weld::Exact,
+        /// Refuse instead of repairing.
+        pub strict: bool = false,
     }
 }
 

@@ -39,7 +39,7 @@ fn bad_input_is_named() {
     let text = error(&PolygonSoup::default(), plain).to_string();
     assert_eq!(text, "no face is left: the input has none");
     let text = error(&soup(&TETRAHEDRON, &[&[0, 1], &[2, 2, 3]]), plain).to_string();
-    assert!(text.contains("2 collapsed faces (0, 1)"), "{text}");
+    assert!(text.contains("2 faces with fewer than three different corners: left out (face 0, 1)"), "{text}");
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
         let options = plain.weld(Weld::Within(bad));
         assert!(matches!(error(&soup(&TETRAHEDRON, &SIDES), options), MeshError::BadOption { .. }));
@@ -52,7 +52,9 @@ fn strict_refuses_defects_and_nothing_else() {
     let mut faces = SIDES.to_vec();
     faces.extend([&[0u32, 1, 2][..], &[3, 3, 1]]);
     let error = Mesh::from_soup(&soup(&TETRAHEDRON, &faces), &strict).unwrap_err();
-    let summary = "1 collapsed face (5); 1 repeated face (4)".to_owned();
+    let summary =
+        "1 face with fewer than three different corners (face 5); 1 face that repeats another (face 4)"
+            .to_owned();
     assert_eq!(error, MeshError::NeedsRepair { summary });
     // Two quads that share a side by position alone.
     let p = [
