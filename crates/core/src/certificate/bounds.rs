@@ -123,7 +123,7 @@ impl<'a> Pieces<'a> {
         let bound = DeviationBound { frame, open: effort.open };
         let mut search = Search { bound, rules, effort, found: Deviation::default() };
         match (self.patch, part) {
-            (Patch::Mesh(local), _) if !rules.is_certified() => {
+            (Patch::Mesh(local), _) => {
                 let samples = self.samples.get_or_insert_with(|| Samples::of(local, SAMPLED_LEVELS, rules));
                 return samples.deviation(part, &bound);
             }
@@ -135,7 +135,7 @@ impl<'a> Pieces<'a> {
                 let net = self.net.get_or_insert_with(|| BezierTriangle::of(points));
                 search.net_part(net, part, ALL);
             }
-            (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::Mesh(_), _) => {
+            (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::SemiSharp(_), _) => {
                 search.irregular(self.patch, part, ALL, 0);
             }
         }
@@ -158,9 +158,11 @@ impl Search<'_> {
                 self.part(&patch.refined(self.rules).part(child), SubTriangle::Whole, borders, depth + 1);
             }
             (Patch::Regular(points), _) => self.net_part(&BezierTriangle::of(points), part, borders),
-            (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::Mesh(_), _) => {
+            (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::SemiSharp(_), _) => {
                 self.irregular(patch, part, borders, depth);
             }
+            // Their points' hull holds nothing.
+            (Patch::Mesh(_), _) => self.add(Deviation::alone(f64::INFINITY)),
         }
     }
 

@@ -34,12 +34,9 @@ impl Samples {
         let mut mesh: Option<Mesh> = None;
         for _ in 0..levels {
             let seeds: Vec<HalfEdgeId> = faces.iter().map(|&(first, _)| first).collect();
-            let Some(refined) = refined_around(mesh.as_ref().unwrap_or(piece.mesh()), &seeds, rules) else {
-                break;
-            };
+            mesh = Some(refined_around(mesh.as_ref().unwrap_or(piece.mesh()), &seeds, rules));
             faces =
                 faces.iter().flat_map(|&(_, corners)| quartered(corners)).enumerate().map(numbered).collect();
-            mesh = Some(refined);
         }
         let mesh = mesh.as_ref().unwrap_or(piece.mesh());
         let mut met = vec![false; mesh.vertex_count()];

@@ -1,9 +1,10 @@
 //! The patch of a control face.
 
 use super::Patch;
-use super::mesh_patch::{self, MeshPatch};
+use super::mesh_patch::MeshPatch;
 use super::rules::Rules;
 use super::sector::{Centre, SectorPatch, VertexSector};
+use super::semi_sharp::{SemiSharpPatch, SemiSharpVertex};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sector, Sharpness, Topology};
 use crate::ring::RingShape;
@@ -12,14 +13,23 @@ use crate::vector::{DVec3, vector};
 /// The limit surface over a control face.
 pub(crate) fn root_patch(mesh: &Mesh, sharpness: &Sharpness<'_>, face: FaceId, rules: &Rules<'_>) -> Patch {
     let corners = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
-    if !rules.is_certified() || mesh_patch::fades(mesh, sharpness, corners) {
-        return Patch::Mesh(MeshPatch::of(mesh, sharpness, face, rules));
+    if !rules.is_certified() {
+        return Patch::Mesh(MeshPatch::of(mesh, sharpness, face));
     }
-    patch_of(mesh, sharpness, corners)
+    match fades(mesh, sharpness, corners) {
+        true => SemiSharpPatch(corners.map(|h| SemiSharpVertex::of(mesh, sharpness, h))).settled(),
+        false => patch_of(mesh, sharpness, corners),
+    }
 }
 
-/// The surface over a face, given its corners, for a scheme of Loop's family. No tag may fade there.
-pub(super) fn patch_of(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> Patch {
+/// Whether a tag that fades decides the surface over a face, given its corners.
+fn fades(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> bool {
+    let vertices = corners.map(|h| mesh.topology().origin(h));
+    vertices.into_iter().any(|v| sharpness.is_tagged(v) && sharpness.ring(v).fading() > 0.0)
+}
+
+/// The surface over a face, given its corners, for a scheme of the Loop family. No tag may fade there.
+fn patch_of(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> Patch {
     Patch::of(SectorPatch(corners.map(|corner| sector(mesh, sharpness, corner))))
 }
 
@@ -30,7 +40,7 @@ fn sector(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> VertexSector
     let sector = sector_of(topology, sharpness, h);
     let neighbours: Vec<DVec3> = sector.neighbours(topology).map(at).collect();
     let slot = sector.outgoing(topology).position(|other| other == h).unwrap_or(0);
-    VertexSector { at: at(topology.origin(h)), neighbours, centre: centre(sector.shape), slot }
+    VertexSector { at: at(topology.origin(h)), neighbours, centre: Centre::of(sector.shape), slot }
 }
 
 /// The sector of the ring of the origin of `h` that the face of `h` is in.
@@ -46,14 +56,4 @@ pub(crate) fn sector_of(topology: &Topology, sharpness: &Sharpness<'_>, h: HalfE
     let sectors = sharpness.sectors(vertex);
     let own = sectors.iter().find(|sector| sector.outgoing(topology).any(|other| other == h));
     own.copied().unwrap_or(Sector { first: h, shape: RingShape::interior(valence) })
-}
-
-fn centre(shape: RingShape) -> Centre {
-    match (shape.corner, shape.open) {
-        (true, true) => Centre::Corner { open: true, sharp: None },
-        (false, true) => Centre::Crease,
-        // The sector of a vertex with one sharp edge starts there.
-        (true, false) => Centre::Corner { open: false, sharp: shape.dart.then_some(0) },
-        (false, false) => Centre::Smooth { sharp: shape.dart.then_some(0) },
-    }
 }

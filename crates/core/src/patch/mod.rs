@@ -2,8 +2,8 @@
 //!
 //! Each control face carries a [`Patch`]: its corners and their one-ring, which is all that the surface over it
 //! depends on. Refining a patch gives the four over its parts, at any depth, so that only what is needed is ever
-//! computed; limit positions and normals of new vertices come with it. Schemes of Loop's family have pieces of simple
-//! forms; for others, and where tags still fade, a piece is a small mesh that is refined as a whole.
+//! computed; limit positions and normals of new vertices come with it. Schemes of the Loop family have pieces of simple
+//! forms, also where tags still fade; for others a piece is a small mesh that is refined as a whole.
 
 pub(crate) mod bezier_triangle;
 mod box_spline;
@@ -16,6 +16,7 @@ pub(crate) mod mesh_patch;
 pub(crate) mod quartic;
 mod rules;
 mod sector;
+mod semi_sharp;
 mod submesh;
 
 pub(crate) use from_mesh::root_patch;
@@ -26,6 +27,7 @@ use box_spline::{Points, Refined};
 use extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use mesh_patch::{MeshPatch, RefinedMeshPatch};
 use sector::{RefinedSectors, SectorPatch};
+use semi_sharp::{RefinedSemiSharp, SemiSharpPatch};
 
 /// The limit surface over one face.
 // Almost all are regular: boxing them would cost an allocation for each face.
@@ -36,9 +38,11 @@ pub(crate) enum Patch {
     Regular(Points),
     /// One corner inside the surface has another number of edges, the others are regular.
     Extraordinary(Box<ExtraordinaryPatch>),
-    /// Any other without tags that fade, of Loop's family.
+    /// Any other without tags that fade, of the Loop family.
     Sectors(Box<SectorPatch>),
-    /// Anything else.
+    /// One where tags still fade, of the Loop family.
+    SemiSharp(Box<SemiSharpPatch>),
+    /// Of a scheme outside the Loop family.
     Mesh(MeshPatch),
 }
 
@@ -71,6 +75,8 @@ pub(crate) enum RefinedPatch<'a> {
     Extraordinary(RefinedExtraordinary),
     /// Of another irregular one.
     Sectors(RefinedSectors<'a>),
+    /// Of a semi-sharp one.
+    SemiSharp(RefinedSemiSharp<'a>),
     /// Of one without a form of its own.
     Mesh(RefinedMeshPatch<'a>),
 }
@@ -96,6 +102,7 @@ impl Patch {
                 RefinedPatch::Extraordinary(patch.refined(rules.beta(patch.ring.len())))
             }
             Self::Sectors(sectors) => RefinedPatch::Sectors(sectors.refined(rules)),
+            Self::SemiSharp(patch) => RefinedPatch::SemiSharp(patch.refined(rules)),
             Self::Mesh(local) => RefinedPatch::Mesh(local.refined(rules)),
         }
     }
@@ -106,6 +113,7 @@ impl Patch {
             Self::Regular(points) => points.iter().for_each(|&point| visit(point)),
             Self::Extraordinary(patch) => patch.points().for_each(visit),
             Self::Sectors(sectors) => sectors.points().for_each(visit),
+            Self::SemiSharp(patch) => patch.points().for_each(visit),
             Self::Mesh(local) => local.points().for_each(visit),
         }
     }
@@ -118,7 +126,8 @@ impl RefinedPatch<'_> {
             Self::Regular(_) => true,
             Self::Extraordinary(refined) => refined.is_regular(part),
             Self::Sectors(refined) => refined.is_regular(part),
-            Self::Mesh(refined) => matches!(refined.part(part), Patch::Regular(_)),
+            // Parts whose tags have faded may be, too; they are few.
+            Self::SemiSharp(_) | Self::Mesh(_) => false,
         }
     }
 
@@ -130,6 +139,7 @@ impl RefinedPatch<'_> {
             Self::Regular(refined) => Patch::Regular(refined.part(part)),
             Self::Extraordinary(refined) => refined.part(part),
             Self::Sectors(refined) => Patch::of(refined.part(part)),
+            Self::SemiSharp(refined) => refined.part(part),
             Self::Mesh(refined) => refined.part(part),
         }
     }
@@ -150,6 +160,7 @@ impl RefinedPatch<'_> {
                 let (at, ring) = refined.regular_middle(edge);
                 LimitPoint::regular(at, &ring)
             }
+            Self::SemiSharp(refined) => refined.middle(edge),
             Self::Mesh(refined) => refined.middle(edge),
         }
     }

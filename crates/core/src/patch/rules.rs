@@ -4,8 +4,7 @@
 use std::sync::OnceLock;
 
 use super::characteristic::Characteristic;
-use crate::limit::LimitTable;
-use crate::refine::RefineError;
+use crate::limit::{LimitError, LimitTable};
 use crate::scheme::{LoopFamily, Scheme};
 
 /// Valences whose weights are kept.
@@ -17,7 +16,7 @@ pub(crate) struct Rules<'s> {
     family: Option<LoopFamily>,
     table: LimitTable<'s>,
     /// What went wrong first.
-    failure: OnceLock<RefineError>,
+    failure: OnceLock<LimitError>,
     betas: [f64; KEPT],
     characteristics: [OnceLock<Characteristic>; KEPT],
 }
@@ -57,20 +56,15 @@ impl<'s> Rules<'s> {
         self.family.is_some()
     }
 
-    /// The rings of faces around a face that decide the surface over it.
-    pub(crate) fn rings(&self) -> usize {
-        if self.is_certified() { 1 } else { 2 }
-    }
-
     /// Keeps a failure, for whoever looks at results: what is computed after it means nothing.
     #[cold]
-    pub(crate) fn fail(&self, why: RefineError) {
+    pub(crate) fn fail(&self, why: LimitError) {
         // The first counts.
         let _ = self.failure.set(why);
     }
 
     /// The failure, if there was one.
-    pub(crate) fn failure(&self) -> Option<&RefineError> {
+    pub(crate) fn failure(&self) -> Option<&LimitError> {
         self.failure.get()
     }
 

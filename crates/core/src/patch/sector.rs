@@ -7,6 +7,7 @@
 use super::box_spline::{self, Points};
 use super::extraordinary::ExtraordinaryPatch;
 use super::rules::Rules;
+use crate::ring::RingShape;
 use crate::vector::DVec3;
 
 /// What becomes of a sector's centre.
@@ -18,6 +19,18 @@ pub(crate) enum Centre {
     Crease,
     /// Keeps its place; the sector is open where `open`, and may have one sharp edge where not.
     Corner { open: bool, sharp: Option<usize> },
+}
+
+impl Centre {
+    /// What becomes of the centre of a sector with that shape, whose first edge is sharp where any is.
+    pub(super) fn of(shape: RingShape) -> Self {
+        match (shape.corner, shape.open) {
+            (true, true) => Self::Corner { open: true, sharp: None },
+            (false, true) => Self::Crease,
+            (true, false) => Self::Corner { open: false, sharp: shape.dart.then_some(0) },
+            (false, false) => Self::Smooth { sharp: shape.dart.then_some(0) },
+        }
+    }
 }
 
 /// A vertex with its neighbours, counter-clockwise, on the side of one of its faces.
@@ -82,7 +95,7 @@ impl VertexSector {
 
     /// The six neighbours, the face's next corner first, of a regular sector; on an open one those beyond the curve are
     /// mirrored, which gives the same surface.
-    fn regular_ring(&self) -> Option<[DVec3; 6]> {
+    pub(super) fn regular_ring(&self) -> Option<[DVec3; 6]> {
         let ring: [DVec3; 6] = match (self.centre, &self.neighbours[..]) {
             (Centre::Smooth { sharp: None }, &[a, b, c, d, e, f]) => [a, b, c, d, e, f],
             (Centre::Crease, &[a, b, c, d]) => [a, b, c, d, self.at + d - c, self.at + a - b],

@@ -1,14 +1,17 @@
 //! Cuts a few faces with the rings of faces around them out of a mesh, with their tags.
 //!
-//! Takes a mesh, faces and a number of rings; gives a mesh of its own, small. Its rim is a boundary where the mesh goes
+//! Takes a mesh, faces and a number of rings; gives a mesh of its own, small, and refines it. Its rim is a boundary where the mesh goes
 //! on, so what is computed there is false: the number of rings is to be such that nothing that is used depends on it.
 
 use std::collections::{HashMap, HashSet};
 
 use crate::index::{FaceId, HalfEdgeId, VertexId};
+use crate::masks::Masks;
 use crate::mesh::{
     CornerTag, CreaseTag, Junctions, Mesh, NONE, Sharpness, Tags, Topology, outgoing_half_edges,
 };
+use crate::ring::faded;
+use crate::scheme::Scheme;
 
 /// The faces of the half-edges in `seeds` and `rings` rings around them. Face `i` of the result is that of seed `i`, its
 /// first half-edge the seed; the others follow.
@@ -27,6 +30,61 @@ pub(crate) fn submesh(mesh: &Mesh, sharpness: &Sharpness<'_>, seeds: &[HalfEdgeI
     let positions = sources.iter().map(|source| mesh.positions()[source.index()]).collect();
     let outgoing = outgoing_half_edges(&triangles, &twins, sources.len());
     Mesh::from_parts(Topology::from_parts(triangles, twins, outgoing), positions, tags, Junctions::default())
+}
+
+/// A small mesh after one step of uniform refinement: face `i` becomes the faces from `4i` on, those at its corners and
+/// then the middle one, which starts at the new vertex on the first edge.
+pub(crate) fn refined_submesh(mesh: &Mesh, scheme: &dyn Scheme) -> Mesh {
+    let topology = mesh.topology();
+    let edges: Vec<HalfEdgeId> =
+        topology.half_edges().filter(|&h| topology.twin(h).is_none_or(|twin| h < twin)).collect();
+    let mut on_edge = vec![NONE; topology.half_edge_count()];
+    for (vertex, &h) in (mesh.vertex_count() as u32..).zip(&edges) {
+        on_edge[h.index()] = vertex;
+        topology.twin(h).into_iter().for_each(|twin| on_edge[twin.index()] = vertex);
+    }
+    let on = |face: usize, edge: usize| on_edge[3 * face + edge];
+    let quartered = |(face, &[a, b, c]): (usize, &[u32; 3])| {
+        let [d, e, f] = [0, 1, 2].map(|edge| on(face, edge));
+        [[a, d, f], [b, e, d], [c, f, e], [d, e, f]]
+    };
+    let triangles: Vec<[u32; 3]> = mesh.triangles().iter().enumerate().flat_map(quartered).collect();
+    // The halves of a half-edge, by the face at each of its ends.
+    let halves = |h: HalfEdgeId| {
+        let (face, edge) = (4 * h.face().0, h.corner() as u32);
+        [3 * (face + edge), 3 * (face + (edge + 1) % 3) + 2]
+    };
+    let mut twins = vec![NONE; 3 * triangles.len()];
+    for h in topology.half_edges() {
+        if let Some(twin) = topology.twin(h) {
+            let ([first, second], [other_first, other_second]) = (halves(h), halves(twin));
+            (twins[first as usize], twins[second as usize]) = (other_second, other_first);
+        }
+        // Between the part at the corner and the middle one.
+        let (face, corner) = (4 * h.face().0, h.corner() as u32);
+        let (outer, inner) = (3 * (face + corner) + 1, 3 * (face + 3) + (corner + 2) % 3);
+        (twins[outer as usize], twins[inner as usize]) = (inner, outer);
+    }
+    let masks = Masks::new(mesh, scheme);
+    let old = topology.vertices().map(|vertex| masks.vertex_point(vertex).to_array());
+    let positions: Vec<[f64; 3]> = old.chain(edges.iter().map(|&h| masks.edge_point(h).to_array())).collect();
+    let tags = refined_tags(mesh, &on_edge);
+    let outgoing = outgoing_half_edges(&triangles, &twins, positions.len());
+    Mesh::from_parts(Topology::from_parts(triangles, twins, outgoing), positions, tags, Junctions::default())
+}
+
+/// The tags of a mesh after a step, given the new vertex on each half-edge.
+fn refined_tags(mesh: &Mesh, on_edge: &[u32]) -> Tags {
+    let left = |sharpness: f64| Some(faded(sharpness)).filter(|&left| left > 0.0);
+    let creases = mesh.tags().creases.iter().flat_map(|&CreaseTag { vertices: [a, b], sharpness }| {
+        let middle = mesh.topology().edge_between(VertexId(a), VertexId(b)).map(|h| on_edge[h.index()]);
+        let halves = middle.zip(left(sharpness)).map(|(middle, sharpness)| {
+            [[a, middle], [middle, b]].map(|vertices| CreaseTag { vertices, sharpness })
+        });
+        halves.into_iter().flatten()
+    });
+    let corner = |tag: &CornerTag| Some(CornerTag { sharpness: left(tag.sharpness)?, ..*tag });
+    Tags { creases: creases.collect(), corners: mesh.tags().corners.iter().filter_map(corner).collect() }
 }
 
 /// The faces that are cut out.
@@ -125,6 +183,33 @@ impl<'m> Cut<'m> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::refine::{UniformOptions, uniform};
+    use crate::scheme::{Loop, ModifiedButterfly};
+    use crate::vector::vector;
+
+    /// As the refinement of any mesh.
+    #[test]
+    fn a_step_is_one_of_uniform_refinement() {
+        for name in ["cup", "sheet", "tetrahedron"] {
+            let mesh = model(name);
+            let h = HalfEdgeId::of(FaceId(1), 2);
+            let vertices = mesh.topology().ends(h).map(|v| v.0);
+            let creases = vec![CreaseTag { vertices, sharpness: 1.4 }];
+            let corners = vec![CornerTag { vertex: vertices[0], sharpness: 2.5 }];
+            let mesh = mesh.with_tags(Tags { creases, corners }).unwrap();
+            for scheme in [&Loop as &dyn Scheme, &ModifiedButterfly] {
+                let expected = uniform(&mesh, scheme, &UniformOptions::default().levels(1)).unwrap().mesh;
+                let found = refined_submesh(&mesh, scheme);
+                found.validate().unwrap();
+                assert_eq!(found.triangles(), expected.triangles(), "{name}");
+                assert_eq!(found.topology().raw_twins(), expected.topology().raw_twins(), "{name}");
+                assert_eq!(found.tags(), expected.tags(), "{name}");
+                for (a, b) in found.positions().iter().zip(expected.positions()) {
+                    assert!(vector(*a).distance(vector(*b)) < 1e-14 * mesh.diagonal(), "{name}");
+                }
+            }
+        }
+    }
     use crate::models;
 
     fn model(name: &str) -> Mesh {

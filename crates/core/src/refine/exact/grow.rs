@@ -300,7 +300,7 @@ impl<'a> Growth<'a> {
 
     /// Refuses to go on where the scheme had no limit.
     pub(super) fn check_rules(&self) -> Result<(), RefineError> {
-        self.rules.failure().map_or(Ok(()), |why| Err(why.clone()))
+        self.rules.failure().map_or(Ok(()), |why| Err(why.clone().into()))
     }
 
     pub(super) fn evaluation(&self, target: f64) -> Evaluation<'_> {

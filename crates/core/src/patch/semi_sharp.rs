@@ -1,0 +1,213 @@
+//! Pieces beside semi-sharp tags (DeRose, Kass and Truong 1998): a face of the Loop family with the whole rings of its
+//! three corners and how sharp their edges are.
+//!
+//! The rules are OpenSubdiv's (see [`SharpRing`]). Within the family a new point on an edge depends on that edge's
+//! sharpness alone and a vertex's on its own ring's, so that one refinement follows from the masks directly. New
+//! vertices have six edges, of which two may stay sharp for a while. As soon as nothing at a part's corners fades any
+//! more, it takes the form of other pieces.
+
+use super::Patch;
+use super::sector::{Centre, SectorPatch, VertexSector};
+use super::{LimitPoint, Rules};
+use crate::index::HalfEdgeId;
+use crate::mesh::{Mesh, Sharpness};
+use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule, faded};
+use crate::vector::{DVec3, vector};
+
+/// A vertex with its neighbours, counter-clockwise, and the sharpness of the edges to them.
+#[derive(Clone, Debug)]
+pub(crate) struct SemiSharpVertex {
+    at: DVec3,
+    neighbours: Vec<DVec3>,
+    sharp: SharpRing,
+    /// The neighbour that is the face's next corner; the one after it is the corner after that.
+    slot: usize,
+}
+
+impl SemiSharpVertex {
+    /// The origin of `h`, as a corner of the face of `h`.
+    pub(super) fn of(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> Self {
+        let topology = mesh.topology();
+        let vertex = topology.origin(h);
+        let at = |v: crate::VertexId| vector(mesh.positions()[v.index()]);
+        Self {
+            at: at(vertex),
+            neighbours: topology.ring(vertex).map(at).collect(),
+            sharp: sharpness.ring(vertex),
+            slot: topology.outgoing_ring(vertex).position(|other| other == h).unwrap_or(0),
+        }
+    }
+
+    /// The neighbour `offset` slots on from the face's next corner.
+    fn neighbour(&self, offset: isize) -> usize {
+        (self.slot as isize + offset).rem_euclid(self.neighbours.len() as isize) as usize
+    }
+
+    fn fades(&self) -> bool {
+        self.sharp.fading() > 0.0
+    }
+
+    /// Where the centre moves by the rules of a ring as sharp as `sharp`.
+    fn moved_as(&self, sharp: &SharpRing, rules: &Rules<'_>) -> DVec3 {
+        match sharp.rule() {
+            VertexRule::Corner => self.at,
+            VertexRule::Crease => {
+                let ends = (0..self.neighbours.len()).filter(|&slot| sharp.is_sharp(slot));
+                0.75 * self.at + 0.125 * ends.map(|slot| self.neighbours[slot]).sum::<DVec3>()
+            }
+            VertexRule::Smooth | VertexRule::Dart => {
+                let valence = self.neighbours.len();
+                let beta = rules.beta(valence);
+                (1.0 - valence as f64 * beta) * self.at + beta * self.neighbours.iter().sum::<DVec3>()
+            }
+        }
+    }
+
+    /// Where the centre moves, given its ring as sharp as it will be: between both rules where one is about to change.
+    fn moved(&self, after: &SharpRing, rules: &Rules<'_>) -> DVec3 {
+        let now = self.sharp.present_weight();
+        if now == 1.0 || self.sharp.rule() == after.rule() {
+            return self.moved_as(&self.sharp, rules);
+        }
+        now * self.moved_as(&self.sharp, rules) + (1.0 - now) * self.moved_as(after, rules)
+    }
+
+    /// The new vertex on the edge to the neighbour in `slot`: between the middle and the smooth one where the edge is
+    /// about to fade.
+    fn edge_point(&self, slot: usize) -> DVec3 {
+        let count = self.neighbours.len();
+        let end = self.neighbours[slot];
+        let sharp = self.sharp.spokes[slot].clamp(0.0, 1.0);
+        let middle = 0.5 * (self.at + end);
+        if sharp == 1.0 {
+            return middle;
+        }
+        let before = self.neighbours[if slot == 0 { count - 1 } else { slot - 1 }];
+        let after = self.neighbours[if slot + 1 == count { 0 } else { slot + 1 }];
+        let smooth = 0.375 * (self.at + end) + 0.125 * (before + after);
+        sharp * middle + (1.0 - sharp) * smooth
+    }
+
+    /// The same vertex after one refinement.
+    fn refined(&self, rules: &Rules<'_>) -> Self {
+        let sharp = self.sharp.refined();
+        Self {
+            at: self.moved(&sharp, rules),
+            neighbours: (0..self.neighbours.len()).map(|slot| self.edge_point(slot)).collect(),
+            sharp,
+            slot: self.slot,
+        }
+    }
+
+    /// The sector that the face is in, where nothing fades.
+    fn sector(&self) -> VertexSector {
+        let count = self.neighbours.len();
+        let place = |first: usize| (self.slot + count - first) % count;
+        let sectors = self.sharp.sectors();
+        let own = sectors.iter().find(|sector| place(sector.first) < sector.shape.faces() as usize);
+        let Some(own) = own else {
+            let centre = Centre::Smooth { sharp: None };
+            return VertexSector {
+                at: self.at,
+                neighbours: self.neighbours.clone(),
+                centre,
+                slot: self.slot,
+            };
+        };
+        let around = (0..own.shape.valence as usize).map(|i| self.neighbours[(own.first + i) % count]);
+        VertexSector {
+            at: self.at,
+            neighbours: around.collect(),
+            centre: Centre::of(own.shape),
+            slot: place(own.first),
+        }
+    }
+
+    /// The limit of a new vertex, on the side of the face.
+    fn limit(mut self, rules: &Rules<'_>) -> LimitPoint {
+        while self.fades() {
+            self = self.refined(rules);
+        }
+        let sector = self.sector();
+        // New vertices are regular; those on boundaries and creases once they are mirrored.
+        LimitPoint::regular(sector.at, &sector.regular_ring().unwrap_or([sector.at; 6]))
+    }
+}
+
+/// The corners of a face of which one at least fades.
+#[derive(Clone, Debug)]
+pub(crate) struct SemiSharpPatch(pub(super) [SemiSharpVertex; 3]);
+
+impl SemiSharpPatch {
+    /// The simplest form of the piece.
+    pub(super) fn settled(self) -> Patch {
+        match self.0.iter().any(SemiSharpVertex::fades) {
+            true => Patch::SemiSharp(Box::new(self)),
+            false => Patch::of(SectorPatch([0, 1, 2].map(|corner| self.0[corner].sector()))),
+        }
+    }
+
+    /// All points, some more than once. Masks are convex combinations of them, so that their hull holds the piece.
+    pub(crate) fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
+        self.0.iter().flat_map(|corner| core::iter::once(corner.at).chain(corner.neighbours.iter().copied()))
+    }
+
+    /// The points after one refinement.
+    pub(crate) fn refined<'a>(&'a self, rules: &'a Rules<'a>) -> RefinedSemiSharp<'a> {
+        RefinedSemiSharp { before: self, corners: [0, 1, 2].map(|i| self.0[i].refined(rules)), rules }
+    }
+}
+
+/// The points around the four parts of a semi-sharp face.
+pub(crate) struct RefinedSemiSharp<'a> {
+    before: &'a SemiSharpPatch,
+    /// The face's corners with the new points around them.
+    corners: [SemiSharpVertex; 3],
+    rules: &'a Rules<'a>,
+}
+
+impl RefinedSemiSharp<'_> {
+    /// The new point on the edge from corner `edge`.
+    fn on_edge(&self, edge: usize) -> DVec3 {
+        let corner = &self.corners[edge];
+        corner.neighbours[corner.slot]
+    }
+
+    /// The new vertex on the edge from corner `edge`, as a corner of the face that starts at neighbour `slot`. Its
+    /// neighbours go from the edge's end over the face to its start, and on beyond the edge unless that is sharp for ever.
+    fn middle_vertex(&self, edge: usize, slot: usize) -> SemiSharpVertex {
+        let (next, last) = ((edge + 1) % 3, (edge + 2) % 3);
+        let (from, to) = (&self.corners[edge], &self.corners[next]);
+        let near = [to.at, self.on_edge(next), self.on_edge(last), from.at];
+        let before = &self.before.0[edge];
+        let sharpness = before.sharp.spokes[before.slot];
+        let (at, vertex, along) = (self.on_edge(edge), 0.0, faded(sharpness));
+        if sharpness >= INFINITELY_SHARP {
+            let sharp = SharpRing { open: true, vertex, spokes: vec![along, 0.0, 0.0, along] };
+            return SemiSharpVertex { at, neighbours: near.to_vec(), sharp, slot };
+        }
+        let beyond = [from.neighbours[from.neighbour(-1)], to.neighbours[to.neighbour(2)]];
+        let sharp = SharpRing { open: false, vertex, spokes: vec![along, 0.0, 0.0, along, 0.0, 0.0] };
+        SemiSharpVertex { at, neighbours: [near.as_slice(), &beyond].concat(), sharp, slot }
+    }
+
+    /// A part; numbered as [`super::box_spline::Refined::part`] does.
+    pub(crate) fn part(&self, part: usize) -> Patch {
+        // Around the middle of an edge the parts follow each other: the end's, the middle one, the start's.
+        if part == 3 {
+            return SemiSharpPatch([1, 2, 0].map(|edge| self.middle_vertex(edge, 1))).settled();
+        }
+        let (on_next, on_last) = (self.middle_vertex(part, 2), self.middle_vertex((part + 2) % 3, 0));
+        let mut corners = [self.corners[part].clone(), on_next, on_last];
+        corners.rotate_right(part);
+        SemiSharpPatch(corners).settled()
+    }
+
+    /// The limit of the new vertex on the edge from corner `edge`, on the face's side.
+    pub(crate) fn middle(&self, edge: usize) -> LimitPoint {
+        self.middle_vertex(edge, 0).limit(self.rules)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,106 @@
+//! Semi-sharp pieces against uniform refinement of the whole mesh and its limit stencils.
+
+use super::*;
+use crate::index::FaceId;
+use crate::limit::LimitTable;
+use crate::mesh::{CornerTag, CreaseTag, Tags};
+use crate::models;
+use crate::patch::root_patch;
+use crate::refine::{UniformOptions, uniform};
+use crate::scheme::{Loop, LoopWarren, Scheme};
+
+/// Numbers between 0 and 1, the same on every run.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Tags on many edges and some vertices, nearly all of them semi-sharp.
+fn tagged(name: &str, seed: u64) -> Mesh {
+    let mesh = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0;
+    let mut numbers = Numbers(seed);
+    let mut sharpness = |share: f64| {
+        let (is_tagged, lasts) = (numbers.next() < share, numbers.next() < 0.15);
+        let fading = 3.0 * numbers.next();
+        is_tagged.then_some(if lasts { f64::INFINITY } else { fading })
+    };
+    let mut tags = Tags::default();
+    let topology = mesh.topology();
+    for h in topology.half_edges().filter(|&h| topology.twin(h).is_some_and(|twin| h < twin)) {
+        let vertices = topology.ends(h).map(|v| v.0);
+        tags.creases.extend(sharpness(0.3).map(|sharpness| CreaseTag { vertices, sharpness }));
+    }
+    for vertex in 0..mesh.vertex_count() as u32 {
+        tags.corners.extend(sharpness(0.1).map(|sharpness| CornerTag { vertex, sharpness }));
+    }
+    mesh.with_tags(tags).unwrap()
+}
+
+/// The half-edges that start the four parts of a face after a uniform step: the parts start at the old corners, the
+/// middle one at the first new vertex. The face itself may start at any of its half-edges.
+fn first_of_part(first: HalfEdgeId, part: usize) -> HalfEdgeId {
+    let parts = 4 * first.face().0;
+    let turned = |by: usize| (first.corner() + by) % 3;
+    match part {
+        3 => HalfEdgeId::of(FaceId(parts + 3), turned(1)),
+        _ => HalfEdgeId::of(FaceId(parts + turned(part) as u32), [0, 2, 1][part]),
+    }
+}
+
+struct Check<'a> {
+    rules: &'a Rules<'a>,
+    /// The control mesh and its refinements.
+    levels: &'a [Mesh],
+    table: LimitTable<'a>,
+    name: &'a str,
+}
+
+impl Check<'_> {
+    fn visit(&self, patch: &Patch, first: HalfEdgeId, level: usize) {
+        let Some(fine) = self.levels.get(level + 1) else { return };
+        let refined = patch.refined(self.rules);
+        let size = fine.diagonal();
+        for edge in 0..3 {
+            // The part at the edge's start goes from there to the new vertex.
+            let corner = HalfEdgeId::of(first_of_part(first, edge).face(), 1);
+            let vertex = fine.topology().origin(corner);
+            let position = vector(self.table.position(fine, vertex).unwrap());
+            let found = refined.middle(edge);
+            let what = format!("{}, level {level}, {first}, edge {edge}", self.name);
+            assert!(found.position.distance(position) < 1e-12 * size, "{what}: {found:?}, {position}");
+            let normal = vector(self.table.normal_at(fine, corner).unwrap());
+            assert!(found.normal.distance(normal) < 1e-7, "{what}: {found:?}, {normal}");
+        }
+        for part in 0..4 {
+            self.visit(&refined.part(part), first_of_part(first, part), level + 1);
+        }
+    }
+}
+
+#[test]
+fn pieces_follow_uniform_refinement() {
+    for (seed, name) in ["tetrahedron", "cube", "spike", "sheet", "head"].into_iter().enumerate() {
+        for scheme in [&Loop as &dyn Scheme, &LoopWarren] {
+            let mut levels = vec![tagged(name, seed as u64 + 5)];
+            for level in 0..3 {
+                levels.push(
+                    uniform(&levels[level], scheme, &UniformOptions::default().levels(1)).unwrap().mesh,
+                );
+            }
+            let rules = Rules::of(scheme);
+            let check = Check { rules: &rules, levels: &levels, table: LimitTable::new(scheme), name };
+            let sharpness = Sharpness::of(&levels[0]);
+            let mut semi_sharp = 0;
+            for face in levels[0].topology().faces().step_by(levels[0].face_count().div_ceil(40)) {
+                let patch = root_patch(&levels[0], &sharpness, face, &rules);
+                semi_sharp += usize::from(matches!(patch, Patch::SemiSharp(_)));
+                check.visit(&patch, HalfEdgeId::of(face, 0), 0);
+            }
+            assert!(semi_sharp > 3, "{name}: {semi_sharp}");
+        }
+    }
+}
