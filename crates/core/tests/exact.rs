@@ -5,8 +5,9 @@
 mod support;
 
 use limitmesh::Mesh;
+use limitmesh::criterion::Camera;
 use limitmesh::measure::{SamplingOptions, hausdorff, limit_reference};
-use limitmesh::refine::{Camera, ExactOptions, ExactStop, exact, exact_estimate};
+use limitmesh::refine::{ExactOptions, ExactStop, exact, exact_estimate};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 use support::vertices_are_of_uniform_refinement;
 

@@ -6,7 +6,7 @@ mod support;
 
 use std::ops::ControlFlow;
 
-use limitmesh::criterion::{Criterion, CriterionError, LimitNormal, NeighbourNormal, Sight, View};
+use limitmesh::criterion::{Criterion, CriterionError, LimitNormal, NeighbourNormal, View, Viewpoint};
 use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::progress::{Cancelled, Progress, Stage};
@@ -31,9 +31,9 @@ impl Criterion for Arbitrary {
         "arbitrary"
     }
 
-    fn divisible(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
+    fn ratios(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<f64>, CriterionError> {
         let mut random = Random::new((self.seed + mesh.face_count()) as u64);
-        Ok((0..mesh.face_count()).map(|_| random.below(self.one_in) == 0).collect())
+        Ok((0..mesh.face_count()).map(|_| if random.below(self.one_in) == 0 { 1.1 } else { 1.0 }).collect())
     }
 }
 
@@ -118,8 +118,8 @@ fn seam_rules_move_the_vertices_they_name() {
         fn name(&self) -> &str {
             "first"
         }
-        fn divisible(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
-            Ok((0..mesh.face_count()).map(|f| f == 0).collect())
+        fn ratios(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<f64>, CriterionError> {
+            Ok((0..mesh.face_count()).map(|f| if f == 0 { 2.0 } else { 0.0 }).collect())
         }
     }
     let mesh = lumpy(20, 5);
@@ -189,8 +189,8 @@ fn the_quadrilateral_of_two_split_edges_gets_its_shorter_diagonal() {
         fn name(&self) -> &str {
             "others"
         }
-        fn divisible(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
-            Ok((0..mesh.face_count()).map(|f| f > 0).collect())
+        fn ratios(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<f64>, CriterionError> {
+            Ok((0..mesh.face_count()).map(|f| f as f64 * 2.0).collect())
         }
     }
     let options = StepwiseOptions::default().levels(1).seam(SeamRule::Inner);
@@ -271,7 +271,7 @@ fn the_observer_sees_each_step_and_can_cancel() {
 #[test]
 fn a_view_leaves_back_faces_and_divides_the_silhouette() {
     let mesh = refined(&octahedron(), 3);
-    let view = View { sight: Sight::Direction([0.0, 0.0, -1.0]), dilatation: 1.0 };
+    let view = View { viewpoint: Viewpoint::Direction([0.0, 0.0, -1.0]), dilatation: 1.0 };
     let criterion = LimitNormal::new(20.0 * DEGREE).view(view);
     let flags = criterion.divisible(&mesh, &LimitTable::new(&Loop)).unwrap();
     let z: Vec<f64> = (0..mesh.face_count())
@@ -288,7 +288,7 @@ fn a_view_leaves_back_faces_and_divides_the_silhouette() {
     };
     assert!(steep(0.0, 0.1) > steep(0.5, 1.0), "the silhouette is not preferred");
     // From far away an eye point is a direction.
-    let eye = View { sight: Sight::Eye([0.0, 0.0, 1e9]), dilatation: 1.0 };
+    let eye = View { viewpoint: Viewpoint::Eye([0.0, 0.0, 1e9]), dilatation: 1.0 };
     let far = LimitNormal::new(20.0 * DEGREE).view(eye);
     assert_eq!(far.divisible(&mesh, &LimitTable::new(&Loop)).unwrap(), flags);
 }
@@ -422,10 +422,10 @@ fn parameters_out_of_range_are_errors() {
         assert_eq!(named(&LimitNormal::new(angle)), "angle");
         assert_eq!(named(&NeighbourNormal::new(angle)), "angle");
     }
-    let seen = |sight, dilatation| LimitNormal::new(0.1).view(View { sight, dilatation });
-    assert_eq!(named(&seen(Sight::Direction([0.0; 3]), 1.0)), "direction of sight");
-    assert_eq!(named(&seen(Sight::Eye([0.0, f64::NAN, 0.0]), 1.0)), "eye point");
-    assert_eq!(named(&seen(Sight::Eye([0.0; 3]), -1.0)), "dilatation");
+    let seen = |viewpoint, dilatation| LimitNormal::new(0.1).view(View { viewpoint, dilatation });
+    assert_eq!(named(&seen(Viewpoint::Direction([0.0; 3]), 1.0)), "direction of sight");
+    assert_eq!(named(&seen(Viewpoint::Eye([0.0, f64::NAN, 0.0]), 1.0)), "eye point");
+    assert_eq!(named(&seen(Viewpoint::Eye([0.0; 3]), -1.0)), "dilatation");
 }
 
 #[test]
@@ -436,7 +436,7 @@ fn the_size_of_a_mesh_does_not_matter() {
         let scaled = mesh.clone().with_positions(positions).unwrap();
         stepwise(&scaled, &Loop, criterion, &StepwiseOptions::default()).unwrap().mesh.face_count()
     };
-    let view = View { sight: Sight::Direction([0.0, 1e-200, -1e-200]), dilatation: 1.0 };
+    let view = View { viewpoint: Viewpoint::Direction([0.0, 1e-200, -1e-200]), dilatation: 1.0 };
     let criteria: [&dyn Criterion; 3] = [
         &LimitNormal::new(10.0 * DEGREE),
         &NeighbourNormal::new(10.0 * DEGREE),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::Context;
-use limitmesh::refine::Camera;
+use limitmesh::criterion::Camera;
 
 use super::values::{Size, finite};
 

@@ -66,14 +66,17 @@ pub(crate) struct RefineArguments {
     ///
     /// Smaller angles divide more faces. For exact and limit-normal it is the cone around the limit normals of the
     /// face's vertices; for amresh the angle between neighbouring faces. Not with --method uniform. Default: 10 for
-    /// limit-normal and amresh; for exact it is one of the goals, and there is none.
+    /// limit-normal and amresh; for exact it is one of the goals, and there is none. Where the surface has no tangent
+    /// plane, as at a cusp, exact ends at 1/1024 of a control face times the angle in radians, and says so.
     #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
     pub(crate) angle: Option<f64>,
 
     /// Direction of sight, from the viewer into the scene: parallel projection
     ///
-    /// Makes --angle depend on the viewer, with --method exact or limit-normal: faces that look away are never divided, those on the silhouette always, those that look at the viewer
-    /// where their normal leaves a cone of --dilatation times --angle.
+    /// Makes --angle depend on the viewer, with --method exact or limit-normal: faces that look away are never divided,
+    /// those that look straight at the viewer where their normal leaves a cone of --dilatation times --angle, which
+    /// closes towards the silhouette; there limit-normal divides always. With exact it never gets narrower than
+    /// --angle: a viewer never costs triangles, and it takes a --dilatation above 1 to have the front coarser.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(conflicts_with = "eye")]
     pub(crate) view: Option<[f64; 3]>,
@@ -84,7 +87,7 @@ pub(crate) struct RefineArguments {
 
     /// Factor on the angle of faces that look straight at the viewer [at least 0; default: 1]
     ///
-    /// Larger values divide fewer of them; with --view or --eye only.
+    /// Larger values divide fewer of them; with --view or --eye only. With --method exact values below 1 count as 1.
     #[arg(long, value_name = "K", value_parser = values::factor, allow_hyphen_values = true)]
     pub(crate) dilatation: Option<f64>,
 

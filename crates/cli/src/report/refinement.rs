@@ -1,9 +1,10 @@
 //! The report of `limitmesh refine`.
 
 use limitmesh::Mesh;
+use limitmesh::criterion::Camera;
 use limitmesh::measure::{triangle_quality, watertightness};
 use limitmesh::mesh::Weld;
-use limitmesh::refine::{Camera, ErrorBounds, ExactProgress, ExactStop, StepReport, Stop};
+use limitmesh::refine::{ErrorBounds, ExactProgress, ExactStop, StepReport, Stop};
 use serde::Serialize;
 
 use super::InputReport;
@@ -39,6 +40,10 @@ pub(crate) struct MethodReport {
     pub(crate) needed_triangles: Option<usize>,
     /// How far the mesh and the limit surface are from each other; null for the stepwise methods.
     pub(crate) error: Option<ErrorReport>,
+    /// The same in the cameras' pictures, in pixels at most; null without cameras or where it is not bounded.
+    pub(crate) pixels: Option<f64>,
+    /// Triangles outside the cone of the exact method's angle; null without one.
+    pub(crate) open_cones: Option<usize>,
 }
 
 /// The name of a stepwise method's stop: all steps were done, no face was divisible any more, or the next step would
@@ -52,8 +57,8 @@ pub(crate) fn stop_name(stop: Stop) -> &'static str {
     }
 }
 
-/// The name of an exact refinement's stop: the goals are met, the number of triangles asked for is used up, or a cap
-/// was reached before.
+/// The name of an exact refinement's stop: the goals are met, the number of triangles asked for is used up, a cap
+/// was reached before, or all that is not met is an angle where no division helps.
 pub(crate) fn exact_stop_name(stop: ExactStop) -> &'static str {
     match stop {
         ExactStop::Met => "met",
@@ -62,6 +67,7 @@ pub(crate) fn exact_stop_name(stop: ExactStop) -> &'static str {
         ExactStop::LevelCap => "level-cap",
         ExactStop::MemoryCap => "memory-cap",
         ExactStop::Rounding => "rounding",
+        ExactStop::Cones => "cones",
         _ => "other",
     }
 }

@@ -9,6 +9,7 @@ use crate::common::{claimed, counts, file, folder, has_keys, run, soup};
 const CONTRACT: &str = "parameters.method parameters.exact.tolerance parameters.exact.tolerance_percent
     parameters.exact.triangles parameters.exact.pixels parameters.exact.cameras parameters.exact.balance
     parameters.exact.max_memory parameters.exact.max_levels parameters.exact.provenance rounds steps levels stop
+    pixels open_cones
     error.lower error.upper error.lower_percent error.upper_percent error.diagonal error.at error.certified";
 
 /// Refines to an exit code and gives the report, after checking that it fits the file and itself.
@@ -116,6 +117,20 @@ fn a_smaller_angle_gives_more_triangles() {
     let both = refine(0, "builtin:icosphere", &output, "--angle 10 --tolerance 0.01%");
     assert!(triangles(&both) > triangles(&wide));
     assert!(number(&both["error"]["upper_percent"]) <= 0.01);
+    assert_eq!((&both["pixels"], &both["open_cones"]), (&Value::Null, &json!(0)));
+}
+
+/// The corners of the head's mouth have no tangent plane.
+#[test]
+fn an_angle_that_cannot_be_met_everywhere_ends_and_says_so() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let report = refine(0, "builtin:head", &output, "--angle 40");
+    assert_eq!(report["stop"], "cones");
+    let open = report["open_cones"].as_u64().expect("a count");
+    assert!(open > 0 && open < triangles(&report) / 20, "{open}");
+    let words = format!("{open} triangles stay outside the angle");
+    run("refine builtin:head -o {} --angle 40", &[&output]).expect(0).saying(&words);
 }
 
 #[test]
@@ -160,6 +175,9 @@ fn cameras_see_the_detail() {
     }]);
     assert_eq!(front["parameters"]["exact"]["cameras"], seen);
     assert_eq!(front["stop"], "met");
+    assert!(number(&front["pixels"]) <= 0.5 && number(&front["pixels"]) > 0.05, "{}", front["pixels"]);
+    let words = format!("refine builtin:sphere -o {{}} --pixels 0.5 {}", camera("0,0,5"));
+    run(&words, &[&output]).expect(0).saying("pixels as the cameras see it");
     // Most of the detail is on the side of the camera.
     let centres = soup(&output);
     let in_front = centres

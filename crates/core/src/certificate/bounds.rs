@@ -303,7 +303,8 @@ impl Search<'_> {
         let vertex = is_inside.then_some(DVec3::ZERO);
         let inner = sector.hull.iter().copied().chain(vertex).map(image);
         let deviation = self.bound.points(inner, &curves[..count]);
-        Some(Deviation { own: deviation.own + rest, height: deviation.height + rest, ..deviation })
+        let Deviation { own, height, across, .. } = deviation;
+        Some(Deviation { own: own + rest, height: height + rest, across: across + rest, ..deviation })
     }
 
     /// The greatest distance of the control points from the triangle, and from the edges in `borders`.

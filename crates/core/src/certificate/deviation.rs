@@ -3,6 +3,7 @@
 
 use super::triangle_frame::{Beside, TriangleFrame};
 use super::{exceeds, greater};
+use crate::criterion::Apart;
 use crate::patch::bezier_triangle::{BezierTriangle, EDGES, INNER};
 use crate::vector::DVec3;
 
@@ -27,6 +28,8 @@ pub(crate) struct Deviation {
     pub(crate) drift: f64,
     /// The greatest ratio of that to the distance from the edge's ends.
     pub(crate) slope: f64,
+    /// How much of the height may point in any direction rather than along normals.
+    pub(crate) across: f64,
 }
 
 impl Deviation {
@@ -37,12 +40,13 @@ impl Deviation {
             height: greater(self.height, other.height),
             drift: greater(self.drift, other.drift),
             slope: greater(self.slope, other.slope),
+            across: greater(self.across, other.across),
         }
     }
 
     /// That of a piece which is as far from the triangle, its curves from their edges, and counts on its own.
     pub(crate) fn alone(own: f64) -> Self {
-        Self { own, height: own, drift: 0.0, slope: 0.0 }
+        Self { own, height: own, drift: 0.0, slope: 0.0, across: own }
     }
 
     /// The same for a triangle whose corners were moved off the surface by up to `moved`, up to `aside` of that along
@@ -56,18 +60,35 @@ impl Deviation {
             return self;
         }
         let height = greater(self.height, moved).hypot(2.0 * aside);
-        Self { own: greater(self.own, moved), height, drift: self.drift + aside, ..self }
+        let across = self.across + 2.0 * aside;
+        Self { own: greater(self.own, moved), height, drift: self.drift + aside, across, ..self }
     }
 
     /// The bound where the neighbours' planes are turned by angles with this chord (2 sin(θ/2)) at most, and `slope`
     /// is the greatest that is allowed.
     #[inline]
     pub(crate) fn bound(&self, chord: f64, slope: f64) -> f64 {
-        if self.slope <= slope && chord * chord <= SHARPEST {
-            self.own.min(self.height * (1.0 + 0.5 * chord * chord) + chord * self.drift)
-        } else {
-            self.own
-        }
+        self.among_neighbours(chord, slope).map_or(self.own, |bound| self.own.min(bound))
+    }
+
+    /// The part of the bound that takes help of the neighbours; `None` where they can't help.
+    #[inline]
+    fn among_neighbours(&self, chord: f64, slope: f64) -> Option<f64> {
+        let can_help = self.slope <= slope && chord * chord <= SHARPEST;
+        can_help.then_some(self.height * (1.0 + 0.5 * chord * chord) + chord * self.drift)
+    }
+
+    /// The bounds with and without neighbours, and which part of the former is along normals.
+    ///
+    /// That is all that stems from heights over the planes of the triangle and its neighbours and from drifts over
+    /// edges between them: what covers a point stands within [`super::bounds`]' |h| + σg along the normals of both planes and
+    /// the chord between them; and where it is a strip that covers, at the tangent of half their angle beside it at
+    /// most, all of which is within that angle of the triangle's own normal or counts as little.
+    pub(crate) fn apart(&self, chord: f64, slope: f64) -> Apart {
+        let bound = self.among_neighbours(chord, slope).unwrap_or(f64::INFINITY);
+        let across = if bound.is_finite() { self.across.min(bound) } else { self.own };
+        let height = if bound.is_finite() { bound - across } else { 0.0 };
+        Apart { own: self.own, height, across }
     }
 }
 
@@ -146,7 +167,7 @@ impl Greatest {
         let own = if squared > 1e-280 { squared.sqrt() } else { height.hypot(side) };
         // A curve that swings less than the least angle opens crosses no other edge.
         let is_plain = !self.beyond && self.swing <= frame.least_slope();
-        is_plain.then_some(Deviation { own, height, drift, slope })
+        is_plain.then_some(Deviation { own, height, drift, slope, across: 0.0 })
     }
 }
 
@@ -261,6 +282,7 @@ impl DeviationBound<'_> {
             own = self.frame.squared(point).sqrt();
             if alone > height {
                 alone = greater(alone, own);
+                deviation.across = greater(deviation.across, alone);
             }
         }
         deviation.own = greater(deviation.own, own);
@@ -277,6 +299,7 @@ impl DeviationBound<'_> {
         deviation.own = greater(deviation.own, own);
         if self.open[edge] {
             deviation.height = greater(deviation.height, own);
+            deviation.across = greater(deviation.across, own);
         } else {
             deviation.height = greater(deviation.height, self.frame.height(point).abs());
             let beside = self.frame.beside(edge, point);
@@ -294,7 +317,7 @@ impl DeviationBound<'_> {
     /// For a triangle that has no plane.
     fn found_alone(&self, distance: f64, deviation: &mut Deviation) {
         let slope = f64::INFINITY;
-        *deviation = deviation.max(Deviation { own: distance, height: distance, slope, drift: 0.0 });
+        *deviation = deviation.max(Deviation { slope, ..Deviation::alone(distance) });
     }
 
     fn drifted(&self, edge: usize, beside: Beside, deviation: &mut Deviation) {

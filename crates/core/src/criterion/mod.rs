@@ -1,15 +1,26 @@
-//! Criteria: which faces stand badly for the surface and are to be divided.
+//! Criteria: how badly a triangle stands for the surface, as a ratio: 1 is just good enough, 2 twice too bad.
 //!
-//! A criterion sees a mesh and the limit table of its scheme and answers with a flag for each face. It never
-//! changes anything.
+//! The paper's criteria ([`LimitNormal`], [`NeighbourNormal`]) look at a mesh and the limit table of its scheme and
+//! answer with the ratio of each face; stepwise refinement divides the faces above 1. Exact refinement asks the same
+//! of a triangle and the piece of the surface that it stands for ([`Criteria`]) and divides the worst first.
+//! A criterion never changes anything.
 
-mod limit_normal;
-mod neighbour_normal;
+mod cone;
+mod criteria;
+mod distance;
+mod neighbour;
+mod pixels;
+mod region;
 mod view;
 
-pub use limit_normal::LimitNormal;
-pub use neighbour_normal::NeighbourNormal;
-pub use view::{Sight, Threshold, View};
+pub use cone::LimitNormal;
+pub(crate) use criteria::{Apart, Criteria};
+pub(crate) use distance::Distance;
+pub use neighbour::NeighbourNormal;
+pub use pixels::Camera;
+pub(crate) use pixels::Pixels;
+pub(crate) use region::Region;
+pub use view::{AngleLimit, View, Viewpoint};
 
 use crate::limit::{LimitError, LimitTable};
 use crate::mesh::Mesh;
@@ -41,14 +52,34 @@ fn check_angle(angle: f64) -> Result<(), CriterionError> {
     Err(CriterionError::BadParameter { name: "angle", value: angle, expected: "radians from 0 to π" })
 }
 
-/// Decides which faces to divide.
+/// The least ratio that fails.
+const JUST_TOO_BAD: f64 = 1.0 + f64::EPSILON;
+
+/// How many times over an angle passes its limit, both in radians; the angle is given by its cosine.
+///
+/// Whether it passes is decided by the cosines, so that the arc's rounding does not count.
+fn angle_ratio(cosine: f64, limit: f64) -> f64 {
+    let ratio = cosine.clamp(-1.0, 1.0).acos() / limit;
+    if cosine < limit.cos() { ratio.max(JUST_TOO_BAD) } else { ratio.min(1.0) }
+}
+
+/// Says how badly faces stand for the surface.
 pub trait Criterion: Sync {
     /// A short name, as on the command line.
     fn name(&self) -> &str;
 
-    /// For each face of `mesh`, whether it is to be divided.
+    /// For each face of `mesh` how many times over it fails: 1 is just good enough, what is above is to be divided;
+    /// infinite where nothing is good enough.
     ///
     /// # Errors
     /// The limit normals that it needs do not exist, or a parameter is out of range.
-    fn divisible(&self, mesh: &Mesh, limits: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError>;
+    fn ratios(&self, mesh: &Mesh, limits: &LimitTable<'_>) -> Result<Vec<f64>, CriterionError>;
+
+    /// For each face of `mesh`, whether it is to be divided: whether it fails.
+    ///
+    /// # Errors
+    /// As for [`Self::ratios`].
+    fn divisible(&self, mesh: &Mesh, limits: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
+        Ok(self.ratios(mesh, limits)?.into_iter().map(|ratio| ratio > 1.0).collect())
+    }
 }

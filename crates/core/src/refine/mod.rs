@@ -13,8 +13,8 @@ mod tags;
 mod uniform;
 
 pub use exact::{
-    Camera, ErrorBounds, Estimate, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin,
-    exact, exact_estimate, is_certified,
+    ErrorBounds, Estimate, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin, exact,
+    exact_estimate, is_certified,
 };
 pub use stepwise::{SeamRule, StepwiseOptions, stepwise, stepwise_observed};
 pub use uniform::{UniformOptions, uniform, uniform_observed};

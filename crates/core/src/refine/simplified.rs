@@ -61,6 +61,8 @@ pub(super) fn simplified(
         sides: Vec::new(),
         parents: Vec::new(),
         error: ErrorBounds { lower, upper, at, certified: fine.error.certified },
+        pixels: None,
+        open_cones: 0,
         worst: options.tolerance.map_or(0.0, |tolerance| upper / tolerance),
         stop,
         levels: fine.levels,

@@ -4,7 +4,7 @@
 //! that it uses elsewhere, or might, the one whose sphere comes nearest to its adaptive count is drawn.
 
 use limitmesh::Mesh;
-use limitmesh::criterion::{LimitNormal, Sight, View};
+use limitmesh::criterion::{LimitNormal, View, Viewpoint};
 use limitmesh::refine::SeamRule;
 use limitmesh_render::ViewDirection;
 use serde::Serialize;
@@ -94,7 +94,7 @@ fn nearest_threshold(model: &ViewModel) -> u32 {
 }
 
 fn refine(player: &Player, part_of_pi: u32) -> anyhow::Result<Mesh> {
-    let view = View { sight: Sight::Direction(player.front.sight), dilatation: 1.0 };
+    let view = View { viewpoint: Viewpoint::Direction(player.front.sight), dilatation: 1.0 };
     let angle = std::f64::consts::PI / f64::from(part_of_pi);
     let criterion = LimitNormal::new(angle).view(view);
     Ok(methods::adaptive(&player.mesh, &criterion, STEPS, SeamRule::All)?.mesh)

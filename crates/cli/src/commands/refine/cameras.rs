@@ -1,8 +1,8 @@
 //! The cameras of a refinement in pixels: those of the options and of the files, checked against the mesh.
 
 use limitmesh::Mesh;
+use limitmesh::criterion::Camera;
 use limitmesh::limit::LimitTable;
-use limitmesh::refine::Camera;
 
 use crate::arguments::{RefineArguments, cameras_in};
 use crate::failure::usage;

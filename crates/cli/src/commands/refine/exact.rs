@@ -4,13 +4,14 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use limitmesh::Mesh;
-use limitmesh::refine::{Camera, Exact, ExactOptions, ExactProgress, ExactStop, exact};
+use limitmesh::criterion::Camera;
+use limitmesh::refine::{Exact, ExactOptions, ExactProgress, ExactStop, exact};
 
 use super::provenance::Provenance;
 use super::{Refined, cameras, view, view_report};
 use crate::arguments::{Extent, RefineArguments};
 use crate::failure::Outcome;
-use crate::format::{bytes, counted, thousands};
+use crate::format::{bytes, counted, thousands, upper_bound};
 use crate::progress::Progress;
 use crate::report::refinement::exact_stop_name;
 use crate::report::{
@@ -128,12 +129,13 @@ pub(super) fn run(
     let rounds = rounds.into_inner().unwrap_or_else(PoisonError::into_inner);
     let error = ErrorReport::new(&found.error, goals.diagonal);
     let outcome = outcome(&found, goals, &error, arguments);
-    let Exact { mesh, normals, origins, parents, stop, levels, .. } = found;
+    let achieved = achieved(&found, &error);
+    let Exact { mesh, normals, origins, parents, pixels, open_cones, stop, levels, .. } = found;
     Ok(Refined {
         mesh,
         normals: Some(normals),
         provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents)),
-        achieved: Some(error.in_words()),
+        achieved: Some(achieved),
         how: counted(levels, "level", "levels"),
         report: MethodReport {
             steps: Vec::new(),
@@ -142,9 +144,24 @@ pub(super) fn run(
             stop: exact_stop_name(stop),
             needed_triangles: None,
             error: Some(error),
+            pixels: pixels.filter(|pixels| pixels.is_finite()),
+            open_cones: goals.angle_degrees.map(|_| open_cones),
         },
         outcome,
     })
+}
+
+/// What was reached, in words.
+fn achieved(found: &Exact, error: &ErrorReport) -> String {
+    let pixels = found.pixels.map(|pixels| match pixels.is_finite() {
+        true => format!("; at most {} pixels as the cameras see it", upper_bound(pixels)),
+        false => "; not bounded as the cameras see it".to_owned(),
+    });
+    let cones = (found.stop == ExactStop::Cones).then(|| {
+        let triangles = counted(found.open_cones, "triangle stays", "triangles stay");
+        format!("; {triangles} outside the angle, where the surface has no tangent plane or as good as none")
+    });
+    [Some(error.in_words()), pixels, cones].into_iter().flatten().collect()
 }
 
 /// What was asked for, defaults filled in.
@@ -176,7 +193,7 @@ fn outcome(found: &Exact, goals: &Goals, error: &ErrorReport, arguments: &Refine
         "{} was written with {}, {}",
         arguments.output_name(),
         counted(triangles, "triangle", "triangles"),
-        error.in_words()
+        achieved(found, error)
     );
     let cap = match found.stop {
         ExactStop::TriangleCap => format!("--max-triangles {}", thousands(arguments.max_triangles())),

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use limitmesh::Mesh;
-use limitmesh::criterion::{Sight, View};
+use limitmesh::criterion::{View, Viewpoint};
 use limitmesh::mesh::Tags;
 use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
@@ -151,8 +151,8 @@ fn write(path: &Path, ascii: bool, refined: &Refined) -> anyhow::Result<()> {
 
 /// The view that makes the angle depend on the viewer.
 fn view(arguments: &RefineArguments) -> Option<View> {
-    let sight = arguments.view.map(Sight::Direction).or(arguments.eye.map(Sight::Eye))?;
-    Some(View { sight, dilatation: arguments.dilatation.unwrap_or(USUAL_DILATATION) })
+    let viewpoint = arguments.view.map(Viewpoint::Direction).or(arguments.eye.map(Viewpoint::Eye))?;
+    Some(View { viewpoint, dilatation: arguments.dilatation.unwrap_or(USUAL_DILATATION) })
 }
 
 fn view_report(arguments: &RefineArguments) -> Option<ViewReport> {

@@ -57,6 +57,8 @@ pub(super) fn run(
                 _ => None,
             },
             error: None,
+            pixels: None,
+            open_cones: None,
         },
     })
 }

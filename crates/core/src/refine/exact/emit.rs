@@ -3,14 +3,21 @@
 use super::forest::Forest;
 use super::grow::Growth;
 use super::options::{Exact, ExactStop, Origin};
+use crate::certificate::TriangleFrame;
+use crate::criterion::Region;
 use crate::emit::{Diagonal, Pattern, closure};
-use crate::index::HalfEdgeId;
+use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::{
     CreaseTag, Groups, INFINITELY_SHARP, Junctions, Mesh, NONE, Tags, Topology, check_finite,
     outgoing_half_edges,
 };
+use crate::parallel;
 use crate::refine::RefineError;
 use crate::refine::junctions::join_copies;
+use crate::vector::vector;
+
+/// What rounding may do to an angle against its limit, relative: normals are taken anew from what is emitted.
+const CONE_ROUNDING: f64 = 1e-6;
 
 /// The emitted triangles.
 pub(super) struct Emission {
@@ -46,6 +53,8 @@ impl Growth<'_> {
             (0..self.points.len()).map(|vertex| self.emitted(vertex as u32).to_array()).collect();
         join_copies(&mut positions, &junctions.vertices);
         check_finite(&positions)?;
+        // Before bounds are tightened for lengths, which may do worse in pictures.
+        let pixels = self.pixels(&emission);
         let error = self.probe(&emission)?;
         let failed = self.options.tolerance.filter(|&tolerance| error.upper > tolerance);
         let stop = if stop == ExactStop::Met && failed.is_some() { ExactStop::Rounding } else { stop };
@@ -57,20 +66,45 @@ impl Growth<'_> {
         let origins = self.origins();
         let outgoing = outgoing_half_edges(&triangles, &twins, self.forest.vertex_count());
         let topology = Topology::from_parts(triangles, twins, outgoing);
-        Ok(Exact {
+        let mut exact = Exact {
             mesh: Mesh::from_parts(topology, positions, tags, junctions),
             normals: self.points.iter().map(|point| point.normal.to_array()).collect(),
             sides,
             origins,
             parents,
             error,
-            worst: if self.demand.is_some() { self.worst_value().max(beyond) } else { 0.0 },
+            pixels,
+            open_cones: 0,
+            worst: if self.criteria.is_some() { self.worst_value().max(beyond) } else { 0.0 },
             stop,
             levels: (0..self.forest.node_count() as u32)
                 .map(|node| self.forest.level(node))
                 .max()
                 .unwrap_or(0),
-        })
+        };
+        exact.open_cones = self.open_cones(&exact);
+        if exact.open_cones > 0 && exact.stop == ExactStop::Met {
+            exact.stop = ExactStop::Cones;
+        }
+        Ok(exact)
+    }
+
+    /// Triangles outside their cones.
+    fn open_cones(&self, exact: &Exact) -> usize {
+        if self.options.angle.is_none() {
+            return 0;
+        }
+        let surface = exact.mesh.as_triangles();
+        let is_open = |face: usize| {
+            let corners = surface.corners(face).map(vector);
+            let normals = [0, 1, 2].map(|corner| HalfEdgeId::of(FaceId(face as u32), corner));
+            let normals = normals.map(|corner| vector(exact.corner_normal(corner)));
+            let frame = TriangleFrame::new(corners);
+            let tilt = normals.iter().map(|normal| normal.distance(frame.normal())).fold(0.0, f64::max);
+            let region = Region::around(corners, frame.normal()).turned(2.0 * tilt);
+            self.criteria.cone_ratio(frame.normal(), normals, &region) > 1.0 + CONE_ROUNDING
+        };
+        parallel::map(exact.mesh.face_count(), is_open).into_iter().filter(|&is_open| is_open).count()
     }
 
     pub(super) fn pattern(&self, leaf: u32) -> &'static Pattern {

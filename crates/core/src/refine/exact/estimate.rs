@@ -39,7 +39,7 @@ pub fn exact_estimate(
         Estimate { triangles, memory_bytes: triangles.saturating_mul(BYTES_PER_TRIANGLE), is_counted }
     };
     let mut growth = Growth::new(control, &rules, options)?;
-    if !growth.demand.is_some() {
+    if !growth.criteria.is_some() {
         return Ok(of(options.budget().0, false));
     }
     let (mut floor, mut before) = (COARSEST, control.face_count());

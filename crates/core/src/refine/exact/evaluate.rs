@@ -3,10 +3,10 @@
 //! Takes the leaves that are new or whose closure changed; walks down to them from their control faces, refining the
 //! patches on the way, so that no points of any level need be kept.
 
-use super::demand::Demand;
 use super::forest::Forest;
 use super::leaf::{LeafTriangle, leaf_triangles};
 use crate::certificate::{Deviation, Effort, Pieces, Samples, SubTriangle, TriangleFrame};
+use crate::criterion::{Criteria, Region};
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::SidedNormals;
 use crate::mesh::{Mesh, Sharpness};
@@ -30,12 +30,12 @@ pub(super) struct Found {
     pub(super) points: Vec<(u32, LimitPoint)>,
 }
 
-/// The value of a leaf: how many times over it fails the demands.
+/// The value of a leaf: how many times over it fails the criteria.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leaf {
     pub(super) node: u32,
     pub(super) value: f64,
-    /// What distances were multiplied by.
+    /// What a distance in any direction is multiplied by at most.
     pub(super) scale: f64,
     pub(super) deviation: Deviation,
     /// The diagonal by which a leaf with two split edges is cut starts at the unsplit edge's end.
@@ -46,7 +46,7 @@ pub(super) struct Leaf {
 #[derive(Clone, Copy)]
 struct Value {
     value: f64,
-    /// What distances were multiplied by.
+    /// What a distance in any direction is multiplied by at most.
     scale: f64,
     deviation: Deviation,
     /// The chord of the greatest angle between its normal and the limit normals at its corners.
@@ -68,7 +68,7 @@ pub(super) struct Evaluation<'a> {
     /// How far vertices are moved along their normals; empty where none is.
     pub(super) offsets: &'a [f64],
     pub(super) marks: &'a [u8],
-    pub(super) demand: &'a Demand,
+    pub(super) criteria: &'a Criteria,
     /// Values at or below this need not be told apart.
     pub(super) target: f64,
     /// How often regular pieces may be halved to tighten a bound.
@@ -149,7 +149,7 @@ impl Evaluation<'_> {
             let computed = compute();
             found.points.push((vertex, computed));
             computed
-        } else if self.demand.needs_normals() || self.has_sides {
+        } else if self.criteria.needs_normals() || self.has_sides {
             LimitPoint { normal: compute().normal, ..known }
         } else {
             known
@@ -170,6 +170,7 @@ impl Evaluation<'_> {
             }
         }
         let open = self.forest.open_edges(node);
+        let is_cone_given_up = self.forest.level(node) >= self.criteria.deepest_cone();
         let mut best: Option<Leaf> = None;
         let is_choice = split.count_ones() == 2;
         let fixed = self.fixed.filter(|_| is_choice).map(|fixed| fixed[node as usize]);
@@ -190,7 +191,7 @@ impl Evaluation<'_> {
                     _ => {
                         let corners = corners.map(|at| points[at]);
                         let open = borders.map(|border| border.is_some_and(|edge| open[edge]));
-                        self.triangle(&mut pieces, part, corners, open)
+                        self.triangle(&mut pieces, part, corners, open, is_cone_given_up)
                     }
                 };
                 if is_shared {
@@ -224,16 +225,22 @@ impl Evaluation<'_> {
         part: SubTriangle,
         corners: [LimitPoint; 3],
         open: [bool; 3],
+        is_cone_given_up: bool,
     ) -> Value {
         let frame = TriangleFrame::new(corners.map(|point| point.position));
         let (tilt, slope) = expected(&frame, &corners);
         // The neighbour stands as far from the limit normals, on their other side.
         let chord = 2.0 * tilt;
-        let scale = self.demand.distance_scale(&frame, &corners);
-        let effort = Effort { target: self.target / scale, halvings: self.halvings, open, chord, slope };
+        let region = Region::around(corners.map(|point| point.position), frame.normal()).turned(chord);
+        let target = self.target * self.criteria.allowed_length(&region);
+        let effort = Effort { target, halvings: self.halvings, open, chord, slope };
         let deviation = pieces.deviation(part, &frame, self.rules, effort);
-        let value = (deviation.bound(chord, slope) * scale).max(self.demand.cone(&frame, &corners));
-        Value { value, scale, deviation, tilt }
+        let region = region.grown(deviation.own);
+        let scale = 1.0 / self.criteria.allowed_length(&region);
+        let distance = self.criteria.distance_ratio(&deviation.apart(chord, slope), &region);
+        let cone = self.criteria.cone_ratio(frame.normal(), corners.map(|point| point.normal), &region);
+        let cone = if is_cone_given_up { cone.min(1.0) } else { cone };
+        Value { value: distance.max(cone), scale, deviation, tilt }
     }
 }
 

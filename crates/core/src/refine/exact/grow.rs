@@ -1,12 +1,12 @@
 //! Grows the forest until the goals are met: rounds of evaluating what changed and splitting what fails.
 
-use super::demand::Demand;
 use super::emit::Emission;
 use super::evaluate::{ABOVE_WANTED, Evaluation, Found, WANTED};
 use super::forest::{Changes, Forest};
 use super::options::{ExactOptions, ExactProgress, ExactStop};
 use super::probe::rounding;
 use crate::certificate::Deviation;
+use crate::criterion::{Criteria, Distance, LimitNormal, Pixels};
 use crate::limit::SidedNormals;
 use crate::mesh::{Mesh, Sharpness};
 use crate::patch::{LimitPoint, Rules};
@@ -56,7 +56,7 @@ pub(super) struct Growth<'a> {
     pub(super) sided: SidedNormals,
     pub(super) rules: &'a Rules<'a>,
     pub(super) options: &'a ExactOptions<'a>,
-    pub(super) demand: Demand,
+    pub(super) criteria: Criteria,
     /// What rounding may do to a distance.
     pub(super) rounding: f64,
     pub(super) forest: Forest,
@@ -68,7 +68,7 @@ pub(super) struct Growth<'a> {
     pub(super) values: Vec<f64>,
     /// By node: the deviations as a leaf.
     pub(super) deviations: Vec<Deviation>,
-    /// By node: what distances are multiplied by for the value.
+    /// By node: what distances in any direction are multiplied by for the value at most.
     pub(super) scales: Vec<f64>,
     /// By node: whether a leaf's diagonal starts at the unsplit edge's end.
     pub(super) diagonals: Vec<bool>,
@@ -111,7 +111,7 @@ impl<'a> Growth<'a> {
             lasting,
             rules,
             options,
-            demand: Demand::of(options, rounding)?,
+            criteria: criteria(control, options, rounding)?,
             rounding,
             forest,
             points: points
@@ -151,8 +151,8 @@ impl<'a> Growth<'a> {
 
     /// Splits until the goals are met or nothing more is allowed.
     pub(super) fn run(&mut self) -> Result<(ExactStop, Emission), RefineError> {
-        // Values above it fail; without a demand on quality all do.
-        let floor = if self.demand.is_some() { 1.0 } else { 0.0 };
+        // Values above it fail; without a criterion all do.
+        let floor = if self.criteria.is_some() { 1.0 } else { 0.0 };
         let full = self.budget;
         self.budget = full - full / if self.options.balance { BALANCING_RESERVE } else { RESERVE };
         // Balanced triangles may miss the surface by more than others before they are.
@@ -231,7 +231,7 @@ impl<'a> Growth<'a> {
     /// Sets the value of a leaf, and keeps it in mind if that may be too much.
     pub(super) fn set_value(&mut self, leaf: u32, value: f64) {
         self.values[leaf as usize] = value;
-        let least = if self.demand.is_some() { 1.0 } else { 0.0 };
+        let least = if self.criteria.is_some() { 1.0 } else { 0.0 };
         if value > least && !self.is_above[leaf as usize] {
             self.is_above[leaf as usize] = true;
             self.above.push(leaf);
@@ -249,7 +249,7 @@ impl<'a> Growth<'a> {
     /// Splits the leaves above the target, worst first, as far as allowed. Says why if none could be.
     fn split_worst(&mut self, target: f64) -> Result<Option<ExactStop>, RefineError> {
         let (forest, values, is_above) = (&self.forest, &self.values, &mut self.is_above);
-        let least = if self.demand.is_some() { 1.0 } else { 0.0 };
+        let least = if self.criteria.is_some() { 1.0 } else { 0.0 };
         self.above.retain(|&node| {
             let stays = forest.children(node).is_none() && values[node as usize] > least;
             is_above[node as usize] = stays;
@@ -314,7 +314,7 @@ impl<'a> Growth<'a> {
             points: &self.points,
             offsets: &self.offsets,
             marks: &self.marks,
-            demand: &self.demand,
+            criteria: &self.criteria,
             target,
             halvings: self.halvings,
             fixed: self.is_emitted.then_some(&self.diagonals[..]),
@@ -422,4 +422,13 @@ impl<'a> Growth<'a> {
         self.wanted.sort_unstable();
         self.wanted.dedup();
     }
+}
+
+/// What the options ask for.
+fn criteria(control: &Mesh, options: &ExactOptions<'_>, rounding: f64) -> Result<Criteria, RefineError> {
+    let distance = options.tolerance.map(|tolerance| Distance::new(tolerance, rounding));
+    let cone = options.angle.map(|angle| LimitNormal { view: options.view, ..LimitNormal::new(angle) });
+    let is_closed = control.topology().boundary_edge_count() == 0;
+    let pixels = options.pixels.map(|limit| Pixels::new(limit, &options.cameras, is_closed)).transpose()?;
+    Ok(Criteria::new(distance, cone, pixels, rounding)?)
 }

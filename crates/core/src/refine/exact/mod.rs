@@ -10,8 +10,6 @@
 
 mod balance;
 mod blocks;
-mod camera;
-mod demand;
 mod emit;
 mod estimate;
 mod evaluate;
@@ -24,7 +22,6 @@ mod scale;
 mod settle;
 mod sides;
 
-pub use camera::Camera;
 pub use estimate::exact_estimate;
 pub use options::{
     ErrorBounds, Estimate, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin,

@@ -2,8 +2,7 @@
 
 use core::ops::ControlFlow;
 
-use super::camera::Camera;
-use crate::criterion::View;
+use crate::criterion::{Camera, View};
 use crate::index::HalfEdgeId;
 use crate::mesh::{Mesh, MeshError};
 use crate::refine::RefineError;
@@ -18,11 +17,16 @@ pub struct ExactOptions<'a> {
     /// Greatest distance between mesh and limit surface, either way, as a length. Default: none.
     pub tolerance: Option<f64>,
     /// Greatest angle between a triangle's normal and the limit normals of its corners (the paper's equation 2), in
-    /// radians. Default: none.
+    /// radians. Control faces are not divided for its sake once triangles are 1/1024 of them and the angle (in radians)
+    /// smaller: where it is not met by then, at cusps and where the surface is not regular, it cannot be, and
+    /// [`Exact::open_cones`] says so. Default: none.
     pub angle: Option<f64>,
-    /// Makes the angle depend on where the viewer stands, as in the paper's equation 11. Default: none.
+    /// Makes the angle depend on where the viewer stands, as in the paper's equation 11, but never smaller than
+    /// [`Self::angle`], so that silhouettes come to an end and a viewer asks for no more than none: what looks away is not
+    /// divided, and with a dilatation above 1 what looks at the viewer has greater angles. Default: none.
     pub view: Option<View>,
-    /// Greatest distance between mesh and limit surface as the cameras see it, in pixels. Default: none.
+    /// Greatest distance between mesh and limit surface as the cameras see it, in pixels: of each point of one that is in a
+    /// picture from the other. Of closed surfaces what looks away from a camera is not seen. Default: none.
     pub pixels: Option<f64>,
     /// The cameras that the distance in pixels is for; one mesh serves them all. Default: none.
     pub cameras: Vec<Camera>,
@@ -179,10 +183,7 @@ impl<'a> ExactOptions<'a> {
             return bad("number of cameras", 0.0, "at least one, for a distance in pixels");
         }
         if let Some(view) = self.view {
-            view.check().map_err(|why| MeshError::Broken {
-                place: why.to_string(),
-                what: "a view must show something",
-            })?;
+            view.check()?;
         }
         if self.optimize && (self.angle.is_some() || self.pixels.is_some() || self.balance) {
             let expected = "goals that are a tolerance or a number of triangles, and no balance";
@@ -227,6 +228,9 @@ pub enum ExactStop {
     LevelCap,
     /// The tolerance is below what rounding leaves certain.
     Rounding,
+    /// Every goal is met, but for [`Exact::open_cones`]: triangles outside their cones where no division brings their
+    /// normals nearer to the limit normals, such as at cusps and where the surface is not regular.
+    Cones,
 }
 
 /// An interval for the symmetric Hausdorff distance between a mesh and the limit surface.
@@ -271,6 +275,11 @@ pub struct Exact {
     pub parents: Vec<u32>,
     /// How far mesh and limit surface can be from each other.
     pub error: ErrorBounds,
+    /// The greatest distance between mesh and limit surface as the cameras see it, in pixels at most: each point of one
+    /// that is in a picture has a point of the other that near. `None` without cameras; infinite where it is not bounded.
+    pub pixels: Option<f64>,
+    /// Triangles whose normals leave the cone of [`ExactOptions::angle`]; 0 without that goal, or where it is met.
+    pub open_cones: usize,
     /// How many times over the worst triangle fails the goals on quality: at most 1 where all are met; 0 without any.
     pub worst: f64,
     /// Why the refinement ended.

@@ -2,9 +2,8 @@
 //!
 //! Distances are found by squares and products of squares; beyond coordinates of 1e±40 or so these overflow or vanish.
 
-use super::camera::Camera;
 use super::options::{ErrorBounds, Exact, ExactOptions};
-use crate::criterion::{Sight, View};
+use crate::criterion::{Camera, View, Viewpoint};
 use crate::mesh::Mesh;
 use crate::refine::RefineError;
 
@@ -32,9 +31,9 @@ pub(super) fn mesh(mesh: &Mesh, factor: f64) -> Result<Mesh, RefineError> {
 pub(super) fn options<'a>(options: &ExactOptions<'a>, factor: f64) -> ExactOptions<'a> {
     let point = |p: [f64; 3]| p.map(|x| x * factor);
     let camera = |camera: &Camera| Camera { eye: point(camera.eye), target: point(camera.target), ..*camera };
-    let view = |view: View| match view.sight {
-        Sight::Eye(eye) => View { sight: Sight::Eye(point(eye)), ..view },
-        Sight::Direction(_) => view,
+    let view = |view: View| match view.viewpoint {
+        Viewpoint::Eye(eye) => View { viewpoint: Viewpoint::Eye(point(eye)), ..view },
+        Viewpoint::Direction(_) => view,
     };
     ExactOptions {
         // A tolerance that vanishes or overflows still is one.

@@ -1,6 +1,9 @@
 //! The bounds of the leaves among their neighbours as they are emitted.
 
+use super::emit::Emission;
 use super::grow::Growth;
+use crate::certificate::TriangleFrame;
+use crate::criterion::{Apart, Region};
 use crate::emit::{Diagonal, Pattern, closure};
 use crate::mesh::NONE;
 use crate::parallel;
@@ -40,9 +43,11 @@ impl Growth<'_> {
         let failing = parallel::pieces_of(leaves.len(), BLOCK, |block| {
             let values = leaves[block].iter().map(|&leaf| {
                 let scale = self.scales[leaf as usize];
-                // What holds without neighbours holds with them.
-                let is_plain = self.deviations[leaf as usize].own * scale <= limit;
-                (leaf, if is_plain { 0.0 } else { self.settled(leaf) * scale })
+                // What holds without neighbours holds with them; but a leaf whose triangles no camera sees may come into
+                // a picture when all that its deviation reaches counts.
+                let is_plain =
+                    self.options.pixels.is_none() && self.deviations[leaf as usize].own * scale <= limit;
+                (leaf, if is_plain { 0.0 } else { self.settled_ratio(leaf) })
             });
             values.filter(|&(_, value)| value > limit).collect::<Vec<_>>()
         });
@@ -62,6 +67,42 @@ impl Growth<'_> {
         if deviation.own <= deviation.height {
             return deviation.own;
         }
+        let (chord, slope) = self.around(leaf).steepest();
+        deviation.bound(chord, slope)
+    }
+
+    /// How many times over a leaf fails by its distance.
+    fn settled_ratio(&self, leaf: u32) -> f64 {
+        self.greatest(leaf, |apart, region| self.criteria.distance_ratio(apart, region))
+    }
+
+    /// The greatest distance between the mesh and the surface in the cameras' pictures, in pixels at most; `None` without
+    /// cameras.
+    pub(super) fn pixels(&self, emission: &Emission) -> Option<f64> {
+        let leaves = &emission.leaves.order;
+        let of_block = parallel::pieces_of(leaves.len(), BLOCK, |block| {
+            let of_leaf = |&leaf: &u32| {
+                self.greatest(leaf, |apart, region| self.criteria.pixels(apart, region).unwrap_or(0.0))
+            };
+            leaves[block].iter().map(of_leaf).fold(0.0, f64::max)
+        });
+        self.options.pixels.map(|_| of_block.into_iter().fold(0.0, f64::max))
+    }
+
+    /// The greatest of what a leaf's triangles come to.
+    fn greatest(&self, leaf: u32, value: impl Fn(&Apart, &Region) -> f64) -> f64 {
+        let (around, deviation) = (self.around(leaf), self.deviations[leaf as usize]);
+        let (chord, slope) = around.steepest();
+        let apart = deviation.apart(chord, slope);
+        let of_triangle = |corners: [DVec3; 3]| {
+            let normal = TriangleFrame::new(corners).normal();
+            value(&apart, &Region::around(corners, normal).turned(chord).grown(apart.own))
+        };
+        around.triangles().map(of_triangle).fold(0.0, f64::max)
+    }
+
+    /// The triangles of a leaf and their neighbours, as they are emitted.
+    fn around(&self, leaf: u32) -> Surroundings {
         let (pattern, labels) = self.covering(leaf);
         let at = labels.map(|vertex| if vertex == NONE { DVec3::ZERO } else { self.emitted(vertex) });
         // By half-edge of the pattern, the corner opposite of the neighbour. Edges on sharp curves count on their own.
@@ -82,13 +123,7 @@ impl Growth<'_> {
                 *opposite = Some(at[triangles[twin / 3][(twin + 2) % 3] as usize]);
             }
         }
-        let (mut squared, mut slope) = (0.0f64, STEEP);
-        for (triangle, opposite) in triangles.iter().zip(opposite.as_chunks::<3>().0) {
-            let (turn, room) = around(triangle.map(|corner| at[corner as usize]), opposite);
-            squared = squared.max(turn);
-            slope = slope.min(room);
-        }
-        deviation.bound(squared.sqrt(), slope)
+        Surroundings { at, pattern, opposite }
     }
 
     /// How a leaf is covered, and the vertices that its corners and middles are.
@@ -126,6 +161,33 @@ impl Growth<'_> {
         let (pattern, labels) = self.covering(other);
         let corner = pattern.triangles()[half_edge / 3][(half_edge + 2) % 3];
         Some((other, labels[corner as usize]))
+    }
+}
+
+/// The triangles of a leaf and the corners opposite of their neighbours.
+struct Surroundings {
+    /// Where the pattern's vertices lie.
+    at: [DVec3; 6],
+    pattern: &'static Pattern,
+    /// By half-edge of the pattern; `None` beside open edges.
+    opposite: [Option<DVec3>; 12],
+}
+
+impl Surroundings {
+    fn triangles(&self) -> impl Iterator<Item = [DVec3; 3]> {
+        self.pattern.triangles().iter().map(|triangle| triangle.map(|corner| self.at[corner as usize]))
+    }
+
+    /// The greatest chord of the angles between the planes of the triangles and their neighbours, and the greatest slope at
+    /// which points may drift over them.
+    fn steepest(&self) -> (f64, f64) {
+        let (mut squared, mut slope) = (0.0f64, STEEP);
+        for (triangle, opposite) in self.triangles().zip(self.opposite.as_chunks::<3>().0) {
+            let (turn, room) = around(triangle, opposite);
+            squared = squared.max(turn);
+            slope = slope.min(room);
+        }
+        (squared.sqrt(), slope)
     }
 }
 

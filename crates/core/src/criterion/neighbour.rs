@@ -1,12 +1,12 @@
 //! The criterion of Amresh, Farin and Razdan (2000), with which the paper compares itself.
 
-use super::{Criterion, CriterionError, check_angle};
+use super::{Criterion, CriterionError, angle_ratio, check_angle};
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::LimitTable;
 use crate::mesh::{INFINITELY_SHARP, Mesh, Sharpness};
 use crate::parallel;
 
-/// A face is divided where its normal and that of an edge neighbour differ by more than an angle.
+/// A face fails where its normal and that of an edge neighbour differ by more than an angle.
 ///
 /// Faces without area have no say, and neither have neighbours across an edge that stays sharp for ever.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,23 +28,22 @@ impl Criterion for NeighbourNormal {
         "amresh"
     }
 
-    fn divisible(&self, mesh: &Mesh, _limits: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
+    fn ratios(&self, mesh: &Mesh, _limits: &LimitTable<'_>) -> Result<Vec<f64>, CriterionError> {
         check_angle(self.angle)?;
         let normals = parallel::map(mesh.face_count(), |f| mesh.unit_face_normal(f));
-        let cosine = self.angle.cos();
         let sharpness = Sharpness::of(mesh);
         Ok(parallel::map(mesh.face_count(), |face| {
             let normal = normals[face];
-            normal.length_squared() > 0.0
-                && (0..3).any(|corner| {
-                    let h = HalfEdgeId::of(FaceId(face as u32), corner);
-                    mesh.topology().twin(h).is_some_and(|twin| {
-                        let other = normals[twin.face().index()];
-                        other.length_squared() > 0.0
-                            && other.dot(normal) < cosine
-                            && sharpness.edge(h) < INFINITELY_SHARP
-                    })
-                })
+            if normal.length_squared() == 0.0 {
+                return 0.0;
+            }
+            let cosines = (0..3).filter_map(|corner| {
+                let h = HalfEdgeId::of(FaceId(face as u32), corner);
+                let other = normals[mesh.topology().twin(h)?.face().index()];
+                let counts = other.length_squared() > 0.0 && sharpness.edge(h) < INFINITELY_SHARP;
+                counts.then(|| other.dot(normal))
+            });
+            cosines.reduce(f64::min).map_or(0.0, |cosine| angle_ratio(cosine, self.angle))
         }))
     }
 }

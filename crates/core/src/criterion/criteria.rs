@@ -1,0 +1,98 @@
+//! What exact refinement is asked for, all of it, as one ratio for a triangle and its piece of the surface.
+
+use super::{CriterionError, Distance, LimitNormal, Pixels, Region, cone};
+use crate::vector::DVec3;
+
+/// How far a triangle and its piece of the surface can be from each other. Both ways every point has one of the other within
+/// [`Self::own`] of it, in any direction; and one within [`Self::height`] along normals and [`Self::across`] in any
+/// direction. The normals are those of the triangle and its neighbours.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Apart {
+    pub(crate) own: f64,
+    pub(crate) height: f64,
+    pub(crate) across: f64,
+}
+
+impl Apart {
+    /// The lesser distance.
+    pub(crate) fn least(&self) -> f64 {
+        self.own.min(self.height + self.across)
+    }
+}
+
+/// The criteria that are to be met together; without any, ratios are plain distances.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Criteria {
+    distance: Option<Distance>,
+    cone: Option<LimitNormal>,
+    pixels: Option<Pixels>,
+    /// What rounding may add to a distance.
+    rounding: f64,
+}
+
+impl Criteria {
+    /// # Errors
+    /// A view that shows nothing.
+    pub(crate) fn new(
+        distance: Option<Distance>,
+        cone: Option<LimitNormal>,
+        pixels: Option<Pixels>,
+        rounding: f64,
+    ) -> Result<Self, CriterionError> {
+        cone.and_then(|cone| cone.view).map_or(Ok(()), |view| view.check())?;
+        Ok(Self { distance, cone, pixels, rounding })
+    }
+
+    /// Whether anything is asked for.
+    pub(crate) fn is_some(&self) -> bool {
+        self.distance.is_some() || self.cone.is_some() || self.pixels.is_some()
+    }
+
+    /// Whether the limit normals on a triangle's own side matter.
+    pub(crate) fn needs_normals(&self) -> bool {
+        self.cone.is_some() || self.pixels.is_some()
+    }
+
+    /// Levels below the control faces at which what fails by the cone alone is given up.
+    pub(crate) fn deepest_cone(&self) -> usize {
+        self.cone.map_or(usize::MAX, |cone| cone.deepest())
+    }
+
+    /// The distance, in whatever direction, that is certainly good enough anywhere in a ball.
+    pub(crate) fn allowed_length(&self, region: &Region) -> f64 {
+        let plain = match &self.distance {
+            Some(distance) => distance.allowed(),
+            None if self.is_some() => f64::INFINITY,
+            None => 1.0,
+        };
+        let seen = self.pixels.as_ref();
+        plain.min(seen.map_or(f64::INFINITY, |pixels| pixels.allowed_length(region.centre, region.radius)))
+    }
+
+    /// How many times over a distance fails. The region holds the triangle and its piece of the surface; its cone the
+    /// normals of both and of the neighbouring triangles.
+    pub(crate) fn distance_ratio(&self, apart: &Apart, region: &Region) -> f64 {
+        let plain = match &self.distance {
+            Some(distance) => apart.least() / distance.allowed(),
+            None if self.is_some() => 0.0,
+            None => apart.least(),
+        };
+        let Some(pixels) = &self.pixels else { return plain };
+        let allowed = pixels.allowed(region);
+        let own = (apart.own + self.rounding) / allowed.length;
+        plain.max(own.min(apart.height / allowed.height + (apart.across + self.rounding) / allowed.length))
+    }
+
+    /// How many pixels a distance comes to at most; `None` without cameras.
+    pub(crate) fn pixels(&self, apart: &Apart, region: &Region) -> Option<f64> {
+        let pixels = self.pixels.as_ref()?;
+        let own = pixels.seen(region, 0.0, apart.own + self.rounding);
+        Some(own.min(pixels.seen(region, apart.height, apart.across + self.rounding)))
+    }
+
+    /// How many times over a triangle's normal leaves the cones around the limit normals of its corners (the paper's
+    /// equations 2 and 11). The region holds the triangle, its cone both.
+    pub(crate) fn cone_ratio(&self, normal: DVec3, corners: [DVec3; 3], region: &Region) -> f64 {
+        self.cone.map_or(0.0, |goal| cone::ratio(normal, corners, goal.allowed_angle(region)))
+    }
+}

@@ -1,0 +1,416 @@
+//! Perspective cameras: how many pixels a distance in space comes to at most, and how long one may be to stay below.
+//!
+//! **One camera.** Let e be its eye and a point p stand at depth z before it, at the picture's (x, y)/z = u, F being
+//! the pixels of a unit length at depth 1. A point p + δ is seen F(δ′ − u δ_z)/(z + δ_z) away from it, δ′ being the
+//! part of δ across the line through the middle of the picture. The vector (δ′ − u δ_z, 0) is what is left of δ when it is projected along
+//! the line of sight on the picture, whose length is at most |δ| sin θ / cos φ: θ is the angle between δ and the line of
+//! sight, which stands φ off the axis. So the distance in the picture is at most
+//!
+//! > F |δ| sin θ / (cos φ (z − |δ|)).
+//!
+//! **A ball.** Let p be a point of a ball that the camera sees, that is, within its picture's frame. Then cos φ is at
+//! least that of the frame's corners, and that of the farthest direction that meets the ball; the distance of p
+//! from e is at least that of the ball, and so z at least that times cos φ, or the depth at which the ball begins. So
+//! the depth is above 0 unless e is within the ball, also where the ball reaches behind the eye. A ball that is wholly
+//! outside one of the frame's sides is not seen. All these only get better for a ball within the ball.
+//!
+//! **Displacements.** δ may be the sum of a vector of length a in any direction and one of length h along normals, which
+//! are within an angle κ of an axis. Then |δ| sin θ ≤ a + h sin θ, θ at most the angle between axis and the line of sight
+//! to the ball's middle, κ, and the angle at which the ball is seen, together.
+//!
+//! What looks away from all cameras is not seen on closed surfaces: of them a picture shows the front alone, and its
+//! outlines bound the front. The back of an open one may be seen.
+
+use super::region::{cosine_of, sum_of_angles};
+use super::{CriterionError, Region};
+use crate::vector::{DVec3, vector};
+
+/// A perspective camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Where it stands.
+    pub eye: [f64; 3],
+    /// A point in the middle of its picture.
+    pub target: [f64; 3],
+    /// A direction that points up in its picture.
+    pub up: [f64; 3],
+    /// Angle of view from the bottom to the top of the picture, in degrees: above 0, below 180.
+    pub fov_degrees: f64,
+    /// Width of the picture in pixels.
+    pub width: u32,
+    /// Height of the picture in pixels.
+    pub height: u32,
+}
+
+/// The least sine that the angle between line of sight and normal is taken to have: what looks straight at the camera
+/// keeps some accuracy, for shading and for what happens when the camera moves a little.
+const LEAST_SINE: f64 = 0.25;
+
+/// Greatest lengths that are certainly within a number of pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Allowed {
+    /// In any direction.
+    pub(crate) length: f64,
+    /// Along normals.
+    pub(crate) height: f64,
+}
+
+/// A greatest distance in the pictures of some cameras.
+#[derive(Clone, Debug)]
+pub(crate) struct Pixels {
+    limit: f64,
+    /// What looks away is not seen.
+    is_closed: bool,
+    lenses: Vec<Lens>,
+}
+
+impl Pixels {
+    /// At most `limit` pixels, of a surface that is closed or not.
+    ///
+    /// # Errors
+    /// A camera that looks nowhere, has no upright, no picture or an impossible angle.
+    pub(crate) fn new(limit: f64, cameras: &[Camera], is_closed: bool) -> Result<Self, CriterionError> {
+        let lenses = cameras.iter().map(Lens::new).collect::<Result<_, _>>()?;
+        Ok(Self { limit, is_closed, lenses })
+    }
+
+    /// The greatest distance between a point that is seen in a ball and another one, in any direction, that is certainly
+    /// within the limit in all pictures: infinite where no camera sees the ball, 0 where an eye stands in it.
+    ///
+    /// Never less for a ball within the ball.
+    pub(crate) fn allowed_length(&self, centre: DVec3, radius: f64) -> f64 {
+        let seen = self.lenses.iter().filter_map(|lens| lens.glance(centre, radius));
+        seen.map(|glance| glance.allowed(self.limit, 1.0)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same in any direction and along the normals of a region: infinite too where a closed surface looks away from
+    /// all cameras that see the ball. Neither is less than [`Self::allowed_length`].
+    ///
+    /// Never less for a region within the region. Lengths that are parts of what is allowed may be added: half of one and
+    /// half of the other are within the limit together.
+    pub(crate) fn allowed(&self, region: &Region) -> Allowed {
+        let nothing = Allowed { length: f64::INFINITY, height: f64::INFINITY };
+        self.glances(region).fold(nothing, |least, (glance, sine)| Allowed {
+            length: least.length.min(glance.allowed(self.limit, 1.0)),
+            height: least.height.min(glance.allowed(self.limit, sine)),
+        })
+    }
+
+    /// How many pixels there are at most between a point that is seen in a region and one that is `height` along its
+    /// normals and `across` in any direction from it.
+    pub(crate) fn seen(&self, region: &Region, height: f64, across: f64) -> f64 {
+        let seen = self.glances(region);
+        seen.map(|(glance, sine)| glance.pixels(height, across, sine)).fold(0.0, f64::max)
+    }
+
+    /// Each camera that sees a region, with the greatest sine of the angle between lines of sight and normals.
+    fn glances(&self, region: &Region) -> impl Iterator<Item = (Glance, f64)> {
+        let seen = self.lenses.iter().filter_map(|lens| lens.glance(region.centre, region.radius));
+        seen.filter_map(|glance| {
+            let spread = sum_of_angles(region.sine, glance.spread);
+            if region.axis == DVec3::ZERO || spread >= 1.0 {
+                return Some((glance, 1.0));
+            }
+            let cosine = glance.toward.dot(region.axis);
+            // Looking along the normal is looking at the back.
+            if self.is_closed && cosine > spread {
+                return None;
+            }
+            let sine = glance.toward.cross(region.axis).length();
+            Some((glance, sum_of_angles(sine.min(1.0), spread).max(LEAST_SINE)))
+        })
+    }
+}
+
+/// How a camera sees a ball.
+#[derive(Clone, Copy, Debug)]
+struct Glance {
+    /// Pixels of a unit length at depth 1, stretched as much as it can be off the axis.
+    pixels: f64,
+    /// The least depth of what is seen of the ball; 0 where the eye stands in it.
+    depth: f64,
+    /// Unit direction to the ball's middle.
+    toward: DVec3,
+    /// Sine of the angle between it and the lines of sight.
+    spread: f64,
+}
+
+impl Glance {
+    /// The greatest length that stays within so many pixels at angles to the line of sight up to that of the sine.
+    fn allowed(&self, limit: f64, sine: f64) -> f64 {
+        limit * self.depth / (self.pixels * sine + limit)
+    }
+
+    /// The inverse, for the sum of two lengths.
+    fn pixels(&self, height: f64, across: f64, sine: f64) -> f64 {
+        let length = height + across;
+        if length == 0.0 {
+            0.0
+        } else if length < self.depth {
+            self.pixels * (height * sine + across) / (self.depth - length)
+        } else {
+            f64::INFINITY
+        }
+    }
+}
+
+/// A camera's frame, ready for many regions.
+#[derive(Clone, Copy, Debug)]
+struct Lens {
+    eye: DVec3,
+    forward: DVec3,
+    /// Unit vectors at right angles to the sides of the frame, pointing outwards.
+    sides: [DVec3; 4],
+    /// Pixels of a unit length at depth 1.
+    pixels: f64,
+    /// 1/cos φ at the frame's corners.
+    greatest_stretch: f64,
+}
+
+impl Lens {
+    fn new(camera: &Camera) -> Result<Self, CriterionError> {
+        let bad = |name, value, expected| Err(CriterionError::BadParameter { name, value, expected });
+        let places = [camera.eye, camera.target, camera.up];
+        if let Some(&value) = places.as_flattened().iter().find(|x| !x.is_finite()) {
+            return bad("camera", value, "finite coordinates");
+        }
+        if !(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0) {
+            return bad("camera's angle of view", camera.fov_degrees, "degrees above 0 and below 180");
+        }
+        if camera.width == 0 || camera.height == 0 {
+            return bad("camera's picture", 0.0, "a width and a height of at least one pixel");
+        }
+        let (eye, target) = (vector(camera.eye), vector(camera.target));
+        let Some(forward) = (target - eye).try_normalize() else {
+            return bad("distance from the camera's eye to its target", 0.0, "different points");
+        };
+        let Some(right) = vector(camera.up).try_normalize().and_then(|up| {
+            let right = forward.cross(up);
+            (right.length() > 1e-9).then(|| right.normalize())
+        }) else {
+            return bad("camera's upward direction", 0.0, "a direction other than that of sight");
+        };
+        let up = right.cross(forward);
+        let (width, height) = (f64::from(camera.width), f64::from(camera.height));
+        let along = (0.5 * camera.fov_degrees).to_radians().tan();
+        let across = along * width / height;
+        let side = |axis: DVec3, tangent: f64| (axis - tangent * forward).normalize();
+        Ok(Self {
+            eye,
+            forward,
+            sides: [side(right, across), side(-right, across), side(up, along), side(-up, along)],
+            pixels: 0.5 * height / along,
+            greatest_stretch: across.hypot(along).hypot(1.0),
+        })
+    }
+
+    /// How it sees a ball; `None` if it doesn't.
+    fn glance(&self, centre: DVec3, radius: f64) -> Option<Glance> {
+        let sight = centre - self.eye;
+        let depth = sight.dot(self.forward);
+        if depth < -radius || self.sides.iter().any(|side| side.dot(sight) > radius) {
+            return None;
+        }
+        let distance = sight.length();
+        let room = distance - radius;
+        // Also where either is not a number.
+        if !(room > 0.0 && distance.is_finite()) {
+            let pixels = self.pixels * self.greatest_stretch;
+            return Some(Glance { pixels, depth: 0.0, toward: DVec3::ZERO, spread: 1.0 });
+        }
+        let spread = radius / distance;
+        let (cosine, sine) = (depth / distance, sight.cross(self.forward).length() / distance);
+        let farthest = cosine * cosine_of(spread) - sine * spread;
+        let stretch =
+            if farthest * self.greatest_stretch > 1.0 { 1.0 / farthest } else { self.greatest_stretch };
+        Some(Glance {
+            pixels: self.pixels * stretch,
+            depth: (depth - radius).max(room / stretch),
+            toward: sight / distance,
+            spread,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers between −1 and 1, the same on every run.
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+
+        fn point(&mut self) -> DVec3 {
+            DVec3::new(self.next(), self.next(), self.next())
+        }
+
+        fn unit(&mut self) -> DVec3 {
+            loop {
+                let point = self.point();
+                if (0.01..1.0).contains(&point.length_squared()) {
+                    return point.normalize();
+                }
+            }
+        }
+
+        fn camera(&mut self) -> Camera {
+            let eye = 3.0 * self.point();
+            Camera {
+                eye: eye.to_array(),
+                target: (eye + self.unit()).to_array(),
+                up: self.unit().to_array(),
+                fov_degrees: 85.0 + 84.0 * self.next(),
+                width: 640,
+                height: 200 + (300.0 * (1.0 + self.next())) as u32,
+            }
+        }
+
+        fn region(&mut self, size: f64) -> Region {
+            let sine = if self.next() > 0.9 { 1.0 } else { 0.4 * (1.0 + self.next()) };
+            Region { centre: self.point(), radius: size * (1.0 + self.next()), axis: self.unit(), sine }
+        }
+
+        /// A point of a region and a normal, on its rim now and then.
+        fn within(&mut self, region: &Region) -> (DVec3, DVec3) {
+            let reach = if self.next() > 0.0 { 1.0 } else { self.next().abs() };
+            let point = region.centre + reach * region.radius * self.unit();
+            if region.sine >= 1.0 {
+                return (point, self.unit());
+            }
+            let sine = region.sine * if self.next() > 0.0 { 1.0 } else { self.next().abs() };
+            let across = region.axis.cross(self.unit()).normalize();
+            (point, (1.0 - sine * sine).sqrt() * region.axis + sine * across)
+        }
+    }
+
+    /// The pixel at which a camera sees a point, from its description alone; `None` behind it. And whether that is in the
+    /// picture.
+    fn pixel(camera: &Camera, point: DVec3) -> Option<([f64; 2], bool)> {
+        let forward = (vector(camera.target) - vector(camera.eye)).normalize();
+        let right = forward.cross(vector(camera.up)).normalize();
+        let up = right.cross(forward);
+        let sight = point - vector(camera.eye);
+        let (width, height) = (f64::from(camera.width), f64::from(camera.height));
+        let focal = 0.5 * height / (0.5 * camera.fov_degrees.to_radians()).tan();
+        let depth = sight.dot(forward);
+        if depth <= 0.0 {
+            return None;
+        }
+        let at = [right, up].map(|axis| focal * sight.dot(axis) / depth);
+        Some((at, 2.0 * at[0].abs() <= width && 2.0 * at[1].abs() <= height))
+    }
+
+    fn pixels_between(camera: &Camera, a: DVec3, b: DVec3) -> f64 {
+        match (pixel(camera, a), pixel(camera, b)) {
+            (Some((a, _)), Some((b, _))) => (a[0] - b[0]).hypot(a[1] - b[1]),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// No displacement of an allowed length is seen longer than the limit, and some come near it.
+    #[test]
+    fn what_is_allowed_stays_below_the_limit() {
+        let mut numbers = Numbers(3);
+        let (mut closest, mut closest_along) = (0.0f64, 0.0f64);
+        let mut seen = 0;
+        for round in 0..3000 {
+            let cameras = [numbers.camera(), numbers.camera()];
+            let limit = 2f64.powf(6.0 * numbers.next());
+            let region = numbers.region(if round % 2 == 0 { 0.5 } else { 0.01 });
+            let open = Pixels::new(limit, &cameras, false).unwrap();
+            let closed = Pixels::new(limit, &cameras, true).unwrap();
+            let length = open.allowed_length(region.centre, region.radius);
+            let height = open.allowed(&region).height;
+            let front = closed.allowed(&region).height;
+            assert_eq!(open.allowed(&region).length, length);
+            assert!(closed.allowed(&region).length >= length);
+            assert!(length <= height && height <= front, "{length} {height} {front}");
+            for _ in 0..40 {
+                let (point, normal) = numbers.within(&region);
+                for camera in &cameras {
+                    if !pixel(camera, point).is_some_and(|(_, is_inside)| is_inside) {
+                        continue;
+                    }
+                    seen += 1;
+                    assert!(length.is_finite() && height.is_finite());
+                    let aside = numbers.unit();
+                    let found = pixels_between(camera, point, point + length * aside);
+                    assert!(found <= limit * (1.0 + 1e-9), "{found} of {limit}: {camera:?} {region:?}");
+                    closest = closest.max(found / limit);
+                    let facing = (point - vector(camera.eye)).dot(normal) < 0.0;
+                    for height in if facing { [height, front] } else { [height, 0.0] } {
+                        for along in [height * normal, -height * normal] {
+                            let found = pixels_between(camera, point, point + along);
+                            assert!(found <= limit * (1.0 + 1e-9), "{found} of {limit}: {region:?}");
+                            closest_along = closest_along.max(found / limit);
+                        }
+                    }
+                    // Both parts together, and the number of pixels that is told.
+                    let (share, total) = (numbers.next().abs(), 3.0 * numbers.next().abs());
+                    let (part, rest) = (share * total * height, (1.0 - share) * total * length);
+                    let told = open.seen(&region, part, rest);
+                    let found = pixels_between(camera, point, point + part * normal + rest * aside);
+                    assert!(found <= told * (1.0 + 1e-9), "{found} of {told}");
+                    assert!(told <= limit || total > 1.0 - 1e-9, "{told} of {limit}");
+                }
+            }
+        }
+        assert!(seen > 10_000 && closest > 0.9 && closest_along > 0.9, "{seen} {closest} {closest_along}");
+    }
+
+    /// A smaller region within never allows less.
+    #[test]
+    fn smaller_regions_allow_no_less() {
+        let mut numbers = Numbers(11);
+        for _ in 0..20_000 {
+            let pixels = Pixels::new(1.0, &[numbers.camera(), numbers.camera()], true).unwrap();
+            let region = numbers.region(0.7);
+            let share = numbers.next().abs();
+            let centre = region.centre + (1.0 - share) * region.radius * numbers.next() * numbers.unit();
+            let (_, axis) = numbers.within(&region);
+            let sine = if region.sine >= 1.0 {
+                numbers.next().abs()
+            } else {
+                let turn = region.axis.dot(axis).clamp(-1.0, 1.0).acos();
+                (region.sine.asin() - turn).max(0.0).sin()
+            };
+            let inner = Region { centre, radius: share * region.radius, axis, sine };
+            let (outer, less) = (pixels.allowed(&region), pixels.allowed(&inner));
+            let is_less =
+                less.length < outer.length * (1.0 - 1e-7) || less.height < outer.height * (1.0 - 1e-7);
+            assert!(!is_less, "{outer:?} {less:?}: {region:?} {inner:?}");
+            let outer = pixels.allowed_length(region.centre, region.radius);
+            let less = pixels.allowed_length(inner.centre, inner.radius);
+            assert!(less >= outer * (1.0 - 1e-12), "{outer} {less}: {region:?} {inner:?}");
+        }
+    }
+
+    #[test]
+    fn an_eye_in_the_ball_and_a_ball_out_of_sight() {
+        let camera = Camera {
+            eye: [0.0, 0.0, 5.0],
+            target: [0.0; 3],
+            up: [0.0, 1.0, 0.0],
+            fov_degrees: 90.0,
+            width: 100,
+            height: 100,
+        };
+        let pixels = Pixels::new(1.0, &[camera], true).unwrap();
+        assert_eq!(pixels.allowed_length(DVec3::new(0.0, 0.0, 5.5), 1.0), 0.0);
+        assert_eq!(pixels.allowed_length(DVec3::new(0.0, 0.0, 6.5), 1.0), f64::INFINITY);
+        assert_eq!(pixels.allowed_length(DVec3::new(9.0, 0.0, 0.0), 1.0), f64::INFINITY);
+        assert!(pixels.allowed_length(DVec3::new(6.0, 0.0, 0.0), 1.0).is_finite());
+        // At depth 5 a pixel is a tenth of a unit.
+        assert!((pixels.allowed_length(DVec3::ZERO, 0.0) - 5.0 / 51.0).abs() < 1e-12);
+        let facing =
+            |z: f64| Region { centre: DVec3::ZERO, radius: 0.1, axis: DVec3::new(0.0, 0.0, z), sine: 0.1 };
+        assert_eq!(pixels.allowed(&facing(-1.0)).height, f64::INFINITY);
+        assert!(pixels.allowed(&facing(1.0)).height > 3.0 * pixels.allowed_length(DVec3::ZERO, 0.1));
+        assert_eq!(pixels.seen(&facing(1.0), 0.0, f64::NAN), f64::INFINITY);
+    }
+}

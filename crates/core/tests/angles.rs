@@ -1,0 +1,116 @@
+//! Angles: a viewer never costs triangles, and where no division closes a cone refinement ends and says so.
+
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use limitmesh::criterion::{View, Viewpoint};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
+use limitmesh::scheme::Loop;
+use limitmesh::{FaceId, HalfEdgeId, Mesh};
+
+fn model(name: &str) -> Mesh {
+    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The unit normal of each triangle and its greatest angle to the limit normals of its corners.
+fn angles(result: &Exact) -> Vec<([f64; 3], f64)> {
+    let of_face = |face: usize| {
+        let face = FaceId(face as u32);
+        let normal = result.mesh.face_normal(face);
+        let normal = normal.map(|x| x / dot(normal, normal).sqrt());
+        let corners = (0..3).map(|corner| result.corner_normal(HalfEdgeId::of(face, corner)));
+        let cosine = corners.map(|corner| dot(corner, normal)).fold(1.0, f64::min);
+        (normal, cosine.max(-1.0).acos())
+    };
+    (0..result.mesh.face_count()).map(of_face).collect()
+}
+
+#[test]
+fn a_view_never_costs_triangles() {
+    let angle = 10f64.to_radians();
+    for name in ["cup", "sphere", "sheet"] {
+        let control = model(name);
+        let plain = exact(&control, &Loop, &ExactOptions::default().angle(angle)).unwrap();
+        assert_eq!((plain.stop, plain.open_cones), (ExactStop::Met, 0), "{name}");
+        let viewpoints = [
+            Viewpoint::Direction([0.0, 0.0, -1.0]),
+            Viewpoint::Direction([1.0, 2.0, 0.5]),
+            Viewpoint::Eye([3.0, 0.4, 2.0]),
+            Viewpoint::Eye([0.3, 1.2, 0.1]),
+        ];
+        for viewpoint in viewpoints {
+            let mut fewest = plain.mesh.face_count();
+            for dilatation in [0.0, 1.0, 4.0] {
+                let view = View { viewpoint, dilatation };
+                let seen = exact(&control, &Loop, &ExactOptions::default().angle(angle).view(view)).unwrap();
+                assert_eq!(seen.stop, ExactStop::Met, "{name}, {view:?}");
+                let count = seen.mesh.face_count();
+                assert!(count <= fewest, "{name}, {view:?}: {count} against {fewest}");
+                fewest = count;
+                // Equation (11) by hand, where the angle leaves room.
+                for (face, (normal, found)) in angles(&seen).into_iter().enumerate() {
+                    let [a, b, c] = seen.mesh.as_triangles().corners(face);
+                    let sight = match viewpoint {
+                        Viewpoint::Direction(sight) => sight,
+                        Viewpoint::Eye(eye) => [0, 1, 2].map(|i| (a[i] + b[i] + c[i]) / 3.0 - eye[i]),
+                    };
+                    let facing = -dot(sight, normal) / dot(sight, sight).sqrt();
+                    let limit = angle * (dilatation * facing).max(1.0);
+                    assert!(
+                        facing < 0.0 || found <= limit * (1.0 + 1e-6),
+                        "{name}, {view:?}: {found} of {limit}"
+                    );
+                }
+            }
+            assert!(fewest < plain.mesh.face_count(), "{name}, {viewpoint:?}");
+        }
+    }
+}
+
+/// The head's mouth has corners, inside regular faces, around which the surface has no tangent plane.
+#[test]
+fn an_angle_alone_ends_where_no_cone_closes() {
+    let control = model("head");
+    for degrees in [40.0f64, 15.0] {
+        let angle = degrees.to_radians();
+        let result = exact(&control, &Loop, &ExactOptions::default().angle(angle)).unwrap();
+        result.mesh.validate().unwrap();
+        assert_eq!(result.stop, ExactStop::Cones);
+        assert!(result.worst <= 1.0 && result.levels <= 13, "{} at level {}", result.worst, result.levels);
+        let open: Vec<usize> = angles(&result)
+            .into_iter()
+            .enumerate()
+            .filter(|(_, (_, found))| *found > angle * (1.0 + 1e-6))
+            .map(|(face, _)| face)
+            .collect();
+        assert_eq!(open.len(), result.open_cones);
+        assert!(!open.is_empty() && open.len() < result.mesh.face_count() / 20, "{}", open.len());
+        // They are small, and stand together in a few places.
+        let mut places: Vec<[f64; 3]> = Vec::new();
+        for face in open {
+            let at = result.mesh.as_triangles().corners(face);
+            for i in 0..3 {
+                let edge = [0, 1, 2].map(|axis| at[i][axis] - at[(i + 1) % 3][axis]);
+                assert!(dot(edge, edge).sqrt() < 1e-3 * angle * control.diagonal());
+            }
+            let apart = |p: &[f64; 3]| (0..3).any(|i| (p[i] - at[0][i]).abs() > 0.01);
+            if places.iter().all(apart) {
+                places.push(at[0]);
+            }
+        }
+        assert!(places.len() <= 4, "{places:?}");
+    }
+}
+
+/// With a tolerance beside it, what ends the cone does not end the tolerance.
+#[test]
+fn a_tolerance_is_kept_where_cones_stay_open() {
+    let control = model("head");
+    let tolerance = 1e-4 * control.diagonal();
+    let options = ExactOptions::default().angle(30f64.to_radians()).tolerance(tolerance);
+    let result = exact(&control, &Loop, &options).unwrap();
+    assert!(result.error.upper <= tolerance && result.stop == ExactStop::Cones, "{:?}", result.stop);
+}
