@@ -23,7 +23,7 @@
 
 use super::region::{cosine_of, sum_of_angles};
 use super::{CriterionError, Region};
-use crate::vector::{DVec3, vector};
+use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,9 +42,20 @@ pub struct Camera {
     pub height: u32,
 }
 
+impl Camera {
+    /// # Errors
+    /// It looks nowhere, has no upright, no picture or an impossible angle.
+    pub fn check(&self) -> Result<(), CriterionError> {
+        Lens::new(self).map(|_| ())
+    }
+}
+
 /// The least sine that the angle between line of sight and normal is taken to have: what looks straight at the camera
 /// keeps some accuracy, for shading and for what happens when the camera moves a little.
 const LEAST_SINE: f64 = 0.25;
+
+/// Sines of angles up to this are 0 but for rounding.
+const PARALLEL: f64 = 1e-9;
 
 /// Greatest lengths that are certainly within a number of pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,15 +192,17 @@ impl Lens {
             return bad("camera's picture", 0.0, "a width and a height of at least one pixel");
         }
         let (eye, target) = (vector(camera.eye), vector(camera.target));
-        let Some(forward) = (target - eye).try_normalize() else {
+        let forward = unit_or_zero(target - eye);
+        if forward == DVec3::ZERO {
             return bad("distance from the camera's eye to its target", 0.0, "different points");
-        };
-        let Some(right) = vector(camera.up).try_normalize().and_then(|up| {
-            let right = forward.cross(up);
-            (right.length() > 1e-9).then(|| right.normalize())
-        }) else {
-            return bad("camera's upward direction", 0.0, "a direction other than that of sight");
-        };
+        }
+        let right = forward.cross(unit_or_zero(vector(camera.up)));
+        let sine = right.length();
+        if sine <= PARALLEL {
+            let name = "sine of the angle between the camera's upward direction and that of sight";
+            return bad(name, sine, "an upward direction other than that of sight");
+        }
+        let right = right / sine;
         let up = right.cross(forward);
         let (width, height) = (f64::from(camera.width), f64::from(camera.height));
         let along = (0.5 * camera.fov_degrees).to_radians().tan();
