@@ -3,6 +3,7 @@
 //! `--quiet` silences both; errors are not printed here.
 
 use std::io::{IsTerminal, Write};
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -34,6 +35,19 @@ impl Progress {
         if self.moving {
             self.spinner.set_message(what.into());
             self.spinner.enable_steady_tick(TICK);
+        }
+    }
+
+    /// Shows what a long function of the library tells of itself.
+    pub(crate) fn observer(&self) -> impl FnMut(&limitmesh::progress::Progress) -> ControlFlow<()> {
+        let mut shown = None;
+        move |at| {
+            let now = (at.stage, at.total.map(|total| 100 * at.done / total.max(1)));
+            if shown.replace(now) != Some(now) {
+                let percent = now.1.map_or_else(String::new, |percent| format!(": {percent} %"));
+                self.stage(format!("{}{percent}", at.stage));
+            }
+            ControlFlow::Continue(())
         }
     }
 

@@ -1,11 +1,14 @@
 //! `limitmesh measure --certified`: the distance between two meshes, bounded from both sides.
 
 use limitmesh::Triangles;
-use limitmesh::measure::{Bounds, Bvh, CertifiedHausdorff, CertifiedOptions, certified_hausdorff_between};
+use limitmesh::measure::{
+    Bounds, Bvh, CertifiedHausdorff, CertifiedOptions, certified_hausdorff_between_observed,
+};
 
 use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, point, table};
+use crate::progress::Progress;
 use crate::report::measurement::Whole;
 
 /// Rounding to six digits changes a number by at most this share of it.
@@ -31,8 +34,10 @@ pub(super) fn between(
     a: Triangles<'_>,
     b: Triangles<'_>,
     arguments: &MeasureArguments,
+    progress: &Progress,
 ) -> anyhow::Result<CertifiedHausdorff> {
-    let (surface, reference) = (Bvh::new(a)?, Bvh::new(b)?);
+    let mut observer = progress.observer();
+    let (surface, reference) = (Bvh::new_observed(a, &mut observer)?, Bvh::new_observed(b, &mut observer)?);
     let mut options = CertifiedOptions::default();
     if let Some(gap) = arguments.gap {
         options = options.gap(Some(gap.length(reference.diagonal()))).relative_gap(0.0);
@@ -40,7 +45,7 @@ pub(super) fn between(
     if let Some(work) = arguments.max_work {
         options = options.max_work(work);
     }
-    Ok(certified_hausdorff_between(&surface, &reference, &options)?)
+    Ok(certified_hausdorff_between_observed(&surface, &reference, &options, &mut observer)?)
 }
 
 /// How the command ends; `capped` are the triangles of a mesh that could not be finer to stand for a limit surface.

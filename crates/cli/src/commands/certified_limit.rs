@@ -5,7 +5,7 @@
 //! point of the one is farther from the other than exact refinement proves, the interval widened by that much holds the
 //! distance to the limit surface (the triangle inequality, in either direction).
 
-use limitmesh::measure::{Bounds, Bvh, CertifiedHausdorff, CertifiedOptions, certified_hausdorff_between};
+use limitmesh::measure::{Bvh, CertifiedHausdorff, CertifiedOptions, certified_hausdorff_between_observed};
 use limitmesh::refine::{ExactOptions, ExactStop, exact, is_certified};
 use limitmesh::{Mesh, Triangles};
 
@@ -69,12 +69,12 @@ pub(super) fn measure(
         let stands = exact(control, scheme, &goals)?;
         let triangles = stands.mesh.face_count();
         progress.stage(format!("measuring against {}", counted(triangles, "triangle", "triangles")));
-        let tree = Bvh::new(stands.mesh.as_triangles())?;
-        let between = certified_hausdorff_between(&surface, &tree, &search(asked, tolerance, arguments))?;
+        let mut observer = progress.observer();
+        let tree = Bvh::new_observed(stands.mesh.as_triangles(), &mut observer)?;
+        let options = search(asked, tolerance, arguments);
+        let between = certified_hausdorff_between_observed(&surface, &tree, &options, &mut observer)?;
         let error = stands.error.upper;
-        let mut measured = between;
-        measured.forward = widened(&between.forward, error);
-        measured.backward = widened(&between.backward, error);
+        let mut measured = between.widened(error);
         let narrow = asked.unwrap_or_else(|| (USUAL_SHARE * measured.lower()).max(LEAST_SHARE * diagonal));
         for bounds in [&mut measured.forward, &mut measured.backward] {
             bounds.converged = bounds.upper - bounds.lower <= narrow;
@@ -102,13 +102,4 @@ fn search(asked: Option<f64>, tolerance: f64, arguments: &MeasureArguments) -> C
         Some(work) => options.max_work(work),
         None => options,
     }
-}
-
-/// Bounds of the distance to a surface that is no farther than `error` from the one measured.
-fn widened(bounds: &Bounds, error: f64) -> Bounds {
-    let mut widened = *bounds;
-    // One step of the last place outwards, for the rounding of the sums.
-    widened.lower = (bounds.lower - error).next_down().max(0.0);
-    widened.upper = (bounds.upper + error).next_up();
-    widened
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use limitmesh::Triangles;
-use limitmesh::measure::distances_to;
+use limitmesh::measure::distances_to_observed;
 use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::{
     Camera, ColourBar, Lighting, Scale, Shading, Style, ViewDirection, dice, render_scalar,
@@ -14,6 +14,7 @@ use crate::arguments::Size;
 use crate::failure::usage;
 use crate::interrupt;
 use crate::output;
+use crate::progress::Progress;
 use crate::report::measurement::Whole;
 
 /// A picture is drawn from about so many triangles: enough that one is a few pixels large.
@@ -40,17 +41,23 @@ pub(super) fn write(
     surface: Triangles<'_>,
     reference: Triangles<'_>,
     whole: Whole,
+    progress: &Progress,
 ) -> anyhow::Result<()> {
     if is_picture(path) {
-        draw(path, surface, reference, whole)
+        draw(path, surface, reference, whole, progress)
     } else {
-        write_mesh(path, surface, reference)
+        write_mesh(path, surface, reference, progress)
     }
 }
 
 /// A mesh with a colour and a distance at each vertex.
-fn write_mesh(path: &Path, surface: Triangles<'_>, reference: Triangles<'_>) -> anyhow::Result<()> {
-    let distances = distances_to(surface.positions, reference)?;
+fn write_mesh(
+    path: &Path,
+    surface: Triangles<'_>,
+    reference: Triangles<'_>,
+    progress: &Progress,
+) -> anyhow::Result<()> {
+    let distances = distances_to_observed(surface.positions, reference, &mut progress.observer())?;
     let scale = scale(&distances);
     let share = |distance: f64| if scale.high > 0.0 { distance / scale.high } else { 0.0 };
     let colours: Vec<[u8; 3]> = distances.iter().map(|&d| scale.map.at(share(d))).collect();
@@ -60,10 +67,16 @@ fn write_mesh(path: &Path, surface: Triangles<'_>, reference: Triangles<'_>) -> 
 }
 
 /// A picture with a colour bar. Distances inside of triangles show too: large ones are cut up, flat as they are.
-fn draw(path: &Path, surface: Triangles<'_>, reference: Triangles<'_>, whole: Whole) -> anyhow::Result<()> {
+fn draw(
+    path: &Path,
+    surface: Triangles<'_>,
+    reference: Triangles<'_>,
+    whole: Whole,
+    progress: &Progress,
+) -> anyhow::Result<()> {
     let (positions, triangles) = dice(surface, parts(surface.triangles.len()));
     let cut = Triangles { positions: &positions, triangles: &triangles };
-    let mut distances = distances_to(&positions, reference)?;
+    let mut distances = distances_to_observed(&positions, reference, &mut progress.observer())?;
     let per_length = whole.percent(1.0);
     if let Some(percent) = per_length {
         distances.iter_mut().for_each(|distance| *distance *= percent);

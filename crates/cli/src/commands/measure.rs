@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use limitmesh::measure::{CertifiedHausdorff, Hausdorff, SamplingOptions, hausdorff};
+use limitmesh::measure::{CertifiedHausdorff, Hausdorff, SamplingOptions, hausdorff_observed};
 use limitmesh::{Mesh, Triangles};
 
 use super::{certified, certified_limit, heatmap};
@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
                 counted(a.triangles.len(), "triangle", "triangles"),
                 counted(b.triangles.len(), "triangle", "triangles")
             ));
-            let measured = Distance::between(a, b, arguments)?;
+            let measured = Distance::between(a, b, arguments, progress)?;
             (control, reference_report, measured)
         }
     };
@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
     };
     if let Some(path) = &arguments.heatmap {
         progress.stage(format!("writing {}", path.display()));
-        heatmap::write(path, a, b, whole)?;
+        heatmap::write(path, a, b, whole, progress)?;
     }
     progress.clear();
     if arguments.json {
@@ -68,11 +68,17 @@ enum Distance {
 }
 
 impl Distance {
-    fn between(a: Triangles<'_>, b: Triangles<'_>, arguments: &MeasureArguments) -> anyhow::Result<Self> {
+    fn between(
+        a: Triangles<'_>,
+        b: Triangles<'_>,
+        arguments: &MeasureArguments,
+        progress: &Progress,
+    ) -> anyhow::Result<Self> {
         if arguments.certified {
-            return Ok(Self::Certified(certified::between(a, b, arguments)?, None));
+            return Ok(Self::Certified(certified::between(a, b, arguments, progress)?, None));
         }
-        Ok(Self::Sampled(hausdorff(a, b, &SamplingOptions::default().samples(arguments.samples))?))
+        let options = SamplingOptions::default().samples(arguments.samples);
+        Ok(Self::Sampled(hausdorff_observed(a, b, &options, &mut progress.observer())?))
     }
 
     fn report(&self, whole: Whole) -> DistanceReport {

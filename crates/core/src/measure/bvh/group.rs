@@ -26,13 +26,13 @@ struct Frontier {
 
 impl Bvh<'_> {
     /// The distance of each of the finite `points`; fastest where consecutive ones are near each other.
-    pub(in crate::measure) fn distances(&self, points: &[DVec3], distances: &mut [f64]) {
+    pub(crate) fn distances(&self, points: &[DVec3], distances: &mut [f64]) {
         self.each_nearest(points, |i, distance, _| distances[i] = distance);
     }
 
     /// Calls `found` with the number, distance and nearest triangle of each of the finite `points`, in their order;
     /// fastest where consecutive ones are near each other.
-    pub(in crate::measure) fn each_nearest(&self, points: &[DVec3], mut found: impl FnMut(usize, f64, u32)) {
+    pub(crate) fn each_nearest(&self, points: &[DVec3], mut found: impl FnMut(usize, f64, u32)) {
         let mut frontier = Frontier::EMPTY;
         let mut guess = None;
         for (group, points) in points.chunks(GROUP).enumerate() {

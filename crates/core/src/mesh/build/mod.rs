@@ -2,13 +2,13 @@
 //!
 //! In this order: weld vertices, cut polygons into triangles, drop repeated faces and those of zero area,
 //! connect and orient the faces, cut where more than a manifold meets, carry the tags over. Each step counts
-//! what it found in the [`Diagnosis`]. All of them take time proportional to the input, or n log n.
+//! what it found in the [`Diagnosis`]. All of them take time proportional to the input, or n log n,
+//! but for polygons of tens of thousands of corners, which may take n^1.5.
 
 mod cut;
 mod orient;
 mod repeated;
 mod retag;
-mod sweep;
 #[cfg(test)]
 mod tests;
 mod triangulate;

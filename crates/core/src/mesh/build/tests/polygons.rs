@@ -3,7 +3,6 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::mesh::build::sweep;
 
 fn triangles_of(positions: &[[f64; 3]], faces: &[&[u32]]) -> Vec<[u32; 3]> {
     build_soup(&soup(positions, faces)).0.triangles().to_vec()
@@ -195,14 +194,6 @@ fn simple_polygons() -> impl Strategy<Value = Vec<[f64; 2]>> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
-
-    #[test]
-    fn the_sweep_tiles_simple_polygons(points in simple_polygons()) {
-        let mut indices = Vec::new();
-        prop_assert!(sweep::triangulate(&points, &mut indices).is_some());
-        let triangles: Vec<[u32; 3]> = indices.chunks(3).map(|t| [t[0], t[1], t[2]]).collect();
-        assert_tiles(&points, &triangles);
-    }
 
     #[test]
     fn simple_polygons_are_tiled(points in simple_polygons()) {
