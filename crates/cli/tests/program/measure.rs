@@ -148,7 +148,9 @@ fn certified_intervals_hold_the_distance() {
         near(&h["upper_percent"], 100.0 * number(&h["upper"]) / 5f64.sqrt());
     }
     let text = run("measure {} {} --certified", &[&low, &high]).expect(0).stdout;
-    for words in ["certified", "at least", "at most", "backward maximum near (2, ", "% of the second mesh's diagonal"] {
+    for words in
+        ["certified", "at least", "at most", "backward maximum near (2, ", "% of the second mesh's diagonal"]
+    {
         assert!(text.contains(words), "{words} in:\n{text}");
     }
 }

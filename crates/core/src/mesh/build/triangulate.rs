@@ -2,9 +2,10 @@
 //!
 //! Takes the soup's polygons over welded vertices; gives triangles and the input face of each. A quad is cut
 //! along a diagonal that lies inside it, the shorter one if both do. More corners are cut by ears in the
-//! polygon's best-fit plane (through Newell's normal), with the diagonals then flipped until they are Delaunay.
-//! Corners in the middle of a straight side are kept, because the neighbouring face may have them too. A polygon that crosses itself seen along its normal is twisted in
-//! space, or worse: it gets the triangulation of least area.
+//! polygon's best-fit plane (through Newell's normal), with the diagonals then flipped until they are Delaunay, but for
+//! those of thousands of corners. Corners in the middle of a straight side are kept, because the neighbouring face
+//! may have them too. A polygon that crosses itself seen along its normal is twisted in space, or worse: it gets
+//! the triangulation of least area.
 
 use earcut::{Earcut, Refiner};
 
@@ -13,6 +14,10 @@ use super::super::{Diagnosis, MeshError, PolygonSoup};
 use glam::Vec3Swizzles;
 
 use crate::vector::{DVec3, unit_or_zero, vector};
+
+/// Up to this many corners diagonals are flipped, whose number may grow with the square of the corners': a saw of
+/// 16,000 with teeth from both sides takes seconds.
+const MOST_FLIPPED: usize = 4000;
 
 /// Up to this many corners a twisted polygon gets its triangulation of least area, in time that grows with the
 /// cube of their number.
@@ -155,7 +160,9 @@ impl Cutter {
             self.restore_straight_corners(corners);
         }
         if self.is_proper(corners) {
-            self.refiner.refine(&mut self.indices, &self.plane);
+            if polygon.len() <= MOST_FLIPPED {
+                self.refiner.refine(&mut self.indices, &self.plane);
+            }
             return true;
         }
         if polygon.len() <= MOST_LEAST_AREA {
