@@ -39,7 +39,7 @@ fn bad_input_is_named() {
     let text = error(&PolygonSoup::default(), plain).to_string();
     assert_eq!(text, "no face is left: the input has none");
     let text = error(&soup(&TETRAHEDRON, &[&[0, 1], &[2, 2, 3]]), plain).to_string();
-    assert!(text.contains("2 faces with fewer than three different corners: left out (face 0, 1)"), "{text}");
+    assert!(text.contains("2 faces with fewer than three different corners (face 0, 1)"), "{text}");
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
         let options = plain.weld(Weld::Within(bad));
         assert!(matches!(error(&soup(&TETRAHEDRON, &SIDES), options), MeshError::BadOption { .. }));
@@ -73,7 +73,8 @@ fn strict_refuses_defects_and_nothing_else() {
     assert_eq!(found(&diagnosis), [("polygons", finding(&[0, 1])), ("welded_vertices", finding(&[4, 7]))]);
     assert_eq!(
         diagnosis.to_string(),
-        "2 polygons (0, 1): triangulated\n2 vertices (4, 7): welded to an earlier one"
+        "2 faces with more than three corners: cut into triangles (face 0, 1)\n\
+         2 vertices at the place of another: merged (vertex 4, 7)"
     );
 }
 
