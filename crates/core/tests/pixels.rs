@@ -253,6 +253,19 @@ fn no_view_of_many_shows_more_than_the_limit() {
     }
 }
 
+/// Real meshes with creases, semi-sharp edges and corners.
+#[test]
+fn no_view_of_tagged_models_shows_more_than_the_limit() {
+    let Ok(folder) = std::env::var("LIMITMESH_MODELS") else {
+        eprintln!("skipped: LIMITMESH_MODELS is not set");
+        return;
+    };
+    for (name, levels) in [("rook_creased", 3), ("mechpart_creased", 5), ("loop_icos_semisharp", 5)] {
+        let text = std::fs::read_to_string(format!("{folder}/{name}.obj")).unwrap();
+        Model::new(name, support::tagged_obj(&text), levels).check(3, 7);
+    }
+}
+
 /// Face on, the octagon's outline drifts in its plane: all that is off is seen in full.
 #[test]
 fn an_outline_seen_face_on_is_within_the_limit() {
