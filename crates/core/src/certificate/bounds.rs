@@ -135,7 +135,7 @@ impl<'a> Pieces<'a> {
                 let net = self.net.get_or_insert_with(|| BezierTriangle::of(points));
                 search.net_part(net, part, ALL);
             }
-            (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::SemiSharp(_), _) => {
+            (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::Pole(_) | Patch::SemiSharp(_), _) => {
                 search.irregular(self.patch, part, ALL, 0);
             }
         }
@@ -158,7 +158,7 @@ impl Search<'_> {
                 self.part(&patch.refined(self.rules).part(child), SubTriangle::Whole, borders, depth + 1);
             }
             (Patch::Regular(points), _) => self.net_part(&BezierTriangle::of(points), part, borders),
-            (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::SemiSharp(_), _) => {
+            (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::Pole(_) | Patch::SemiSharp(_), _) => {
                 self.irregular(patch, part, borders, depth);
             }
             // Their points' hull holds nothing.
@@ -257,7 +257,8 @@ impl Search<'_> {
                 _ => None,
             };
         }
-        Some(Deviation::alone(self.hull(patch, borders)))
+        let limit = if depth < DEEPEST { self.aim() } else { f64::INFINITY };
+        self.hull(patch, borders, limit).map(Deviation::alone)
     }
 
     /// The bound by an affine image of the characteristic map's sector, if what the piece differs from it is little.
@@ -307,17 +308,21 @@ impl Search<'_> {
         Some(Deviation { own: own + rest, height: height + rest, across: across + rest, ..deviation })
     }
 
-    /// The greatest distance of the control points from the triangle, and from the edges in `borders`.
-    fn hull(&self, patch: &Patch, borders: Borders) -> f64 {
+    /// The greatest distance of the control points from the triangle, and from the edges in `borders`; `None` as soon as
+    /// one is farther away than `limit`.
+    fn hull(&self, patch: &Patch, borders: Borders, limit: f64) -> Option<f64> {
         let frame = self.bound.frame;
-        let mut greatest = 0.0f64;
+        let (mut greatest, limit) = (0.0f64, limit * limit);
         patch.for_each_hull_point(|point| {
+            if exceeds(greatest, limit) {
+                return;
+            }
             greatest = greater(greatest, frame.squared(point));
             for border in borders.into_iter().filter(|&border| border != INSIDE) {
                 greatest = greater(greatest, frame.squared_to_edge(border as usize, point));
             }
         });
-        greatest.sqrt()
+        (!exceeds(greatest, limit)).then(|| greatest.sqrt())
     }
 
     /// The pieces that make up a half; see [`SubTriangle::Half`].

@@ -52,7 +52,7 @@ pub(crate) const RINGS: [[u8; 6]; 3] = {
 };
 
 /// The new points on edges: where they stand among the eighteen, the ends, and the two points opposite.
-const EDGE_POINTS: [(u8, [u8; 2], [u8; 2]); 15] = {
+pub(super) const EDGE_POINTS: [(u8, [u8; 2], [u8; 2]); 15] = {
     let mut list = [(0, [0; 2], [0; 2]); 15];
     let (mut count, mut row) = (0, 0);
     while row < REFINED_ROWS.len() {
@@ -90,13 +90,13 @@ const EDGE_POINTS: [(u8, [u8; 2], [u8; 2]); 15] = {
 };
 
 /// The corners among the eighteen.
-const REFINED_CORNERS: [u8; 3] =
+pub(super) const REFINED_CORNERS: [u8; 3] =
     [place(&REFINED_ROWS, 0, 0), place(&REFINED_ROWS, 2, 0), place(&REFINED_ROWS, 0, 2)];
 
 /// The twelve points of each part among the eighteen. Parts 0 to 2 keep the corner of their number, and each of
 /// their corners stands towards the face's; corner `i` of part 3, in the middle, is the new point opposite
 /// corner `i`.
-const PARTS: [[u8; 12]; 4] = {
+pub(super) const PARTS: [[u8; 12]; 4] = {
     let mut parts = [[0; 12]; 4];
     let (mut count, mut row) = (0, 0);
     while row < ROWS.len() {
@@ -117,7 +117,7 @@ const PARTS: [[u8; 12]; 4] = {
 
 /// The new points on the face's edges among the eighteen, by the corner where the edge starts, and their
 /// neighbours counter-clockwise.
-const MIDDLES: [(u8, [u8; 6]); 3] = {
+pub(super) const MIDDLES: [(u8, [u8; 6]); 3] = {
     let mut middles = [(0, [0; 6]); 3];
     let at = [(1, 0), (1, 1), (0, 1)];
     let mut edge = 0;
@@ -136,7 +136,7 @@ const MIDDLES: [(u8, [u8; 6]); 3] = {
 
 /// The eighteen points around the four parts of a regular face.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Refined([DVec3; 18]);
+pub(crate) struct Refined(pub(super) [DVec3; 18]);
 
 impl Refined {
     /// One refinement by the masks of regular vertices (10/16, 1/16) and edges (3/8, 1/8).

@@ -38,6 +38,12 @@ impl ExtraordinaryPatch {
 
     /// The points after one refinement; `beta` is the weight of each neighbour of the irregular vertex.
     pub(crate) fn refined(&self, beta: f64) -> RefinedExtraordinary {
+        let valence = self.ring.len();
+        self.refined_to((1.0 - valence as f64 * beta) * self.at + beta * self.ring.iter().sum::<DVec3>())
+    }
+
+    /// The points after one refinement that takes the irregular vertex to `moved`.
+    pub(super) fn refined_to(&self, moved: DVec3) -> RefinedExtraordinary {
         let edge = |a: DVec3, b: DVec3, c: DVec3, d: DVec3| 0.375 * (a + b) + 0.125 * (c + d);
         let Self { corner, at, ref ring, outer: [before, past_first, between, past_second, after] } = *self;
         let valence = ring.len();
@@ -50,7 +56,7 @@ impl ExtraordinaryPatch {
         let vertex = |at: DVec3, ring: [DVec3; 6]| 0.625 * at + 0.0625 * ring.into_iter().sum::<DVec3>();
         let own = Self {
             corner,
-            at: (1.0 - valence as f64 * beta) * at + beta * ring.iter().sum::<DVec3>(),
+            at: moved,
             ring: edges.collect(),
             outer: [
                 edge(last, first, at, before),

@@ -17,7 +17,7 @@ pub(crate) fn root_patch(mesh: &Mesh, sharpness: &Sharpness<'_>, face: FaceId, r
         return Patch::Mesh(MeshPatch::of(mesh, sharpness, face));
     }
     match fades(mesh, sharpness, corners) {
-        true => SemiSharpPatch(corners.map(|h| SemiSharpVertex::of(mesh, sharpness, h))).settled(),
+        true => SemiSharpPatch::of(corners.map(|h| SemiSharpVertex::of(mesh, sharpness, h))),
         false => patch_of(mesh, sharpness, corners),
     }
 }

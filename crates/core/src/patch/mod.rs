@@ -11,6 +11,7 @@ pub(crate) mod characteristic;
 pub(crate) mod extraordinary;
 mod from_mesh;
 pub(crate) mod mesh_patch;
+mod pole;
 // Nobody evaluates by rows yet.
 #[allow(dead_code)]
 pub(crate) mod quartic;
@@ -26,6 +27,7 @@ use crate::vector::{DVec3, unit_or_zero};
 use box_spline::{Points, Refined};
 use extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use mesh_patch::{MeshPatch, RefinedMeshPatch};
+use pole::{LARGEST_RING, PolePatch, RefinedPole};
 use sector::{RefinedSectors, SectorPatch};
 use semi_sharp::{RefinedSemiSharp, SemiSharpPatch};
 
@@ -38,6 +40,8 @@ pub(crate) enum Patch {
     Regular(Points),
     /// One corner inside the surface has another number of edges, the others are regular.
     Extraordinary(Box<ExtraordinaryPatch>),
+    /// The same where it has very many.
+    Pole(Box<PolePatch>),
     /// Any other without tags that fade, of the Loop family.
     Sectors(Box<SectorPatch>),
     /// One where tags still fade, of the Loop family.
@@ -73,6 +77,8 @@ pub(crate) enum RefinedPatch<'a> {
     Regular(Refined),
     /// Of one with an irregular corner.
     Extraordinary(RefinedExtraordinary),
+    /// Of one with an irregular corner of very many edges.
+    Pole(RefinedPole),
     /// Of another irregular one.
     Sectors(RefinedSectors<'a>),
     /// Of a semi-sharp one.
@@ -88,6 +94,7 @@ impl Patch {
             return Self::Regular(points);
         }
         match sectors.extraordinary() {
+            Some(patch) if patch.ring.len() > LARGEST_RING => Self::Pole(Box::new(PolePatch::of(patch))),
             Some(patch) => Self::Extraordinary(Box::new(patch)),
             None => Self::Sectors(Box::new(sectors)),
         }
@@ -101,6 +108,7 @@ impl Patch {
             Self::Extraordinary(patch) => {
                 RefinedPatch::Extraordinary(patch.refined(rules.beta(patch.ring.len())))
             }
+            Self::Pole(patch) => RefinedPatch::Pole(patch.refined(rules.beta(patch.valence()))),
             Self::Sectors(sectors) => RefinedPatch::Sectors(sectors.refined(rules)),
             Self::SemiSharp(patch) => RefinedPatch::SemiSharp(patch.refined(rules)),
             Self::Mesh(local) => RefinedPatch::Mesh(local.refined(rules)),
@@ -112,8 +120,9 @@ impl Patch {
         match self {
             Self::Regular(points) => points.iter().for_each(|&point| visit(point)),
             Self::Extraordinary(patch) => patch.points().for_each(visit),
+            Self::Pole(patch) => patch.points().for_each(visit),
             Self::Sectors(sectors) => sectors.points().for_each(visit),
-            Self::SemiSharp(patch) => patch.points().for_each(visit),
+            Self::SemiSharp(patch) => patch.for_each_point(visit),
             Self::Mesh(local) => local.points().for_each(visit),
         }
     }
@@ -125,6 +134,7 @@ impl RefinedPatch<'_> {
         match self {
             Self::Regular(_) => true,
             Self::Extraordinary(refined) => refined.is_regular(part),
+            Self::Pole(refined) => refined.is_regular(part),
             Self::Sectors(refined) => refined.is_regular(part),
             // Parts whose tags have faded may be, too; they are few.
             Self::SemiSharp(_) | Self::Mesh(_) => false,
@@ -138,6 +148,7 @@ impl RefinedPatch<'_> {
         match self {
             Self::Regular(refined) => Patch::Regular(refined.part(part)),
             Self::Extraordinary(refined) => refined.part(part),
+            Self::Pole(refined) => refined.part(part),
             Self::Sectors(refined) => Patch::of(refined.part(part)),
             Self::SemiSharp(refined) => refined.part(part),
             Self::Mesh(refined) => refined.part(part),
@@ -153,6 +164,10 @@ impl RefinedPatch<'_> {
                 LimitPoint::regular(at, &ring)
             }
             Self::Extraordinary(refined) => {
+                let (at, ring) = refined.middle(edge);
+                LimitPoint::regular(at, &ring)
+            }
+            Self::Pole(refined) => {
                 let (at, ring) = refined.middle(edge);
                 LimitPoint::regular(at, &ring)
             }

@@ -6,6 +6,10 @@
 //! vertices have six edges, of which two may stay sharp for a while. As soon as nothing at a part's corners fades any
 //! more, it takes the form of other pieces.
 
+mod regular;
+
+use regular::{RefinedRegular, RegularSemiSharp};
+
 use super::Patch;
 use super::sector::{Centre, SectorPatch, VertexSector};
 use super::{LimitPoint, Rules};
@@ -134,39 +138,88 @@ impl SemiSharpVertex {
     }
 }
 
-/// The corners of a face of which one at least fades.
+/// A face of which one corner at least fades.
 #[derive(Clone, Debug)]
-pub(crate) struct SemiSharpPatch(pub(super) [SemiSharpVertex; 3]);
+pub(crate) enum SemiSharpPatch {
+    /// Its corners, whatever they are.
+    Rings([SemiSharpVertex; 3]),
+    /// All corners are regular but for sharp edges.
+    Regular(RegularSemiSharp),
+}
 
 impl SemiSharpPatch {
-    /// The simplest form of the piece.
-    pub(super) fn settled(self) -> Patch {
-        match self.0.iter().any(SemiSharpVertex::fades) {
-            true => Patch::SemiSharp(Box::new(self)),
-            false => Patch::of(SectorPatch([0, 1, 2].map(|corner| self.0[corner].sector()))),
+    /// The simplest form of the face with those corners.
+    pub(super) fn of(corners: [SemiSharpVertex; 3]) -> Patch {
+        match corners.iter().any(SemiSharpVertex::fades) {
+            true => Patch::SemiSharp(Box::new(match RegularSemiSharp::of(&corners) {
+                Some(regular) => Self::Regular(regular),
+                None => Self::Rings(corners),
+            })),
+            false => Patch::of(SectorPatch(corners.each_ref().map(SemiSharpVertex::sector))),
         }
     }
 
-    /// All points, some more than once. Masks are convex combinations of them, so that their hull holds the piece.
-    pub(crate) fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
-        self.0.iter().flat_map(|corner| core::iter::once(corner.at).chain(corner.neighbours.iter().copied()))
+    /// Calls `visit` for all points, some more than once. Masks are convex combinations of them, so that their hull holds
+    /// the piece.
+    pub(crate) fn for_each_point(&self, mut visit: impl FnMut(DVec3)) {
+        match self {
+            Self::Regular(regular) => regular.points.iter().for_each(|&point| visit(point)),
+            Self::Rings(corners) => corners.iter().for_each(|corner| {
+                visit(corner.at);
+                corner.neighbours.iter().for_each(|&point| visit(point));
+            }),
+        }
     }
 
     /// The points after one refinement.
     pub(crate) fn refined<'a>(&'a self, rules: &'a Rules<'a>) -> RefinedSemiSharp<'a> {
-        RefinedSemiSharp { before: self, corners: [0, 1, 2].map(|i| self.0[i].refined(rules)), rules }
+        match self {
+            Self::Regular(regular) => RefinedSemiSharp::Regular(regular.refined(), rules),
+            Self::Rings(before) => RefinedSemiSharp::Rings(RefinedRings {
+                before,
+                corners: before.each_ref().map(|corner| corner.refined(rules)),
+                rules,
+            }),
+        }
     }
 }
 
 /// The points around the four parts of a semi-sharp face.
-pub(crate) struct RefinedSemiSharp<'a> {
-    before: &'a SemiSharpPatch,
-    /// The face's corners with the new points around them.
+// Made for each face on the way: boxing it would cost an allocation.
+#[allow(clippy::large_enum_variant)]
+pub(crate) enum RefinedSemiSharp<'a> {
+    /// Of any.
+    Rings(RefinedRings<'a>),
+    /// Of one with regular corners.
+    Regular(RefinedRegular, &'a Rules<'a>),
+}
+
+impl RefinedSemiSharp<'_> {
+    /// A part; numbered as [`super::box_spline::Refined::part`] does.
+    pub(crate) fn part(&self, part: usize) -> Patch {
+        match self {
+            Self::Rings(refined) => refined.part(part),
+            Self::Regular(refined, _) => refined.part(part),
+        }
+    }
+
+    /// The limit of the new vertex on the edge from corner `edge`, on the face's side.
+    pub(crate) fn middle(&self, edge: usize) -> LimitPoint {
+        match self {
+            Self::Rings(refined) => refined.middle(edge),
+            Self::Regular(refined, rules) => refined.middle(edge, rules),
+        }
+    }
+}
+
+/// The corners of a face with the new points around them, and what they were before.
+pub(crate) struct RefinedRings<'a> {
+    before: &'a [SemiSharpVertex; 3],
     corners: [SemiSharpVertex; 3],
     rules: &'a Rules<'a>,
 }
 
-impl RefinedSemiSharp<'_> {
+impl RefinedRings<'_> {
     /// The new point on the edge from corner `edge`.
     fn on_edge(&self, edge: usize) -> DVec3 {
         let corner = &self.corners[edge];
@@ -179,7 +232,7 @@ impl RefinedSemiSharp<'_> {
         let (next, last) = ((edge + 1) % 3, (edge + 2) % 3);
         let (from, to) = (&self.corners[edge], &self.corners[next]);
         let near = [to.at, self.on_edge(next), self.on_edge(last), from.at];
-        let before = &self.before.0[edge];
+        let before = &self.before[edge];
         let sharpness = before.sharp.spokes[before.slot];
         let (at, vertex, along) = (self.on_edge(edge), 0.0, faded(sharpness));
         if sharpness >= INFINITELY_SHARP {
@@ -191,20 +244,18 @@ impl RefinedSemiSharp<'_> {
         SemiSharpVertex { at, neighbours: [near.as_slice(), &beyond].concat(), sharp, slot }
     }
 
-    /// A part; numbered as [`super::box_spline::Refined::part`] does.
-    pub(crate) fn part(&self, part: usize) -> Patch {
+    fn part(&self, part: usize) -> Patch {
         // Around the middle of an edge the parts follow each other: the end's, the middle one, the start's.
         if part == 3 {
-            return SemiSharpPatch([1, 2, 0].map(|edge| self.middle_vertex(edge, 1))).settled();
+            return SemiSharpPatch::of([1, 2, 0].map(|edge| self.middle_vertex(edge, 1)));
         }
         let (on_next, on_last) = (self.middle_vertex(part, 2), self.middle_vertex((part + 2) % 3, 0));
         let mut corners = [self.corners[part].clone(), on_next, on_last];
         corners.rotate_right(part);
-        SemiSharpPatch(corners).settled()
+        SemiSharpPatch::of(corners)
     }
 
-    /// The limit of the new vertex on the edge from corner `edge`, on the face's side.
-    pub(crate) fn middle(&self, edge: usize) -> LimitPoint {
+    fn middle(&self, edge: usize) -> LimitPoint {
         self.middle_vertex(edge, 0).limit(self.rules)
     }
 }

@@ -5,8 +5,8 @@
 
 mod sharp;
 
-pub(crate) use sharp::faded;
 pub use sharp::{INFINITELY_SHARP, RingSector, SharpRing, VertexRule};
+pub(crate) use sharp::{faded, present_weight, rule};
 
 /// Which rules a vertex follows.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]

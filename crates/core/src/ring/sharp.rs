@@ -54,6 +54,28 @@ pub(crate) fn faded(sharpness: f64) -> f64 {
     if sharpness >= INFINITELY_SHARP { sharpness } else { (sharpness - 1.0).max(0.0) }
 }
 
+/// [`SharpRing::present_weight`] of a ring with such a vertex and such edges.
+pub(crate) fn present_weight(vertex: f64, spokes: &[f64]) -> f64 {
+    let about = spokes.iter().chain([&vertex]).copied().filter(|&s| s > 0.0 && s <= 1.0);
+    let (sum, count) = about.fold((0.0, 0), |(sum, count), s| (sum + s, count + 1));
+    if count == 0 { 1.0 } else { sum / f64::from(count) }
+}
+
+fn is_sharp(open: bool, spokes: &[f64], slot: usize) -> bool {
+    spokes.get(slot).is_some_and(|&s| s > 0.0) || open && (slot == 0 || slot + 1 == spokes.len())
+}
+
+/// [`SharpRing::rule`] of a ring with such a vertex and such edges.
+pub(crate) fn rule(open: bool, vertex: f64, spokes: &[f64]) -> VertexRule {
+    match (0..spokes.len()).filter(|&slot| is_sharp(open, spokes, slot)).count() {
+        _ if vertex > 0.0 => VertexRule::Corner,
+        0 => VertexRule::Smooth,
+        1 => VertexRule::Dart,
+        2 => VertexRule::Crease,
+        _ => VertexRule::Corner,
+    }
+}
+
 impl SharpRing {
     /// A ring as sharp as its shape says and no sharper.
     pub fn of(shape: RingShape) -> Self {
@@ -82,26 +104,17 @@ impl SharpRing {
     /// How much of the next refinement follows the rules of the ring as sharp as it is now; the rest follows those
     /// of the ring after it. Less than 1 where something is about to fade: the mean sharpness of all that is.
     pub fn present_weight(&self) -> f64 {
-        let about = self.spokes.iter().chain([&self.vertex]).copied().filter(|&s| s > 0.0 && s <= 1.0);
-        let (sum, count) = about.fold((0.0, 0), |(sum, count), s| (sum + s, count + 1));
-        if count == 0 { 1.0 } else { sum / f64::from(count) }
+        present_weight(self.vertex, &self.spokes)
     }
 
     /// Whether the edge at `slot` is sharp; boundary edges always are.
     pub fn is_sharp(&self, slot: usize) -> bool {
-        self.spokes.get(slot).is_some_and(|&s| s > 0.0)
-            || self.open && (slot == 0 || slot + 1 == self.spokes.len())
+        is_sharp(self.open, &self.spokes, slot)
     }
 
     /// The rule that the vertex follows.
     pub fn rule(&self) -> VertexRule {
-        match (0..self.spokes.len()).filter(|&slot| self.is_sharp(slot)).count() {
-            _ if self.vertex > 0.0 => VertexRule::Corner,
-            0 => VertexRule::Smooth,
-            1 => VertexRule::Dart,
-            2 => VertexRule::Crease,
-            _ => VertexRule::Corner,
-        }
+        rule(self.open, self.vertex, &self.spokes)
     }
 
     /// The sectors, counter-clockwise.

@@ -1,0 +1,145 @@
+//! Pieces at an irregular vertex of very many edges, each in a size that does not depend on their number.
+//!
+//! The surface over a face v r₀ r₁ knows the far part of the ring only by its mean: with m the mean of all k neighbours, one
+//! refinement takes v to (1 − kβ) v + kβ m and m to 3/8 v + 5/8 m, and each neighbour to a combination of v, itself and
+//! the two beside it. So the neighbours near the face, the mean and what else an [`ExtraordinaryPatch`] has suffice; at
+//! either end of the part of the ring that is kept, each refinement loses one. All of that are convex combinations: the
+//! piece lies in the hull of those points.
+
+use super::Patch;
+use super::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
+use crate::vector::DVec3;
+
+/// Refinements until nothing is left of the ring but what the face needs: points of a level are (3/8 + 2/8)ⁿ as far apart
+/// as the first, 1e-17 by then. Beyond that it makes no difference which of them is taken for another.
+const REFINEMENTS: usize = 84;
+
+/// Rings up to this size are kept whole.
+pub(super) const LARGEST_RING: usize = 4 + 2 * REFINEMENTS;
+
+/// The points around a face with one irregular corner of more than [`LARGEST_RING`] edges.
+#[derive(Clone, Debug)]
+pub(crate) struct PolePatch {
+    /// The face with as much of the ring as is kept: r₀, r₁, … and … r₋₂, r₋₁, one after the other.
+    near: ExtraordinaryPatch,
+    valence: usize,
+    /// The mean of the whole ring.
+    mean: DVec3,
+}
+
+impl PolePatch {
+    /// The same piece as `whole`, without the far part of its ring.
+    pub(super) fn of(mut whole: ExtraordinaryPatch) -> Self {
+        let valence = whole.ring.len();
+        let mean = whole.ring.iter().sum::<DVec3>() / valence as f64;
+        let half = LARGEST_RING / 2;
+        // One more follows the face than goes before it.
+        whole.ring.drain(half + 1..valence - (half - 1));
+        Self { near: whole, valence, mean }
+    }
+
+    pub(crate) fn valence(&self) -> usize {
+        self.valence
+    }
+
+    /// Points whose hull holds the piece.
+    pub(crate) fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
+        self.near.points().chain([self.mean])
+    }
+
+    /// The points after one refinement; `beta` is the weight of each neighbour of the irregular vertex.
+    pub(crate) fn refined(&self, beta: f64) -> RefinedPole {
+        let shares = self.valence as f64 * beta;
+        let at = (1.0 - shares) * self.near.at + shares * self.mean;
+        let mean = 0.375 * self.near.at + 0.625 * self.mean;
+        RefinedPole { near: self.near.refined_to(at), valence: self.valence, mean }
+    }
+}
+
+/// The points around the four parts of a [`PolePatch`].
+pub(crate) struct RefinedPole {
+    near: RefinedExtraordinary,
+    valence: usize,
+    mean: DVec3,
+}
+
+impl RefinedPole {
+    /// One of the four parts, numbered like the face's corners; 3 is the middle one.
+    pub(crate) fn part(&self, part: usize) -> Patch {
+        match self.near.part(part) {
+            Patch::Extraordinary(mut near) => {
+                let kept = near.ring.len();
+                if kept > 4 {
+                    // The neighbours of these were not known.
+                    near.ring.drain(kept / 2..kept / 2 + 2);
+                }
+                Patch::Pole(Box::new(PolePatch { near: *near, valence: self.valence, mean: self.mean }))
+            }
+            regular => regular,
+        }
+    }
+
+    /// Whether a part is regular: all but that at the irregular corner.
+    pub(crate) fn is_regular(&self, part: usize) -> bool {
+        self.near.is_regular(part)
+    }
+
+    /// The new vertex on the edge from corner `edge` of the face, with its ring.
+    pub(crate) fn middle(&self, edge: usize) -> (DVec3, [DVec3; 6]) {
+        self.near.middle(edge)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::patch::Rules;
+    use crate::scheme::Loop;
+
+    fn arbitrary(count: usize) -> Vec<DVec3> {
+        let point = |t: f64| DVec3::new((t * 1.7).sin(), (t * t * 0.31).cos(), (t * 2.9 + 0.4).sin());
+        (0..count).map(|i| point(i as f64)).collect()
+    }
+
+    fn near(a: DVec3, b: DVec3, what: &str) {
+        // Sums of hundreds of points, level after level.
+        assert!(a.distance(b) < 1e-12, "{what}: {a} {b}");
+    }
+
+    /// With and without the far part of the ring, refinement is the same, for more levels than the kept part lasts.
+    #[test]
+    fn the_far_part_of_a_ring_counts_by_its_mean() {
+        let rules = Rules::of(&Loop);
+        for valence in [LARGEST_RING + 1, LARGEST_RING + 2, 700] {
+            let points = arbitrary(valence + 6);
+            let outer = core::array::from_fn(|i| points[valence + 1 + i]);
+            let ring = points[1..=valence].to_vec();
+            let mut whole = ExtraordinaryPatch { corner: valence % 3, at: points[0], ring, outer };
+            let mut pole = PolePatch::of(whole.clone());
+            assert_eq!(pole.near.ring.len(), LARGEST_RING);
+            for level in 0..2 * REFINEMENTS {
+                let beta = rules.beta(valence);
+                let (expected, found) = (whole.refined(beta), pole.refined(beta));
+                let what = format!("valence {valence}, level {level}");
+                for edge in 0..3 {
+                    let ((at, ring), (other, around)) = (expected.middle(edge), found.middle(edge));
+                    near(at, other, &what);
+                    (0..6).for_each(|i| near(ring[i], around[i], &what));
+                }
+                for part in (0..4).filter(|&part| part != whole.corner) {
+                    let (Patch::Regular(a), Patch::Regular(b)) = (expected.part(part), found.part(part))
+                    else {
+                        panic!("{what}");
+                    };
+                    (0..12).for_each(|i| near(a[i], b[i], &what));
+                }
+                let Patch::Extraordinary(next) = expected.part(whole.corner) else { panic!("{what}") };
+                let Patch::Pole(next_pole) = found.part(pole.near.corner) else { panic!("{what}") };
+                (whole, pole) = (*next, *next_pole);
+                let mean = whole.ring.iter().sum::<DVec3>() / valence as f64;
+                near(mean, pole.mean, &what);
+                near(whole.at, pole.near.at, &what);
+            }
+        }
+    }
+}
