@@ -2,7 +2,7 @@
 //!
 //! The paper's criteria ([`LimitNormal`], [`NeighbourNormal`]) look at a mesh and the limit table of its scheme and
 //! answer with the ratio of each face; stepwise refinement divides the faces above 1. Exact refinement asks the same
-//! of a triangle and the piece of the surface that it stands for ([`Criteria`]) and divides the worst first.
+//! of a triangle and the piece of the surface that it stands for (`Criteria`) and divides the worst first.
 //! A criterion never changes anything.
 
 mod cone;
