@@ -10,16 +10,35 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("peers")
 }
 
-/// Least CPU seconds of OpenSubdiv's uniform refinement; `None` where `libosd-dev` or a C++ compiler is missing.
-pub(crate) fn opensubdiv_far(model: &Path, level: usize, repeats: usize) -> Result<Option<f64>> {
+/// What OpenSubdiv is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum OpenSubdiv {
+    /// `Far`: the refined topology and its positions.
+    Far,
+    /// `Bfr`: limit positions and normals of all vertices, and the triangles.
+    Bfr,
+}
+
+/// Least CPU seconds of OpenSubdiv's uniform refinement; `None` where `libosd-dev` (3.5 or later for `Bfr`) or a C++
+/// compiler is missing.
+pub(crate) fn opensubdiv(
+    what: OpenSubdiv,
+    model: &Path,
+    level: usize,
+    repeats: usize,
+) -> Result<Option<f64>> {
     let build = folder().join("build");
     std::fs::create_dir_all(&build)?;
-    let program = build.join("opensubdiv_far");
+    let name = match what {
+        OpenSubdiv::Far => "opensubdiv_far",
+        OpenSubdiv::Bfr => "opensubdiv_bfr",
+    };
+    let program = build.join(name);
     if !program.exists() {
         let compiler = Command::new("g++")
             .args(["-O3", "-march=native", "-o"])
             .arg(&program)
-            .arg(folder().join("opensubdiv_far.cpp"))
+            .arg(folder().join(name).with_extension("cpp"))
             .arg("-losdCPU")
             .output();
         if !compiler.is_ok_and(|output| output.status.success()) {

@@ -3,11 +3,14 @@
 use std::path::Path;
 
 use anyhow::Result;
+use limitmesh::Mesh;
 use limitmesh::criterion::LimitNormal;
 use limitmesh::refine::{StepwiseOptions, UniformOptions};
 use limitmesh::scheme::Loop;
 
-use crate::{best_of, mesh, peers};
+use crate::clock::one_thread;
+use crate::peers::{OpenSubdiv, opensubdiv};
+use crate::{best_of, mesh};
 
 const REPEATS: usize = 5;
 
@@ -15,31 +18,63 @@ const REPEATS: usize = 5;
 pub(crate) fn uniform(model: &Path) -> Result<()> {
     let control = mesh(model)?;
     println!("uniform Loop of {}: million output triangles per second, best of {REPEATS}", name(model));
-    println!(
-        "level  triangles  1 thread  2 threads  gain  with limit positions, 1 thread  OpenSubdiv Far, 1 thread"
-    );
+    println!("level  triangles  1 thread  2 threads  gain  OpenSubdiv Far, 1 thread");
     for level in 3..=6 {
-        let run = |threads, limit| {
+        let run = |threads| {
             best_of(REPEATS, threads, || {
-                let options = UniformOptions::default().levels(level).limit(limit);
+                let options = UniformOptions::default().levels(level);
                 limitmesh::refine::uniform(&control, &Loop, &options).map(|r| r.mesh.face_count())
             })
         };
-        let (one, triangles) = run(1, false)?;
+        let (one, triangles) = run(1)?;
         let triangles = triangles?;
-        let (two, _) = run(2, false)?;
-        let (limit, _) = run(1, true)?;
+        let (two, _) = run(2)?;
         let rate = |seconds: f64| triangles as f64 / seconds / 1e6;
-        let peer = match peers::opensubdiv_far(model, level, REPEATS)? {
+        let peer = match opensubdiv(OpenSubdiv::Far, model, level, REPEATS)? {
             Some(seconds) => format!("{:.1} (ours is {:.2} times that)", rate(seconds), seconds / one),
             None => "not installed".into(),
         };
+        println!("{level:5}  {triangles:9}  {:8.1}  {:9.1}  {:4.2}  {peer}", rate(one), rate(two), one / two);
+    }
+    limits(model, &control)
+}
+
+/// The same with all vertices on the limit surface and with their normals, by processor time on one thread; the gain of two
+/// threads by the clock.
+fn limits(model: &Path, control: &Mesh) -> Result<()> {
+    println!(
+        "\nthe same with limit positions and normals: million triangles per processor second, best of {REPEATS}"
+    );
+    println!(
+        "level  triangles  positions  and normals  gain of 2 threads  OpenSubdiv Bfr, positions and normals"
+    );
+    for level in [4, 5] {
+        let work = |normals| {
+            let options = UniformOptions::default().levels(level).limit(true).normals(normals);
+            limitmesh::refine::uniform(control, &Loop, &options).map(|r| r.mesh.face_count())
+        };
+        let (mut positions, mut normals, mut triangles, mut peer) = (f64::MAX, f64::MAX, 0, None::<f64>);
+        // In turns, so that a busy machine slows all of them.
+        for _ in 0..REPEATS {
+            let (seconds, count) = one_thread(|| work(false))?;
+            (positions, triangles) = (positions.min(seconds.all), count?);
+            let (seconds, _) = one_thread(|| work(true))?;
+            normals = normals.min(seconds.all);
+            let of_peer = opensubdiv(OpenSubdiv::Bfr, model, level, 1)?;
+            peer = of_peer.map(|seconds| peer.unwrap_or(seconds).min(seconds));
+        }
+        let (one, _) = best_of(REPEATS, 1, || work(true))?;
+        let (two, _) = best_of(REPEATS, 2, || work(true))?;
+        let rate = |seconds: f64| triangles as f64 / seconds / 1e6;
+        let peer = match peer {
+            Some(seconds) => format!("{:.2} (ours is {:.2} times that)", rate(seconds), seconds / normals),
+            None => "not installed".into(),
+        };
         println!(
-            "{level:5}  {triangles:9}  {:8.1}  {:9.1}  {:4.2}  {:31.1}  {peer}",
-            rate(one),
-            rate(two),
-            one / two,
-            rate(limit)
+            "{level:5}  {triangles:9}  {:9.1}  {:11.1}  {:17.2}  {peer}",
+            rate(positions),
+            rate(normals),
+            one / two
         );
     }
     Ok(())

@@ -134,6 +134,15 @@ pub(crate) fn for_each_run<A: Send, B: Send, F: Fn(usize, &mut [A], &mut [B]) + 
     Ok(())
 }
 
+/// Calls `f` with each block; `poll` is told how many are done. A block should take a few milliseconds at most.
+pub(crate) fn for_each_block_polled<B: Send, R: Send, F: Fn(B) -> R + Sync>(
+    blocks: Vec<B>,
+    poll: &mut Poll<'_>,
+    f: F,
+) -> Result<Vec<R>, Cancelled> {
+    hand_out(blocks.into_iter(), poll, f)
+}
+
 /// What a loop that can be cancelled calls between its blocks, always on the calling thread, with the number of elements
 /// done by then.
 pub(crate) type Poll<'a> = dyn FnMut(usize) -> Result<(), Cancelled> + 'a;

@@ -63,11 +63,28 @@ impl LimitTable<'_> {
     /// # Errors
     /// The scheme has no limit at the shape of some ring.
     pub fn sided_normals(&self, mesh: &Mesh) -> Result<SidedNormals, LimitError> {
+        self.normals_or(mesh, |vertex, side| face_average(mesh, vertex, side))
+    }
+
+    /// Unit limit normals as in [`Self::sided_normals`], but zero where the limit surface has no tangent plane.
+    pub(crate) fn plane_normals(&self, mesh: &Mesh) -> Result<SidedNormals, LimitError> {
+        self.normals_or(mesh, |_, _| DVec3::ZERO)
+    }
+
+    /// Unit limit normals; `without_plane` says what stands where the limit surface has no tangent plane.
+    fn normals_or(
+        &self,
+        mesh: &Mesh,
+        without_plane: impl Fn(VertexId, &Side<'_>) -> DVec3 + Sync + Send,
+    ) -> Result<SidedNormals, LimitError> {
         let stencils = Stencils::of(self, mesh)?;
         let refined = self.refined_for(mesh, true);
-        let normal = |vertex: VertexId, side: &Side<'_>| match &refined {
-            Some(refined) => two_ring_normal(mesh, vertex, side, refined),
-            None => one_ring_normal(mesh, vertex, side),
+        let normal = |vertex: VertexId, side: &Side<'_>| {
+            let normal = match &refined {
+                Some(refined) => two_ring_normal(mesh, vertex, side, refined),
+                None => one_ring_normal(mesh, vertex, side),
+            };
+            normal.unwrap_or_else(|| without_plane(vertex, side))
         };
         let by_vertex = parallel::map(mesh.vertex_count(), |v| {
             let vertex = VertexId(v as u32);
@@ -127,10 +144,11 @@ impl LimitTable<'_> {
     }
 
     fn side_normal(&self, mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> DVec3 {
-        match self.scheme().support() {
+        let normal = match self.scheme().support() {
             Support::TwoRing => two_ring_normal(mesh, vertex, side, &Masks::on_demand(mesh, self.scheme())),
             Support::OneRing => one_ring_normal(mesh, vertex, side),
-        }
+        };
+        normal.unwrap_or_else(|| face_average(mesh, vertex, side))
     }
 
     /// The stencil of one vertex.
@@ -308,13 +326,13 @@ fn one_ring_position(mesh: &Mesh, vertex: VertexId, weights: &[f64]) -> [f64; 3]
     ring.fold(start, |sum, (neighbour, &weight)| sum + weight * point(mesh, neighbour)).to_array()
 }
 
-fn one_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> DVec3 {
+fn one_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> Option<DVec3> {
     let centre = point(mesh, vertex);
     let mut tangents = Tangents::default();
     for (neighbour, &weights) in mesh.topology().ring(vertex).zip(side.tangents) {
         tangents.add(weights, point(mesh, neighbour) - centre);
     }
-    tangents.normal().unwrap_or_else(|| face_average(mesh, vertex, side))
+    tangents.normal()
 }
 
 fn two_ring_position(mesh: &Mesh, vertex: VertexId, weights: &[f64], refined: &impl Refined) -> [f64; 3] {
@@ -323,7 +341,7 @@ fn two_ring_position(mesh: &Mesh, vertex: VertexId, weights: &[f64], refined: &i
     sum.to_array()
 }
 
-fn two_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>, refined: &impl Refined) -> DVec3 {
+fn two_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>, refined: &impl Refined) -> Option<DVec3> {
     let mut tangents = Tangents::default();
     if !side.tangents.is_empty() {
         let centre = refined.moved(vertex);
@@ -331,7 +349,7 @@ fn two_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>, refined: &imp
             tangents.add(side.tangents[i], point - centre);
         });
     }
-    tangents.normal().unwrap_or_else(|| face_average(mesh, vertex, side))
+    tangents.normal()
 }
 
 /// Calls `visit` for the points around `vertex` after one refinement, numbered as in the stencil's tangents.

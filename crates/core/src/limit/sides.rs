@@ -14,12 +14,12 @@ pub struct SidedNormals {
 }
 
 impl SidedNormals {
-    pub(super) fn new(by_vertex: Vec<[f64; 3]>) -> Self {
+    pub(crate) fn new(by_vertex: Vec<[f64; 3]>) -> Self {
         Self { by_vertex, is_sided: Vec::new(), sides: Vec::new() }
     }
 
     /// Adds the normal of `vertex` for the faces of the given half-edges, which leave it.
-    pub(super) fn add_side(
+    pub(crate) fn add_side(
         &mut self,
         vertex: VertexId,
         faces: impl Iterator<Item = HalfEdgeId>,
@@ -31,7 +31,7 @@ impl SidedNormals {
     }
 
     /// Ready to be asked.
-    pub(super) fn finished(mut self) -> Self {
+    pub(crate) fn finished(mut self) -> Self {
         self.sides.sort_unstable_by_key(|&(h, _)| h);
         self
     }
@@ -43,6 +43,21 @@ impl SidedNormals {
         let is_sided = self.is_sided.get(v / 64).is_some_and(|word| word >> (v % 64) & 1 != 0);
         let side = || self.sides.binary_search_by_key(&corner, |&(h, _)| h).ok();
         is_sided.then(side).flatten().map_or(self.by_vertex[v], |i| self.sides[i].1)
+    }
+
+    /// The normals at vertices with several sides, by the half-edges that leave them.
+    pub(crate) fn sides(&self) -> &[(HalfEdgeId, [f64; 3])] {
+        &self.sides
+    }
+
+    /// The normals of vertices, to be changed.
+    pub(crate) fn by_vertex_mut(&mut self) -> &mut [[f64; 3]] {
+        &mut self.by_vertex
+    }
+
+    /// Those of [`Self::sides`], to be changed.
+    pub(crate) fn sides_mut(&mut self) -> impl Iterator<Item = (HalfEdgeId, &mut [f64; 3])> {
+        self.sides.iter_mut().map(|(h, normal)| (*h, normal))
     }
 
     /// The normal of each vertex; where it has several sides the average of theirs, of unit length.

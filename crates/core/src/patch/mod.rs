@@ -12,13 +12,13 @@ pub(crate) mod extraordinary;
 mod from_mesh;
 pub(crate) mod mesh_patch;
 mod pole;
-// Nobody evaluates by rows yet.
+// Nobody asks for second derivatives yet.
 #[allow(dead_code)]
 pub(crate) mod quartic;
 mod rules;
 mod sector;
 mod semi_sharp;
-mod submesh;
+pub(crate) mod submesh;
 
 pub(crate) use from_mesh::root_patch;
 pub(crate) use rules::Rules;

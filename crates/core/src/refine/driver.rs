@@ -16,6 +16,7 @@ pub(super) struct Driver<'a> {
     pub(super) scheme: &'a dyn Scheme,
     pub(super) levels: usize,
     pub(super) limit: bool,
+    pub(super) normals: bool,
     pub(super) max_triangles: Option<usize>,
 }
 
@@ -67,21 +68,21 @@ impl Driver<'_> {
             watch.done(step)?;
         }
         let mesh = refined.unwrap_or_else(|| control.clone());
-        let mesh = if self.limit {
+        let table = LimitTable::new(self.scheme);
+        if self.limit || self.normals {
             watch.stage(Stage::Limits, Some(mesh.vertex_count()))?;
-            at_limit(mesh, self.scheme)?
-        } else {
-            mesh
-        };
+        }
+        let normals = if self.normals { Some(table.sided_normals(&mesh)?) } else { None };
+        let mesh = if self.limit { at_limit(mesh, &table)? } else { mesh };
         // Coordinates near the greatest number may overflow in a weighted sum.
         check_finite(mesh.positions())?;
-        Ok(Refinement { mesh, steps, stop })
+        Ok(Refinement { mesh, normals, steps, stop })
     }
 }
 
 /// The mesh with its vertices moved to its limit surface.
-fn at_limit(mesh: Mesh, scheme: &dyn Scheme) -> Result<Mesh, RefineError> {
-    let mut positions = LimitTable::new(scheme).positions(&mesh)?;
+fn at_limit(mesh: Mesh, table: &LimitTable<'_>) -> Result<Mesh, RefineError> {
+    let mut positions = table.positions(&mesh)?;
     join_copies(&mut positions, &mesh.junctions().vertices);
     Ok(mesh.with_positions(positions)?)
 }

@@ -22,7 +22,7 @@ pub use uniform::{UniformOptions, uniform, uniform_observed};
 use core::time::Duration;
 
 use crate::criterion::CriterionError;
-use crate::limit::LimitError;
+use crate::limit::{LimitError, SidedNormals};
 use crate::measure::MeasureError;
 use crate::mesh::{Mesh, MeshError};
 use crate::progress::Cancelled;
@@ -91,6 +91,8 @@ pub enum Stop {
 pub struct Refinement {
     /// The refined mesh.
     pub mesh: Mesh,
+    /// Unit limit normals, where they were asked for.
+    pub normals: Option<SidedNormals>,
     /// What each step did.
     pub steps: Vec<StepReport>,
     /// Why there were no more steps.

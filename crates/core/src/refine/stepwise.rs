@@ -70,8 +70,13 @@ pub fn stepwise_observed(
 ) -> Result<Refinement, RefineError> {
     let limits = LimitTable::new(scheme);
     let flags = |mesh: &Mesh| Ok(criterion.divisible(mesh, &limits)?);
-    let driver =
-        Driver { scheme, levels: options.levels, limit: options.limit, max_triangles: options.max_triangles };
+    let driver = Driver {
+        scheme,
+        levels: options.levels,
+        limit: options.limit,
+        normals: false,
+        max_triangles: options.max_triangles,
+    };
     driver.run(mesh, observer, flags, |mesh, split| moving_vertices(mesh, split, options.seam))
 }
 

@@ -36,6 +36,6 @@ pub(super) fn refined_tags(
 }
 
 /// The sharpness one level on; `None` once the tag has faded.
-fn less_sharp(sharpness: f64) -> Option<f64> {
+pub(super) fn less_sharp(sharpness: f64) -> Option<f64> {
     Some(faded(sharpness)).filter(|&left| left > 0.0)
 }

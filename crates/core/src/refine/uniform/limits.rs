@@ -1,0 +1,333 @@
+//! Several levels at once, with all vertices on the limit surface: the mesh that the steps give, by arithmetic.
+//!
+//! Takes a mesh whose tags no longer fade and a number of levels; gives the refined mesh with its vertices at their limits
+//! and, if asked for, their limit normals. Numbers of vertices and triangles follow from prefix sums over the faces
+//! (`grid.rs`), positions and normals from the exact surface over each face (`pieces.rs`), and each face fills
+//! slots of its own, so that the result does not depend on threads.
+
+use core::ops::Range;
+
+use super::grid::{Grid, Numbering};
+use super::pieces::{Pieces, Values};
+use crate::index::{FaceId, HalfEdgeId, VertexId};
+use crate::limit::SidedNormals;
+use crate::mesh::{CreaseTag, Junctions, Mesh, Sharpness, Tags, Topology};
+use crate::parallel;
+use crate::patch::Rules;
+use crate::patch::submesh::submesh;
+use crate::progress::{Cancelled, Watch};
+use crate::refine::RefineError;
+use crate::refine::tags::less_sharp;
+use crate::vector::{unit_or_zero, vector};
+
+/// Triangles that one block of work gives, about.
+const BLOCK: usize = 1 << 14;
+
+/// What is the same for all faces.
+struct Work<'a> {
+    mesh: &'a Mesh,
+    sharpness: &'a Sharpness<'a>,
+    grid: &'a Grid,
+    numbering: Numbering<'a>,
+    pieces: Pieces<'a>,
+    normals: bool,
+}
+
+/// The slots that a run of faces fills.
+struct Slots<'s> {
+    faces: Range<usize>,
+    triangles: &'s mut [[u32; 3]],
+    twins: &'s mut [u32],
+    levels: Vec<LevelSlots<'s>>,
+}
+
+/// Those of the new vertices of one level.
+struct LevelSlots<'s> {
+    outgoing: &'s mut [u32],
+    points: &'s mut [[f64; 3]],
+    /// Empty where nobody asked for normals.
+    normals: &'s mut [[f64; 3]],
+}
+
+/// Refines a mesh of Loop's family without junctions, whose tags do not fade, by `levels` levels, and takes its vertices to
+/// the limit surface; with their normals if `normals`.
+pub(super) fn refined_at_limit(
+    mesh: &Mesh,
+    rules: &Rules<'_>,
+    levels: usize,
+    normals: bool,
+    watch: &mut Watch<'_>,
+) -> Result<(Mesh, Option<SidedNormals>), RefineError> {
+    let grid = Grid::new(levels)?;
+    let sharpness = Sharpness::of(mesh);
+    let numbering = Numbering::new(&grid, mesh.topology());
+    let pieces = Pieces::new(mesh, &sharpness, rules, &grid);
+    let work = Work { mesh, sharpness: &sharpness, grid: &grid, numbering, pieces, normals };
+
+    let vertices = work.numbering.vertex_count();
+    let faces = mesh.face_count() << (2 * levels);
+    let (mut triangles, mut twins) = (vec![[0u32; 3]; faces], vec![0u32; 3 * faces]);
+    let mut outgoing = vec![0u32; vertices];
+    let mut points = vec![[0.0; 3]; vertices];
+    let mut by_vertex = vec![[0.0; 3]; if normals { vertices } else { 0 }];
+    let blocks = work.blocks(&mut triangles, &mut twins, &mut outgoing, &mut points, &mut by_vertex);
+    let flat = parallel::for_each_block_polled(blocks, &mut |_| watch.poll(), |slots| work.fill(slots))?;
+    for (outgoing, v) in outgoing.iter_mut().zip(mesh.topology().vertices()) {
+        *outgoing = work.at_corner(mesh.topology().outgoing(v));
+    }
+    points[..mesh.vertex_count()].copy_from_slice(&rules.table().positions(mesh)?);
+    watch.poll()?;
+    let normals = match normals {
+        true => Some(work.finished_normals(by_vertex, flat.concat(), rules, watch)?),
+        false => None,
+    };
+    // A failure of general pieces, whose values mean nothing then.
+    if let Some(why) = rules.failure() {
+        return Err(why.clone().into());
+    }
+    let topology = Topology::from_parts(triangles, twins, outgoing);
+    Ok((Mesh::from_parts(topology, points, work.tags(), Junctions::default()), normals))
+}
+
+impl<'a> Work<'a> {
+    /// Cuts the arrays into runs of faces.
+    fn blocks<'s>(
+        &self,
+        triangles: &'s mut [[u32; 3]],
+        twins: &'s mut [u32],
+        outgoing: &'s mut [u32],
+        points: &'s mut [[f64; 3]],
+        normals: &'s mut [[f64; 3]],
+    ) -> Vec<Slots<'s>> {
+        let (faces, each) = (self.mesh.face_count(), self.grid.triangles.len());
+        let run = (BLOCK / each).max(1);
+        let chunks = triangles.chunks_mut(run * each).zip(twins.chunks_mut(3 * run * each));
+        let mut blocks: Vec<Slots<'s>> = chunks
+            .enumerate()
+            .map(|(i, (triangles, twins))| Slots {
+                faces: i * run..((i + 1) * run).min(faces),
+                triangles,
+                twins,
+                levels: Vec::with_capacity(self.grid.levels),
+            })
+            .collect();
+        let old = self.mesh.vertex_count();
+        let (mut outgoing, mut points) = (&mut outgoing[old..], &mut points[old..]);
+        let mut normals = if self.normals { &mut normals[old..] } else { normals };
+        for level in 1..=self.grid.levels {
+            for block in &mut blocks {
+                let Range { start, end } = block.faces;
+                let count = self.numbering.before(level, end) - self.numbering.before(level, start);
+                block.levels.push(LevelSlots {
+                    outgoing: split_off(&mut outgoing, count),
+                    points: split_off(&mut points, count),
+                    normals: split_off(&mut normals, if self.normals { count } else { 0 }),
+                });
+            }
+        }
+        blocks
+    }
+
+    /// Fills a run of faces. Gives those with a vertex of their own that has no normal.
+    fn fill(&self, slots: Slots<'_>) -> Vec<u32> {
+        let grid = self.grid;
+        let mut numbers = vec![0u32; grid.places.len()];
+        let mut values = self.pieces.room(self.normals);
+        let mut levels = slots.levels;
+        let mut flat = Vec::new();
+        let each = grid.triangles.len();
+        let runs = slots.triangles.chunks_exact_mut(each).zip(slots.twins.chunks_exact_mut(3 * each));
+        for (face, (triangles, twins)) in slots.faces.zip(runs) {
+            self.numbering.numbers(face, &mut numbers);
+            for (triangle, local) in triangles.iter_mut().zip(&grid.triangles) {
+                *triangle = local.map(|v| numbers[v as usize]);
+            }
+            self.numbering.twins(face, twins);
+            let turn = self.pieces.evaluate(face, self.numbering.sides(face), &mut values);
+            let places = &self.pieces.slots.turned[turn];
+            let first = self.numbering.first(face);
+            let owned = self.numbering.of(face);
+            let mut is_flat = false;
+            for (level, slots) in (1..).zip(&mut levels) {
+                let vertices = &owned.vertices[owned.level(level)];
+                for (slot, &v) in split_off(&mut slots.outgoing, vertices.len()).iter_mut().zip(vertices) {
+                    *slot = first + grid.outgoing[v as usize];
+                }
+                for (slot, &v) in split_off(&mut slots.points, vertices.len()).iter_mut().zip(vertices) {
+                    *slot = values.points[places[v as usize] as usize];
+                }
+                if self.normals {
+                    for (slot, &v) in split_off(&mut slots.normals, vertices.len()).iter_mut().zip(vertices) {
+                        *slot = values.normals[places[v as usize] as usize];
+                        is_flat |= *slot == [0.0; 3];
+                    }
+                }
+            }
+            if is_flat {
+                flat.push(face as u32);
+            }
+        }
+        flat
+    }
+
+    /// The half-edge of the refined mesh that leaves the corner which `h` leaves, along `h`.
+    fn at_corner(&self, h: HalfEdgeId) -> u32 {
+        self.numbering.first(h.face().index()) + self.grid.borders[h.corner()][0]
+    }
+
+    /// The normals with those of old vertices, both sides of sharp edges, and what stands where there is no tangent plane.
+    /// `flat` are faces on which that is so.
+    fn finished_normals(
+        &self,
+        mut by_vertex: Vec<[f64; 3]>,
+        mut flat: Vec<u32>,
+        rules: &Rules<'_>,
+        watch: &mut Watch<'_>,
+    ) -> Result<SidedNormals, RefineError> {
+        let topology = self.mesh.topology();
+        let old = rules.table().plane_normals(self.mesh)?;
+        by_vertex[..self.mesh.vertex_count()].copy_from_slice(old.by_vertex());
+        let mut normals = SidedNormals::new(by_vertex);
+        for &(h, normal) in old.sides() {
+            normals.add_side(topology.origin(h), [HalfEdgeId(self.at_corner(h))].into_iter(), normal);
+        }
+        for &(h, _) in old.sides().iter().filter(|(_, normal)| *normal == [0.0; 3]) {
+            normals.by_vertex_mut()[topology.origin(h).index()] = [0.0; 3];
+        }
+        let without = |v: &VertexId| normals.by_vertex()[v.index()] == [0.0; 3];
+        let corners = topology.vertices().filter(without);
+        flat.extend(corners.flat_map(|v| topology.outgoing_ring(v)).map(|h| h.face().0));
+        self.add_creases(&mut normals, &mut flat, watch)?;
+        let mut normals = normals.finished();
+        if !flat.is_empty() {
+            flat.sort_unstable();
+            flat.dedup();
+            self.add_averages(&mut normals, &flat, rules)?;
+        }
+        Ok(normals)
+    }
+
+    /// Sharp edges have a normal on each side, and their vertices the average of both.
+    fn add_creases(
+        &self,
+        normals: &mut SidedNormals,
+        flat: &mut Vec<u32>,
+        watch: &mut Watch<'_>,
+    ) -> Result<(), Cancelled> {
+        let topology = self.mesh.topology();
+        if self.sharpness.is_empty() {
+            return Ok(());
+        }
+        let mut rooms = [self.pieces.room(true), self.pieces.room(true)];
+        let mut numbers = vec![0u32; self.grid.places.len()];
+        for h in topology.half_edges() {
+            let Some(twin) = topology.twin(h).filter(|&twin| h < twin && self.sharpness.edge(h) > 0.0) else {
+                continue;
+            };
+            watch.poll()?;
+            self.numbering.numbers(h.face().index(), &mut numbers);
+            let on_edge = &self.grid.on_sides[h.corner()];
+            let sides = [h, twin].map(|side| self.grid.borders[side.corner()].as_slice());
+            let [near, far] = &mut rooms;
+            let [near, far] = [self.along(h, near), self.along(twin, far)];
+            for (i, &v) in on_edge.iter().enumerate() {
+                let number = numbers[v as usize];
+                // Seen from the other side the vertices come in the other order.
+                let j = on_edge.len() - 1 - i;
+                let both = [near[i], far[j]];
+                let by_vertex = normals.by_vertex_mut();
+                if both.contains(&[0.0; 3]) {
+                    by_vertex[number as usize] = [0.0; 3];
+                    flat.extend([h.face().0, twin.face().0]);
+                } else {
+                    by_vertex[number as usize] = unit_or_zero(vector(both[0]) + vector(both[1])).to_array();
+                }
+                for (side, (normal, rim)) in
+                    [h, twin].into_iter().zip(both.into_iter().zip([sides[0][i + 1], sides[1][j + 1]]))
+                {
+                    let first = self.numbering.first(side.face().index());
+                    let leaving = self.grid.leaving(rim).map(|local| HalfEdgeId(first + local));
+                    normals.add_side(VertexId(number), leaving, normal);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The normals of a face at the vertices inside the side of `h`, in its order.
+    fn along(&self, h: HalfEdgeId, values: &mut Values) -> Vec<[f64; 3]> {
+        let turn = self.pieces.evaluate(h.face().index(), 1 << h.corner(), values);
+        let places = &self.pieces.slots.turned[turn];
+        let vertices = self.grid.on_sides[h.corner()].iter();
+        vertices.map(|&v| values.normals[places[v as usize] as usize]).collect()
+    }
+
+    /// Where there is no tangent plane, the average of the normals of faces: of those that the steps give.
+    fn add_averages(
+        &self,
+        normals: &mut SidedNormals,
+        flat: &[u32],
+        rules: &Rules<'_>,
+    ) -> Result<(), RefineError> {
+        let seeds: Vec<HalfEdgeId> = flat.iter().map(|&face| HalfEdgeId::of(FaceId(face), 0)).collect();
+        let around = submesh(self.mesh, self.sharpness, &seeds, 1);
+        let options = super::UniformOptions::default().levels(self.grid.levels);
+        let around = super::uniform(&around, rules.scheme(), &options)?.mesh;
+        let averages = rules.table().sided_normals(&around)?;
+        let mut numbers = vec![0u32; self.grid.places.len()];
+        let half_edges = self.grid.half_edge_count();
+        for (place, &face) in flat.iter().enumerate() {
+            self.numbering.numbers(face as usize, &mut numbers);
+            for (&number, &local) in numbers.iter().zip(&self.grid.outgoing) {
+                let normal = &mut normals.by_vertex_mut()[number as usize];
+                if *normal == [0.0; 3] {
+                    let vertex = around.topology().origin(HalfEdgeId((place * half_edges) as u32 + local));
+                    *normal = averages.by_vertex()[vertex.index()];
+                }
+            }
+        }
+        for (h, normal) in normals.sides_mut().filter(|(_, normal)| **normal == [0.0; 3]) {
+            let (face, local) = (h.index() / half_edges, h.index() % half_edges);
+            if let Ok(place) = flat.binary_search(&(face as u32)) {
+                *normal = averages.at(around.topology(), HalfEdgeId((place * half_edges + local) as u32));
+            }
+        }
+        Ok(())
+    }
+
+    /// The tags: each crease goes to the edges along it.
+    fn tags(&self) -> Tags {
+        let (tags, topology) = (self.mesh.tags(), self.mesh.topology());
+        let sharpness =
+            |start: f64| (0..self.grid.levels).try_fold(start, |sharpness, _| less_sharp(sharpness));
+        let mut numbers = vec![0u32; self.grid.places.len()];
+        let mut refined = Tags::default();
+        for crease in &tags.creases {
+            let [a, b] = crease.vertices;
+            let (Some(h), Some(sharpness)) =
+                (topology.edge_between(VertexId(a), VertexId(b)), sharpness(crease.sharpness))
+            else {
+                continue;
+            };
+            self.numbering.numbers(h.face().index(), &mut numbers);
+            let inside = self.grid.on_sides[h.corner()].iter().map(|&v| numbers[v as usize]);
+            let [from, to] = topology.ends(h).map(|v| v.0);
+            let mut along: Vec<u32> = [from].into_iter().chain(inside).chain([to]).collect();
+            if from != a {
+                along.reverse();
+            }
+            refined.creases.extend(along.windows(2).map(|w| CreaseTag { vertices: [w[0], w[1]], sharpness }));
+        }
+        let corners = tags.corners.iter().filter_map(|corner| Some((corner, sharpness(corner.sharpness)?)));
+        refined.corners =
+            corners.map(|(corner, sharpness)| crate::mesh::CornerTag { sharpness, ..*corner }).collect();
+        refined
+    }
+}
+
+/// Takes the first elements off a slice.
+fn split_off<'s, T>(rest: &mut &'s mut [T], count: usize) -> &'s mut [T] {
+    let (first, after) = core::mem::take(rest).split_at_mut(count);
+    *rest = after;
+    first
+}
