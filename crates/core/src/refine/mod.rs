@@ -46,10 +46,19 @@ pub enum RefineError {
     Measure(#[from] MeasureError),
     /// Edges could not be collapsed.
     #[error(transparent)]
-    Simplify(#[from] SimplifyError),
+    Simplify(SimplifyError),
     /// The observer asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl From<SimplifyError> for RefineError {
+    fn from(error: SimplifyError) -> Self {
+        match error {
+            SimplifyError::Cancelled(_) => Self::Cancelled(Cancelled),
+            error => Self::Simplify(error),
+        }
+    }
 }
 
 /// What one step did.

@@ -3,21 +3,27 @@
 //! A mesh finer than asked for, certified against the limit surface, is collapsed with proof of how far the result is from
 //! it; both distances add up.
 
-use super::{ErrorBounds, Exact, ExactOptions, ExactStop, RefineError, exact};
+use core::ops::ControlFlow;
+
+use super::{ErrorBounds, Exact, ExactOptions, ExactProgress, ExactStop, RefineError, exact};
 use crate::measure::distances_to;
 use crate::mesh::{Mesh, MeshError};
+use crate::progress::Progress;
 use crate::scheme::Scheme;
-use crate::simplify::{Features, SimplifyOptions, simplify};
+use crate::simplify::{Features, Simplified, SimplifyOptions, simplify_observed};
 
 /// The part of the tolerance that the fine mesh takes: less leaves more to the collapse and costs more triangles to
 /// collapse.
-const FINE_SHARE: f64 = 0.2;
+const FINE_SHARE: f64 = 1.0 / 3.0;
 
 /// Triangles of the fine mesh for each triangle asked for: with half as many its own error is felt.
 const FINE_TIMES: usize = 16;
 
-/// Collapse that leaves more than this part of the fine triangles (one in so many) was not worth it.
-const FEW: usize = 6;
+/// Triangles of a fine mesh that nobody asked about: some gigabytes. A greater cap on the result is the fine mesh's too.
+const AFFORDABLE: usize = 8_000_000;
+
+/// Where the collapse leaves more than this part of the fine triangles (one in so many), refinement alone may need fewer.
+const FEW: usize = 4;
 
 /// Refines and collapses.
 pub(super) fn simplified(
@@ -25,34 +31,47 @@ pub(super) fn simplified(
     scheme: &dyn Scheme,
     options: &ExactOptions<'_>,
 ) -> Result<Exact, RefineError> {
-    let mut fine_options = ExactOptions { optimize: false, triangles: None, ..options.clone() };
-    match options.tolerance {
-        Some(tolerance) => fine_options.tolerance = Some(FINE_SHARE * tolerance),
-        None => {
-            fine_options.triangles = options.triangles.map(|count| count.saturating_mul(FINE_TIMES));
-        }
-    }
+    let most = |count: Option<usize>| count.map(|count| count.saturating_mul(FINE_TIMES));
+    let fine_options = ExactOptions {
+        optimize: false,
+        tolerance: options.tolerance.map(|tolerance| FINE_SHARE * tolerance),
+        triangles: if options.tolerance.is_some() { None } else { most(options.triangles) },
+        // What is capped is the result.
+        max_triangles: options
+            .max_triangles
+            .map(|cap| cap.saturating_mul(FINE_TIMES).min(AFFORDABLE).max(cap)),
+        ..options.clone()
+    };
     let fine = exact(control, scheme, &fine_options)?;
-    let allowance = options.tolerance.map(|tolerance| tolerance - fine.error.upper);
-    if allowance.is_some_and(|left| left <= 0.0) {
-        // A cap ended the refinement before there was anything to collapse.
-        return Ok(fine);
+    let allowance =
+        options.tolerance.map(|tolerance| tolerance - fine.error.upper).filter(|&left| left > 0.0);
+    let fewest = [options.triangles, options.max_triangles].into_iter().flatten().min();
+    let mut collapsed = match (allowance, options.tolerance, fewest) {
+        (Some(_), ..) => collapse(&fine.mesh, allowance, options.triangles, options)?,
+        // A cap ended the refinement before the tolerance left anything to collapse.
+        (None, Some(_), None) => return Ok(fine),
+        (None, ..) => collapse(&fine.mesh, None, fewest, options)?,
+    };
+    let over =
+        |collapsed: &Simplified| options.max_triangles.is_some_and(|cap| collapsed.mesh.face_count() > cap);
+    if over(&collapsed) {
+        collapsed = collapse(&fine.mesh, None, options.max_triangles, options)?;
     }
-    let goals = SimplifyOptions::default().tolerance(allowance).triangles(options.triangles);
-    let collapsed = simplify(&fine.mesh, &Features::default(), &goals)?;
-    // Where the proof failed again and again little is collapsed; then refinement alone needs fewer triangles.
-    if options.tolerance.is_some() && collapsed.mesh.face_count() > fine.mesh.face_count() / FEW {
+    let error = error_bounds(&fine, &collapsed)?;
+    let is_met = options.tolerance.is_some_and(|tolerance| error.upper <= tolerance);
+    if options.tolerance.is_some() && (!is_met || collapsed.mesh.face_count() > fine.mesh.face_count() / FEW)
+    {
         let plain = exact(control, scheme, &ExactOptions { optimize: false, ..options.clone() })?;
-        if plain.stop == ExactStop::Met && plain.mesh.face_count() <= collapsed.mesh.face_count() {
+        if plain.stop == ExactStop::Met && (!is_met || plain.mesh.face_count() <= collapsed.mesh.face_count())
+        {
             return Ok(plain);
         }
     }
-    let (lower, at) = farthest(&fine.mesh, &collapsed.mesh)?;
-    let upper = collapsed.bound.unwrap_or(f64::INFINITY) + fine.error.upper;
     let count = collapsed.mesh.face_count();
-    let stop = match (options.tolerance, options.triangles) {
-        (Some(tolerance), _) if upper <= tolerance && fine.stop == ExactStop::Met => ExactStop::Met,
-        (_, Some(goal)) if count <= goal => ExactStop::Triangles,
+    let stop = match options.triangles {
+        _ if is_met => ExactStop::Met,
+        Some(goal) if count <= goal => ExactStop::Triangles,
+        _ if fine.stop == ExactStop::Met => ExactStop::TriangleCap,
         _ => fine.stop,
     };
     Ok(Exact {
@@ -60,14 +79,37 @@ pub(super) fn simplified(
         origins: collapsed.vertices.iter().map(|&v| fine.origins[v as usize]).collect(),
         sides: Vec::new(),
         parents: Vec::new(),
-        error: ErrorBounds { lower, upper, at, certified: fine.error.certified },
+        error,
         pixels: None,
         open_cones: 0,
-        worst: options.tolerance.map_or(0.0, |tolerance| upper / tolerance),
+        worst: options.tolerance.map_or(0.0, |tolerance| error.upper / tolerance),
         stop,
         levels: fine.levels,
+        refused: collapsed.refused,
         mesh: collapsed.mesh,
     })
+}
+
+/// Collapses edges of the fine mesh, and tells the observer.
+fn collapse(
+    fine: &Mesh,
+    tolerance: Option<f64>,
+    triangles: Option<usize>,
+    options: &ExactOptions<'_>,
+) -> Result<Simplified, RefineError> {
+    let goals = SimplifyOptions::default().tolerance(tolerance).triangles(triangles);
+    let mut observer = |progress: &Progress| {
+        let round = ExactProgress { round: 0, triangles: progress.triangles, worst: 0.0 };
+        options.observer.map_or(ControlFlow::Continue(()), |observer| observer(&round))
+    };
+    Ok(simplify_observed(fine, &Features::default(), &goals, &mut observer)?)
+}
+
+/// How far the collapsed mesh can be from the limit surface, on which the fine mesh's vertices lie.
+fn error_bounds(fine: &Exact, collapsed: &Simplified) -> Result<ErrorBounds, RefineError> {
+    let (lower, at) = farthest(&fine.mesh, &collapsed.mesh)?;
+    let upper = collapsed.bound.unwrap_or(f64::INFINITY) + fine.error.upper;
+    Ok(ErrorBounds { lower, upper, at, certified: fine.error.certified })
 }
 
 /// The greatest distance of a fine mesh's vertices, which are points of the surface, to another mesh, and where.

@@ -50,13 +50,13 @@ impl BackwardProbes {
     }
 
     /// The greatest distance of the points from the surface at their nearest samples; drops the points.
-    pub(super) fn measure(&mut self, ground: &Reference<'_>) -> f64 {
+    pub(super) fn measure(&mut self, reference: &Reference<'_>) -> f64 {
         let mut error = 0.0f64;
         for points in self.points.chunks(LANES) {
             let nearest = self.nearest_sites(points);
             for (&point, i) in points.iter().zip(nearest) {
                 let (v, p) = self.sites[i];
-                error = error.max(ground.distance(point, v, p));
+                error = error.max(reference.distance(point, v, p));
             }
         }
         self.points.clear();

@@ -9,8 +9,10 @@ use super::edge_flip::{Flipper, edges};
 use super::editable_mesh::EditableMesh;
 use super::fine_samples::FineSamples;
 use super::kept_features::Kind;
+use super::proof::Prover;
 use super::reference::Reference;
 use super::vertex_star::{VertexStar, Way};
+use crate::progress::{Cancelled, Watch};
 
 /// Growth of the threshold far from the goal. In a round of that growth the order hardly matters yet: what it costs is
 /// made good for later, and larger steps save little more time.
@@ -28,11 +30,17 @@ const MOST_RESUMPTIONS: usize = 4;
 /// Vertices with more edges than this wait until they have fewer: the time for one grows with the square.
 const MOST_EDGES: usize = 64;
 
+/// Where a number of triangles stops the collapses: what is proven of a new triangle over the threshold at most.
+const UNEVEN: f64 = 1.03;
+
+/// Changes looked at between two calls of the observer: some milliseconds.
+const OBSERVED: usize = 256;
+
 /// The mesh on its way from fine to coarse.
-pub(super) struct Collapser<'a> {
+pub(super) struct Collapser<'t, 's, 'a> {
     pub(super) surface: EditableMesh,
     pub(super) samples: FineSamples,
-    pub(super) ground: Reference<'a>,
+    pub(super) reference: Reference<'a>,
     star: VertexStar,
     /// For each vertex what its best collapse would cost, or less; infinite if it has none.
     costs: Vec<f64>,
@@ -41,55 +49,99 @@ pub(super) struct Collapser<'a> {
     /// Errors up to this are rounding.
     flat: f64,
     flipper: Flipper,
+    /// Asked before each change.
+    prover: Option<Prover<'t, 's, 'a>>,
+    /// What costs no more is proven in the end.
+    sure: f64,
+    /// Vertices that stay because their going was not proven to be within the goal.
+    refused: Vec<bool>,
+    /// Changes looked at since the observer was last called.
+    unobserved: usize,
 }
 
-/// A mesh on its way, to come back to.
-#[derive(Clone)]
-pub(super) struct Snapshot {
-    surface: EditableMesh,
-    samples: FineSamples,
-    costs: Vec<f64>,
-}
-
-impl<'a> Collapser<'a> {
-    pub(super) fn new(surface: EditableMesh, samples: FineSamples, ground: Reference<'a>, flat: f64) -> Self {
-        let costs = vec![0.0; ground.kinds.len()];
+impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
+    pub(super) fn new(
+        surface: EditableMesh,
+        samples: FineSamples,
+        reference: Reference<'a>,
+        flat: f64,
+        prover: Option<Prover<'t, 's, 'a>>,
+        sure: f64,
+    ) -> Self {
+        let costs = vec![0.0; reference.kinds.len()];
+        let refused = vec![false; costs.len()];
         Self {
             surface,
             samples,
-            ground,
+            reference,
             star: VertexStar::default(),
             costs,
             reached: 0.0,
             flat,
             flipper: Flipper::default(),
+            refused,
+            prover,
+            sure,
+            unobserved: 0,
         }
     }
 
     /// Collapses edges until a goal is reached, even after flips.
-    pub(super) fn run(&mut self, goals: Goals) {
+    pub(super) fn run(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
         for _ in 0..MOST_RESUMPTIONS {
-            self.collapse_up_to(goals, goals);
-            if !self.flip_all() || self.surface.faces_left() <= goals.triangles {
+            self.collapse_up_to(goals, watch)?;
+            if self.surface.faces_left() <= goals.triangles || !self.flip_all(goals, watch)? {
                 break;
             }
         }
+        Ok(())
     }
 
-    /// Collapses edges on the way to `goals` until `stop` is reached.
-    pub(super) fn collapse_up_to(&mut self, stop: Goals, goals: Goals) {
+    /// Takes the proofs that were put off, as far as they hold.
+    pub(super) fn finish(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
+        let Some(prover) = &mut self.prover else { return Ok(()) };
+        prover.finish(&self.surface, &self.samples, goals.tolerance, watch)?;
+        Ok(())
+    }
+
+    /// The greatest distance that is proven; `None` where there is no proof of all of the mesh.
+    pub(super) fn bound(&self) -> Option<f64> {
+        let bound = self.prover.as_ref()?.bound(&self.surface);
+        bound.is_finite().then_some(bound)
+    }
+
+    /// Number of vertices that stay because no proof was found for their going.
+    pub(super) fn refused(&self) -> usize {
+        let is_refused = |&v: &usize| self.refused[v] && self.surface.is_alive(v as u32);
+        (0..self.refused.len()).filter(is_refused).count()
+    }
+
+    /// Counts a look at a change, and tells the observer after every some hundred of them.
+    fn observe(&mut self, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
+        self.unobserved += 1;
+        if self.unobserved < OBSERVED {
+            return Ok(());
+        }
+        self.unobserved = 0;
+        let left = self.surface.faces_left();
+        watch.triangles(left);
+        watch.done(self.reference.fine.face_count() - left)
+    }
+
+    fn collapse_up_to(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
         let mut left: Vec<u32> = (0..self.costs.len() as u32).filter(|&v| self.surface.is_alive(v)).collect();
-        let mut threshold = self.flat.min(stop.tolerance);
-        while self.surface.faces_left() > stop.triangles {
-            let least = self.round(&left, threshold, stop.triangles, goals.tolerance);
+        let mut threshold = self.flat.min(goals.tolerance);
+        while self.surface.faces_left() > goals.triangles {
+            let least = self.round(&left, threshold, goals, watch)?;
             left.retain(|&v| self.surface.is_alive(v));
-            if least > stop.tolerance {
+            if least > goals.tolerance {
                 break;
             }
             let near = self.surface.faces_left() / FAR <= goals.triangles;
             let growth = if near { SLOW } else { FAST };
-            threshold = self.rung_above((threshold * growth).max(least), growth).min(stop.tolerance);
+            threshold = self.rung_above((threshold * growth).max(least), growth).min(goals.tolerance);
         }
+        Ok(())
     }
 
     /// The least of the thresholds `flat`, `flat`·`growth`, `flat`·`growth`², … from `cost` on. Were it the cost itself, a
@@ -102,65 +154,76 @@ impl<'a> Collapser<'a> {
         if threshold.is_finite() { threshold } else { cost }
     }
 
-    /// What it takes to come back to this state.
-    pub(super) fn snapshot(&self) -> Snapshot {
-        Snapshot { surface: self.surface.clone(), samples: self.samples.clone(), costs: self.costs.clone() }
-    }
-
-    /// Comes back to an earlier state, with other reserves from there on.
-    pub(super) fn restore(&mut self, snapshot: &Snapshot, reserves: &[f64]) {
-        let Snapshot { surface, samples, costs } = snapshot.clone();
-        (self.surface, self.samples, self.costs) = (surface, samples, costs);
-        self.samples.reserve(reserves.to_vec());
-        self.reached = 0.0;
-    }
-
     /// Flips edges where that brings the mesh nearer to the surface; whether there were any.
-    fn flip_all(&mut self) -> bool {
+    fn flip_all(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<bool, Cancelled> {
         let mut any = false;
         for h in edges(&self.surface) {
-            let flipped = self.flipper.flip(h, self.flat, &mut self.surface, &mut self.samples, &self.ground);
+            self.observe(watch)?;
+            let proof = self.prover.as_mut().map(|prover| (prover, goals.tolerance));
+            let (flat, surface, samples) = (self.flat, &mut self.surface, &mut self.samples);
+            let flipped = self.flipper.flip(h, flat, surface, samples, &self.reference, proof);
             any |= flipped.is_some();
             for v in flipped.into_iter().flatten() {
                 self.costs[v as usize] = 0.0;
             }
         }
-        any
+        Ok(any)
     }
 
     /// One pass over the vertices; gives the least cost of a collapse that is left.
-    fn round(&mut self, vertices: &[u32], threshold: f64, triangles: usize, tolerance: f64) -> f64 {
+    fn round(
+        &mut self,
+        vertices: &[u32],
+        threshold: f64,
+        goals: Goals,
+        watch: &mut Watch<'_>,
+    ) -> Result<f64, Cancelled> {
         let mut least = f64::INFINITY;
         for &vertex in vertices {
             if self.costs[vertex as usize] <= threshold && self.surface.is_alive(vertex) {
-                if self.surface.faces_left() <= triangles {
-                    return least;
+                if self.surface.faces_left() <= goals.triangles {
+                    return Ok(least);
                 }
-                self.costs[vertex as usize] = self.consider(vertex, threshold, tolerance);
+                self.observe(watch)?;
+                self.costs[vertex as usize] = self.consider(vertex, threshold, goals);
             }
             least = least.min(self.costs[vertex as usize]);
         }
-        least
+        Ok(least)
     }
 
     /// Collapses a vertex if that costs no more than `threshold`, and gives what it costs; infinite if it is gone, or
-    /// cannot go within `tolerance`.
-    fn consider(&mut self, vertex: u32, threshold: f64, tolerance: f64) -> f64 {
-        if self.ground.kind(vertex) == Kind::Fixed
+    /// cannot go within the tolerance.
+    fn consider(&mut self, vertex: u32, threshold: f64, goals: Goals) -> f64 {
+        self.refused[vertex as usize] = false;
+        if self.reference.kind(vertex) == Kind::Fixed
             || self.surface.outgoing_ring(vertex).take(MOST_EDGES + 1).count() > MOST_EDGES
         {
             return f64::INFINITY;
         }
-        self.star.gather(vertex, &self.surface, &self.samples, &self.ground);
-        self.star.find_ways(&self.ground);
-        let Some((way, cost)) = self.best_way(threshold, tolerance) else { return f64::INFINITY };
+        self.star.gather(vertex, &self.surface, &self.samples, &self.reference);
+        self.star.find_ways(&self.reference);
+        let Some((way, cost)) = self.best_way(threshold, goals.tolerance) else { return f64::INFINITY };
         if cost > threshold {
             return cost;
         }
-        self.star.collapse_into(way.slot, &self.ground);
+        self.star.collapse_into(way.slot, &self.reference);
+        let change = self.star.change(&self.surface);
+        if let Some(prover) = &mut self.prover {
+            // Where their number stops the collapses, no triangle is to be much worse than the others.
+            let goal = if goals.tolerance < f64::MAX { goals.tolerance } else { threshold * UNEVEN };
+            if cost <= self.sure {
+                prover.defer(&change, &self.surface, &self.samples);
+            } else if prover.prove(&change, &self.surface, &self.samples, goal) {
+                prover.commit(&change);
+            } else {
+                self.refused[vertex as usize] = true;
+                return if goal < goals.tolerance { goal } else { f64::INFINITY };
+            }
+        }
         self.surface.collapse(self.star.edge(way.slot), vertex);
         self.star.hand_over(&mut self.samples);
-        self.reached = self.reached.max(cost - self.star.reserve());
+        self.reached = self.reached.max(cost);
         for &neighbour in &self.star.ring {
             // What could not go may do so now.
             let known = &mut self.costs[neighbour as usize];
@@ -179,10 +242,10 @@ impl<'a> Collapser<'a> {
         let mut place = 0;
         while let Some(way) = self.star.way(place).filter(|way| way.bulge < bound) {
             place += 1;
-            if !self.star.collapse_into(way.slot, &self.ground) {
+            if !self.star.collapse_into(way.slot, &self.reference) {
                 continue;
             }
-            let Some(cost) = self.star.cost(way, &self.ground, bound) else { continue };
+            let Some(cost) = self.star.cost(way, &self.reference, bound) else { continue };
             // Where it is flat, one way is as good as another for the distance.
             let shape = self.star.shape();
             if best.is_some_and(|best| best.1 <= self.flat && shape <= best_shape) {

@@ -1,7 +1,8 @@
 //! Edge flips that bring the mesh nearer to the surface.
 
-use super::editable_mesh::{EditableMesh, previous};
+use super::editable_mesh::{EditableMesh, next, previous};
 use super::fine_samples::FineSamples;
+use super::proof::{Change, Prover};
 use super::reference::{LEAST_TURN, Reference, Worst, bulge};
 use super::star_region::StarRegion;
 use super::triangle_plane::Plane;
@@ -46,23 +47,30 @@ impl Quadrilateral {
         Self { corners, positions: corners.map(|v| samples.position(v)), faces: [h / 3, t / 3] }
     }
 
+    /// The faces across its sides.
+    fn around(&self, h: u32, surface: &EditableMesh) -> Vec<u32> {
+        let t = surface.twin(h);
+        let across = [next(h), previous(h), next(t), previous(t)].map(|side| surface.twin(side));
+        across.into_iter().filter(|&twin| twin != NONE).map(|twin| twin / 3).collect()
+    }
+
     fn plane(&self, triangle: [usize; 3]) -> Option<Plane> {
         Plane::new(triangle.map(|i| self.positions[i]))
     }
 
     /// How far the surface bulges over a triangle, by the normals at its corners.
-    fn bulge(&self, [i, j, k]: [usize; 3], ground: &Reference<'_>) -> f64 {
+    fn bulge(&self, [i, j, k]: [usize; 3], reference: &Reference<'_>) -> f64 {
         let sagitta = |i: usize, j: usize| {
-            ground.sagitta([self.corners[i], self.corners[j]], [self.positions[i], self.positions[j]])
+            reference.sagitta([self.corners[i], self.corners[j]], [self.positions[i], self.positions[j]])
         };
         bulge([sagitta(i, j), sagitta(j, k), sagitta(k, i)])
     }
 
-    fn standard(&self, ground: &Reference<'_>) -> Standard {
+    fn standard(&self, reference: &Reference<'_>) -> Standard {
         let mut standard = Standard { worst: Worst::NONE, facing: DVec3::ZERO };
         for triangle in BEFORE {
             let plane = self.plane(triangle);
-            standard.worst.add(plane.as_ref(), triangle.map(|i| self.corners[i]), ground);
+            standard.worst.add(plane.as_ref(), triangle.map(|i| self.corners[i]), reference);
             standard.facing += plane.map_or(DVec3::ZERO, |plane| plane.normal);
         }
         standard
@@ -71,14 +79,16 @@ impl Quadrilateral {
 
 impl Flipper {
     /// Flips the edge of `h` if that lowers the error, or leaves it below `flat` and gives better shaped triangles, and
-    /// gives the corners of the faces; `None` if it does not.
+    /// gives the corners of the faces; `None` if it does not, or if the new faces are not proven to keep the distance that comes
+    /// with `proof`.
     pub(super) fn flip(
         &mut self,
         h: u32,
         flat: f64,
         surface: &mut EditableMesh,
         samples: &mut FineSamples,
-        ground: &Reference<'_>,
+        reference: &Reference<'_>,
+        proof: Option<(&mut Prover<'_, '_, '_>, f64)>,
     ) -> Option<[u32; 4]> {
         if surface.is_sharp(h) || surface.twin(h) == NONE {
             return None;
@@ -87,18 +97,24 @@ impl Flipper {
         self.region.clear();
         quadrilateral.faces.iter().for_each(|&face| self.region.add_face(face, samples));
         quadrilateral.corners.iter().for_each(|&v| self.region.add_corner(v, samples));
-        // Where estimates have proved wrong they are no reason to change what is there.
-        if self.region.reserve() > 0.0 {
-            return None;
-        }
-        let before = self.cut(&quadrilateral, BEFORE, f64::INFINITY, None, ground);
+        let before = self.cut(&quadrilateral, BEFORE, f64::INFINITY, None, reference);
         let error = before.as_ref().map_or(f64::INFINITY, |cut| cut.error);
         let bound = if error <= flat { flat.next_up() } else { error * GAIN };
-        let standard = quadrilateral.standard(ground);
-        let after = self.cut(&quadrilateral, AFTER, bound, Some(standard), ground)?;
+        let standard = quadrilateral.standard(reference);
+        let after = self.cut(&quadrilateral, AFTER, bound, Some(standard), reference)?;
         let better = error > flat || before.is_none_or(|before| after.shape > before.shape / GAIN);
         if !better || surface.are_neighbours(quadrilateral.corners[1], quadrilateral.corners[3]) {
             return None;
+        }
+        self.region.assign();
+        if let Some((prover, goal)) = proof {
+            let around = quadrilateral.around(h, surface);
+            let around = around.as_slice();
+            let change = Change { old: &quadrilateral.faces, around, gone: NONE, region: &self.region };
+            if !prover.prove(&change, surface, samples, goal) {
+                return None;
+            }
+            prover.commit(&change);
         }
         surface.flip(h);
         self.region.hand_over(samples, quadrilateral.faces.into_iter());
@@ -113,7 +129,7 @@ impl Flipper {
         triangles: [[usize; 3]; 2],
         bound: f64,
         standard: Option<Standard>,
-        ground: &Reference<'_>,
+        reference: &Reference<'_>,
     ) -> Option<Cut> {
         self.region.clear_triangles();
         let (mut estimate, mut shape) = (0.0f64, 1.0f64);
@@ -121,18 +137,18 @@ impl Flipper {
             let plane = quadrilateral.plane(triangle)?;
             if let Some(Standard { worst, facing }) = standard
                 && (plane.normal.dot(facing) < LEAST_TURN
-                    || !ground.fits(&plane, triangle.map(|i| quadrilateral.corners[i]), worst))
+                    || !reference.fits(&plane, triangle.map(|i| quadrilateral.corners[i]), worst))
             {
                 return None;
             }
-            estimate = estimate.max(quadrilateral.bulge(triangle, ground));
+            estimate = estimate.max(quadrilateral.bulge(triangle, reference));
             shape = shape.min(plane.shape);
-            self.region.add_triangle(plane, face);
+            self.region.add_triangle(plane, triangle.map(|i| quadrilateral.corners[i]), face);
         }
         let error = self.region.forward_error(estimate, bound)?;
         let [a, b] = [0, 1].map(|end| quadrilateral.positions[triangles[0][end]]);
         self.region.probe_edge(a, b);
-        let error = error.max(self.region.backward_error(ground));
+        let error = error.max(self.region.backward_error(reference));
         (error < bound).then_some(Cut { error, shape })
     }
 }

@@ -1,21 +1,20 @@
 //! Points of the fine surface, each in the care of the face of the coarse one that it is measured against.
 //!
-//! The first samples are the fine mesh's vertices, so that a vertex that goes becomes the sample of its number; the
+//! The samples are the fine mesh's vertices, so that a vertex that goes becomes the sample of its number; the
 //! lists of the faces are chained through one array.
 
 use crate::mesh::NONE;
 use crate::vector::DVec3;
 
 /// Sample positions and which face cares for which.
-#[derive(Clone)]
 pub(super) struct FineSamples {
     positions: Vec<DVec3>,
     following: Vec<u32>,
     first: Vec<u32>,
+    /// The face that cares for each sample.
+    holders: Vec<u32>,
     /// Greatest distance of a face's samples from it.
     errors: Vec<f64>,
-    /// What the error around each fine vertex is known to exceed its estimate by; empty while nothing is known.
-    reserves: Vec<f64>,
 }
 
 impl FineSamples {
@@ -23,10 +22,10 @@ impl FineSamples {
     pub(super) fn new(positions: Vec<DVec3>, faces: usize) -> Self {
         Self {
             following: vec![NONE; positions.len()],
+            holders: vec![NONE; positions.len()],
             positions,
             first: vec![NONE; faces],
             errors: vec![0.0; faces],
-            reserves: Vec::new(),
         }
     }
 
@@ -36,26 +35,22 @@ impl FineSamples {
         self.positions[sample as usize]
     }
 
-    /// Sets the reserves.
-    pub(super) fn reserve(&mut self, reserves: Vec<f64>) {
-        self.reserves = reserves;
-    }
-
-    /// What is to be added to the estimate of an error around a fine vertex.
-    #[inline]
-    pub(super) fn reserve_at(&self, vertex: u32) -> f64 {
-        self.reserves.get(vertex as usize).copied().unwrap_or(0.0)
-    }
-
     /// Greatest distance of the samples of `face`.
     #[inline]
     pub(super) fn error(&self, face: u32) -> f64 {
         self.errors[face as usize]
     }
 
+    /// The face that cares for a sample; of a vertex that is still there, [`NONE`].
+    #[inline]
+    pub(super) fn holder(&self, sample: u32) -> u32 {
+        self.holders[sample as usize]
+    }
+
     /// Puts a sample at `distance` into the care of `face`.
     #[inline]
     pub(super) fn give(&mut self, face: u32, sample: u32, distance: f64) {
+        self.holders[sample as usize] = face;
         let face = face as usize;
         self.following[sample as usize] = self.first[face];
         self.first[face] = sample;

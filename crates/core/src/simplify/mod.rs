@@ -4,11 +4,14 @@
 //! they were. Closed meshes stay closed, manifolds stay manifolds of the same genus, boundaries and creases stay along
 //! their lines, and no triangle folds over.
 //!
-//! Each collapse is judged by the distance that it would leave between the coarse mesh and the surface, in both
-//! directions and locally: the vertices that are gone are samples of the surface, each cared for by the face nearest to
-//! it (`fine_samples.rs`); points of the new faces are measured from the tangent planes of the samples around (`backward_error.rs`); and
-//! where samples are few, the normals at the ends of an edge tell how far the surface bulges over it (`reference.rs`). Where
-//! the surface is curved more in one direction than in the other, long triangles come out of this by themselves.
+//! What a collapse costs is estimated from samples, locally and in both directions: the vertices that are gone are points of
+//! the surface, each cared for by the face nearest to it (`fine_samples.rs`); points of the new faces are measured from the
+//! tangent planes of the samples around (`backward_error.rs`); and where samples are few, the normals at the ends of an edge
+//! tell how far the surface bulges over it (`reference.rs`). Where the surface is curved more in one direction than in the
+//! other, long triangles come out of this by themselves.
+//!
+//! Whether a collapse may happen is proven before it happens, for what it touches (`proof.rs`, `fine_face.rs`). Where there
+//! is no proof the edge stays, and everything else goes on.
 //!
 //! How good the result can be is known: a smooth surface with Gaussian curvature K needs about
 //! 0.19245·∫√|K| dA / ε vertices for inscribed triangles within a distance ε where K > 0 (and fewer where K < 0).
@@ -18,6 +21,7 @@ mod compaction;
 mod edge_collapse;
 mod edge_flip;
 mod editable_mesh;
+mod fine_face;
 mod fine_samples;
 mod kept_features;
 mod proof;
@@ -31,14 +35,15 @@ mod vertex_star;
 pub use kept_features::Features;
 
 use crate::index::VertexId;
-use crate::measure::{Bvh, MeasureError};
+use crate::measure::{Bvh, MeasureError, Target};
 use crate::mesh::{Mesh, MeshError};
 use crate::parallel;
+use crate::progress::{Observer, Stage, Watch, unobserved};
 use crate::vector::{DVec3, unit_or_zero, vector};
 use edge_collapse::Collapser;
 use editable_mesh::EditableMesh;
 use fine_samples::FineSamples;
-use proof::Certifier;
+use proof::Prover;
 use reference::{LEAST_AGREEMENT, Reference};
 
 /// Why a mesh could not be simplified.
@@ -51,6 +56,9 @@ pub enum SimplifyError {
     /// A distance could not be measured.
     #[error(transparent)]
     Measure(#[from] MeasureError),
+    /// The observer asked to stop. This is the mesh by then: as good as any result, with more triangles.
+    #[error("cancelled by the observer")]
+    Cancelled(Box<Simplified>),
 }
 
 /// When to stop: at whichever goal is reached first.
@@ -120,39 +128,15 @@ struct Goals {
     triangles: usize,
 }
 
-/// What is left of the tolerance for the width of the certified interval and for what falls between the samples: more costs
-/// triangles everywhere, less costs attempts.
-const HEADROOM: f64 = 0.02;
-
-/// Up to this share of the tolerance collapses are taken for granted at first, and not undone where the tolerance is not kept.
-const SURE: f64 = 0.3;
-
-/// With so many times as many triangles as asked for they are likewise.
-const EARLY: usize = 3;
-
-/// The certified distance over the estimate at which the errors of a mesh with a given number of triangles are held to be
-/// even: no place is much worse than the collapses were meant to leave behind.
-const EVEN: f64 = 1.05;
-
-/// How often at most a mesh with a given number of triangles is made, to see whether its errors get more even.
-const MOST_EVENING_ATTEMPTS: u32 = 3;
-
-/// What is left of the tolerance from attempt to attempt once the places found at fault were not all: a mesh made anew has
-/// new ones, where the fine mesh is so coarse that estimates are wrong all over.
-const LESS: f64 = 0.93;
-
-/// How often collapses are done again with less of the tolerance where it was not kept. Each attempt leaves fewer such
-/// places; what is left after these is a mesh that is rough wherever one looks.
-const MOST_ATTEMPTS: u32 = 14;
-
-/// From this attempt on nothing is taken for granted.
-const FROM_THE_START: u32 = 8;
+/// Collapses whose estimate is up to this share of the tolerance are proven in the end only: of what is left then, next to
+/// nothing was not changed again, and estimates are rarely wrong by so much.
+const SURE: f64 = 0.35;
 
 /// Errors up to this share of the diagonal are taken for rounding: some ten thousand units in the last place.
 const ROUNDING: f64 = 1e-12;
 
 /// A mesh with fewer triangles.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Simplified {
     /// The mesh, with the tags and junctions of the fine one.
@@ -163,8 +147,11 @@ pub struct Simplified {
     /// samples were measured.
     pub estimate: f64,
     /// The greatest distance between the mesh and the fine one, in both directions, is certainly no more than this;
-    /// `None` if no proof was asked for.
+    /// `None` if no proof was asked for, or if the observer stopped before there was one.
     pub bound: Option<f64>,
+    /// How many of the vertices stayed only because their going was not proven to keep the goal, although the samples
+    /// would have let them go: mostly since it would have gone beyond it by a little.
+    pub refused: usize,
 }
 
 /// Collapses edges of `fine` until a goal is reached.
@@ -194,72 +181,52 @@ pub fn simplify(
     features: &Features,
     options: &SimplifyOptions,
 ) -> Result<Simplified, SimplifyError> {
+    simplify_observed(fine, features, options, &mut unobserved)
+}
+
+/// [`simplify`], telling an observer how it goes on.
+///
+/// # Errors
+/// The same, or the observer asked to stop; what there was by then comes with the error.
+pub fn simplify_observed(
+    fine: &Mesh,
+    features: &Features,
+    options: &SimplifyOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Simplified, SimplifyError> {
     let goals = options.goals(fine)?;
     let mut surface = EditableMesh::new(fine.topology());
     let kinds = kept_features::kinds(fine, features, &mut surface)?;
     let (normals, agreed): (Vec<DVec3>, Vec<bool>) = normals(fine).into_iter().unzip();
-    let ground = Reference { kinds: &kinds, normals: &normals, agreed: &agreed, fine };
-    let samples = FineSamples::new(fine.positions().iter().copied().map(vector).collect(), fine.face_count());
-    let flat = ROUNDING * fine.diagonal();
-    let mut collapser = Collapser::new(surface, samples, ground, flat);
-    if options.certify {
-        return certified(&mut collapser, &Certifier::new(fine, flat)?, goals);
+    let reference = Reference { kinds: &kinds, normals: &normals, agreed: &agreed, fine };
+    let hierarchy = options.certify.then(|| Bvh::new_observed(fine.as_triangles(), observer)).transpose();
+    let hierarchy = match hierarchy {
+        Err(MeasureError::Cancelled(_)) => return Err(SimplifyError::Cancelled(Box::new(untouched(fine)))),
+        hierarchy => hierarchy?,
+    };
+    let target = hierarchy.as_ref().map(|bvh| Target::of_mesh(bvh, fine.topology())).transpose()?;
+    let mut watch = Watch::new(observer, Stage::Simplifying);
+    // Where their number alone stops the collapses nobody knows what is far from the limit.
+    let sure = if goals.tolerance < f64::MAX { SURE * goals.tolerance } else { 0.0 };
+    for sure in [sure, 0.0] {
+        let positions = fine.positions().iter().copied().map(vector).collect();
+        let samples = FineSamples::new(positions, fine.face_count());
+        let prover = target.as_ref().map(|target| Prover::new(fine, target));
+        let flat = ROUNDING * fine.diagonal();
+        let mut collapser = Collapser::new(surface.clone(), samples, reference, flat, prover, sure);
+        let outcome = collapser.run(goals, &mut watch);
+        let outcome = outcome.and_then(|()| collapser.finish(goals, &mut watch));
+        let simplified = result(&collapser)?;
+        if outcome.is_err() {
+            return Err(SimplifyError::Cancelled(Box::new(simplified)));
+        }
+        // Where the fine mesh is so rough that far from the limit estimates are wrong, nothing is put off.
+        if simplified.bound.is_some() || !options.certify || sure == 0.0 {
+            return Ok(simplified);
+        }
     }
-    collapser.run(goals);
-    result(&collapser)
-}
-
-/// Collapses edges until a goal is reached, with proof. Where estimates prove wrong, it tries again with that in reserve:
-/// until the tolerance is kept; and where the number of triangles stops it, until the errors are even.
-fn certified(
-    collapser: &mut Collapser<'_>,
-    certifier: &Certifier<'_>,
-    goals: Goals,
-) -> Result<Simplified, SimplifyError> {
-    let tolerance = goals.tolerance;
-    let mut target = Goals { tolerance: tolerance * (1.0 - HEADROOM), ..goals };
-    let early =
-        Goals { tolerance: target.tolerance * SURE, triangles: target.triangles.saturating_mul(EARLY) };
-    let mut reserves = vec![0.0; collapser.ground.fine.vertex_count()];
-    let fresh = collapser.snapshot();
-    let mut sure = None;
-    let mut best: Option<Simplified> = None;
-    for attempt in 0..MOST_ATTEMPTS {
-        if attempt == 0 || attempt >= FROM_THE_START {
-            collapser.collapse_up_to(early, target);
-            sure.get_or_insert_with(|| collapser.snapshot());
-        }
-        collapser.run(target);
-        let counted = collapser.surface.faces_left() <= goals.triangles;
-        let coarse = result(collapser)?;
-        let hierarchy = Bvh::new(coarse.mesh.as_triangles())?;
-        let proof = certifier.certify(&hierarchy)?;
-        let (upper, estimate) = (proof.upper(), coarse.estimate);
-        let kept = upper <= tolerance;
-        let last = !counted || upper <= EVEN * estimate || attempt + 1 >= MOST_EVENING_ATTEMPTS;
-        if !(kept && last) {
-            let level = if counted { estimate.min(tolerance) } else { tolerance };
-            certifier.raise_reserves(&hierarchy, &proof, (attempt, level), collapser, &mut reserves);
-        }
-        let earlier_bound = best.as_ref().and_then(|best| best.bound);
-        if kept && earlier_bound.is_none_or(|bound| counted && upper < bound) {
-            best = Some(Simplified { bound: Some(upper), ..coarse });
-        }
-        if (kept && last) || earlier_bound.is_some_and(|_| !kept) {
-            break;
-        }
-        if attempt >= FROM_THE_START && !kept {
-            target.tolerance *= LESS;
-        }
-        let earlier = sure.as_ref().filter(|_| attempt + 1 < FROM_THE_START).unwrap_or(&fresh);
-        collapser.restore(earlier, &reserves);
-    }
-    if let Some(best) = best {
-        return Ok(best);
-    }
-    // The fine mesh itself is at no distance.
-    collapser.restore(&fresh, &reserves);
-    Ok(Simplified { bound: Some(0.0), ..result(collapser)? })
+    Err(MeshError::Broken { place: "the simplified mesh".to_owned(), what: "what was proven has a bound" }
+        .into())
 }
 
 /// Normals of the vertices, as the areas of the faces around weigh them (those of a fine mesh on a smooth surface are off
@@ -273,9 +240,16 @@ fn normals(fine: &Mesh) -> Vec<(DVec3, bool)> {
     })
 }
 
-fn result(collapser: &Collapser<'_>) -> Result<Simplified, SimplifyError> {
-    let Collapser { surface, samples, ground, .. } = collapser;
-    let (mesh, vertices) = compaction::mesh(ground.fine, surface, ground.kinds)?;
+/// The fine mesh as its own result.
+fn untouched(fine: &Mesh) -> Simplified {
+    let vertices = (0..fine.vertex_count() as u32).collect();
+    Simplified { mesh: fine.clone(), vertices, estimate: 0.0, bound: Some(0.0), refused: 0 }
+}
+
+fn result(collapser: &Collapser<'_, '_, '_>) -> Result<Simplified, SimplifyError> {
+    let Collapser { surface, samples, reference, .. } = collapser;
+    let (mesh, vertices) = compaction::mesh(reference.fine, surface, reference.kinds)?;
     let errors = surface.faces().map(|face| samples.error(face));
-    Ok(Simplified { mesh, vertices, estimate: errors.fold(collapser.reached, f64::max), bound: None })
+    let estimate = errors.fold(collapser.reached, f64::max);
+    Ok(Simplified { mesh, vertices, estimate, bound: collapser.bound(), refused: collapser.refused() })
 }

@@ -1,103 +1,332 @@
-//! Proof that a coarse mesh is within the tolerance, and what to do where it is not.
+//! Proof that a change of the mesh keeps it within a distance of the fine mesh, taken before the change is made.
 //!
-//! Collapsing looks at samples. What counts in the end is the bound of [`certified_hausdorff`]: where it exceeds the
-//! tolerance, the places at fault are looked for, and what the estimates there were short of is held in reserve around
-//! the fine vertices in the next attempt.
+//! Each direction is proven triangle by triangle, so that a change asks for proof of what it touches and of nothing else.
 //!
-//! [`certified_hausdorff`]: crate::measure::certified_hausdorff
+//! Proofs of changes that are far from the limit may be put off: most of what they leave is changed again.
+//!
+//! * *From the mesh to the fine one*: each new triangle, by the sheet of fine faces over it ([`Worker::within`]).
+//! * *From the fine mesh to the mesh*: each fine face, by pieces ([`super::fine_face`]). It *rests* on the faces that serve
+//!   its pieces; while these stay as they are, so does its proof.
 
-use super::edge_collapse::Collapser;
-use crate::measure::{Bvh, CertifiedHausdorff, CertifiedOptions, MeasureError, certified_hausdorff_between};
-use crate::mesh::{Mesh, Triangles};
-use crate::parallel;
-use crate::vector::vector;
+use super::editable_mesh::EditableMesh;
+use super::fine_face::{Candidates, Corner, is_within};
+use super::fine_samples::FineSamples;
+use super::star_region::StarRegion;
+use crate::geometry::NONE;
+use crate::index::VertexId;
+use crate::measure::{Target, Worker};
+use crate::mesh::Mesh;
+use crate::progress::{Cancelled, Watch};
 
-/// Width of the certified interval as a share of the distance: what is lost to it costs as many more triangles.
-const GAP: f64 = 0.01;
+/// Fine faces in a sheet at most: as many as a triangle of a mesh made this coarse stands for.
+const SHEET: usize = 4096;
 
-/// Places from this share of the tolerance on are held to be at fault too: points do not meet the farthest one.
-const SUSPECT: f64 = 0.98;
+/// The observer is called at faces whose numbers are multiples of this.
+const OBSERVED: u32 = 256;
 
-/// What is reserved at a place at fault beyond what its error exceeds the tolerance by, as a share of the tolerance. It
-/// doubles with every other attempt, until nothing goes any more where nothing can.
-const MARGIN: f64 = 0.1;
+/// Faces around a vertex that are looked at beyond those of a change.
+const MOST_AROUND: usize = 16;
 
-/// Points of a triangle that are measured, by barycentric coordinates: the centroid, quarters of the sides, and what is
-/// halfway between the centroid and the corners.
-const POINTS: [[f64; 3]; 13] = [
-    [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
-    [0.5, 0.5, 0.0],
-    [0.0, 0.5, 0.5],
-    [0.5, 0.0, 0.5],
-    [0.75, 0.25, 0.0],
-    [0.25, 0.75, 0.0],
-    [0.0, 0.75, 0.25],
-    [0.0, 0.25, 0.75],
-    [0.25, 0.0, 0.75],
-    [0.75, 0.0, 0.25],
-    [2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0],
-    [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
-    [1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0],
-];
-
-/// The fine mesh, ready to be measured against.
-pub(super) struct Certifier<'a> {
-    fine: Bvh<'a>,
-    rounding: f64,
+/// Faces that go, and the triangles that take their place.
+pub(super) struct Change<'a> {
+    /// The faces that go or get other corners.
+    pub(super) old: &'a [u32],
+    /// Those across the border, which stay.
+    pub(super) around: &'a [u32],
+    /// The vertex that goes, or [`NONE`].
+    pub(super) gone: u32,
+    /// The new triangles, and the samples below, assigned to them.
+    pub(super) region: &'a StarRegion,
 }
 
-impl<'a> Certifier<'a> {
-    /// `rounding` is what two surfaces may be apart at least without anybody caring.
-    pub(super) fn new(fine: &'a Mesh, rounding: f64) -> Result<Self, MeasureError> {
-        Ok(Self { fine: Bvh::new(fine.as_triangles())?, rounding })
-    }
+/// What a fine face rests on after a change.
+struct Rest {
+    fine: u32,
+    /// Places among the candidates, as bits.
+    used: u64,
+    bound: f64,
+}
 
-    /// Bounds the distance of a mesh to the fine one.
-    pub(super) fn certify(&self, coarse: &Bvh<'_>) -> Result<CertifiedHausdorff, MeasureError> {
-        let options = CertifiedOptions::default().gap(Some(self.rounding)).relative_gap(GAP);
-        certified_hausdorff_between(coarse, &self.fine, &options)
-    }
+/// What has been proven, and what it rests on.
+pub(super) struct Prover<'t, 's, 'a> {
+    worker: Worker<'t, 's, 'a>,
+    fine: &'a Mesh,
+    /// What rounding may have made of a distance.
+    slack: f64,
+    /// For each face of the mesh the fine faces that rest on it, perhaps among others.
+    resting: Vec<Vec<u32>>,
+    /// What each face of the mesh is within of the fine mesh; infinite where no proof has been taken yet.
+    forward: Vec<f64>,
+    /// What each fine face is within of the mesh; likewise.
+    backward: Vec<f64>,
+    /// The fine faces that the change asks for, each once: `stamps` tells those met in this round.
+    affected: Vec<u32>,
+    stamps: Vec<u32>,
+    round: u32,
+    candidates: Candidates,
+    /// Of the last [`Self::prove`].
+    rests: Vec<Rest>,
+    bounds: Vec<f64>,
+    /// For each sample that it asked for its place in the region.
+    places: Vec<u32>,
+}
 
-    /// Raises the reserves of the fine vertices around the places of the collapser's mesh that are too far away.
-    pub(super) fn raise_reserves(
-        &self,
-        coarse: &Bvh<'_>,
-        proof: &CertifiedHausdorff,
-        (attempt, tolerance): (u32, f64),
-        collapser: &Collapser<'_>,
-        reserves: &mut [f64],
-    ) {
-        let mut errors = self.errors(coarse.surface());
-        for (place, distance) in
-            [(proof.forward.at, proof.forward.upper), (proof.backward.to, proof.backward.upper)]
-        {
-            let error = &mut errors[coarse.closest(place).face as usize];
-            *error = error.max(distance);
+impl<'t, 's, 'a> Prover<'t, 's, 'a> {
+    /// Of the fine mesh itself, at no distance.
+    pub(super) fn new(fine: &'a Mesh, target: &'t Target<'s, 'a>) -> Self {
+        let faces = fine.face_count();
+        Self {
+            worker: Worker::of(target, SHEET),
+            fine,
+            slack: target.slack(),
+            resting: (0..faces as u32).map(|face| vec![face]).collect(),
+            forward: vec![0.0; faces],
+            backward: vec![0.0; faces],
+            affected: Vec::new(),
+            stamps: vec![0; faces],
+            round: 0,
+            candidates: Candidates::default(),
+            rests: Vec::new(),
+            bounds: Vec::new(),
+            places: vec![0; fine.vertex_count()],
         }
-        let before = reserves.to_vec();
-        for (face, error) in collapser.surface.faces().zip(errors) {
-            if error <= SUSPECT * tolerance {
+    }
+
+    /// The greatest distance that the mesh and the fine one are proven to be within.
+    pub(super) fn bound(&self, mesh: &EditableMesh) -> f64 {
+        let forward = mesh.faces().map(|face| self.forward[face as usize]);
+        self.backward.iter().copied().chain(forward).fold(0.0, f64::max)
+    }
+
+    /// Whether the mesh is proven to stay within `goal` of the fine mesh by a change of it.
+    pub(super) fn prove(
+        &mut self,
+        change: &Change<'_>,
+        mesh: &EditableMesh,
+        samples: &FineSamples,
+        goal: f64,
+    ) -> bool {
+        self.gather(change, mesh, samples);
+        self.prove_fine_faces(change, mesh, samples, goal) && self.prove_triangles(change, goal)
+    }
+
+    /// Looks for the fine faces and the triangles that matter.
+    fn gather(&mut self, change: &Change<'_>, mesh: &EditableMesh, samples: &FineSamples) {
+        self.round = self.round.wrapping_add(1);
+        if self.round == 0 {
+            self.stamps.fill(0);
+            self.round = 1;
+        }
+        self.affected.clear();
+        for &face in change.old {
+            for &fine in &self.resting[face as usize] {
+                if self.stamps[fine as usize] != self.round {
+                    self.stamps[fine as usize] = self.round;
+                    self.affected.push(fine);
+                }
+            }
+        }
+        for (place, &sample) in change.region.samples().iter().enumerate() {
+            self.places[sample as usize] = place as u32;
+        }
+        self.candidates.clear();
+        for (new, plane) in change.region.faces().iter().zip(change.region.planes()) {
+            self.candidates.add(new.face, new.corners, plane.corners);
+        }
+        for &face in change.around {
+            let corners = mesh.corners(face);
+            self.candidates.add(face, corners, corners.map(|v| samples.position(v)));
+        }
+    }
+
+    fn prove_fine_faces(
+        &mut self,
+        change: &Change<'_>,
+        mesh: &EditableMesh,
+        samples: &FineSamples,
+        goal: f64,
+    ) -> bool {
+        self.rests.clear();
+        if self.candidates.len() < change.region.faces().len() {
+            return false;
+        }
+        for i in 0..self.affected.len() {
+            let fine = self.affected[i];
+            let corners = self.fine.topology().triangles()[fine as usize];
+            let corners = corners.map(|v| self.corner(v, change, mesh, samples));
+            let goal = goal - self.slack;
+            let mut found = self.candidates.bound(corners, goal);
+            if found.is_none() && self.add_more(fine, change, mesh, samples) {
+                found = self.candidates.bound(corners, goal);
+            }
+            let Some((bound, used)) = found else { return false };
+            self.rests.push(Rest { fine, used, bound: bound + self.slack });
+        }
+        true
+    }
+
+    /// A corner of a fine face, and what is known of the triangles near it.
+    fn corner(&mut self, v: u32, change: &Change<'_>, mesh: &EditableMesh, samples: &FineSamples) -> Corner {
+        let at = samples.position(v);
+        if v != change.gone && mesh.is_alive(v) {
+            return Corner::vertex(at, v);
+        }
+        let place = self.places[v as usize] as usize;
+        if change.region.samples().get(place) == Some(&v) {
+            let (triangle, distance) = change.region.assigned()[place];
+            return Corner::near(at, triangle, distance);
+        }
+        let holder = samples.holder(v);
+        if holder == NONE {
+            return Corner::vertex(at, v);
+        }
+        let corners = mesh.corners(holder);
+        let triangle = self.candidates.add(holder, corners, corners.map(|v| samples.position(v)));
+        self.candidates.sample(at, triangle)
+    }
+
+    /// Adds triangles that stay, around the corners of a fine face; whether there were any.
+    fn add_more(
+        &mut self,
+        fine: u32,
+        change: &Change<'_>,
+        mesh: &EditableMesh,
+        samples: &FineSamples,
+    ) -> bool {
+        let before = self.candidates.len();
+        for v in self.fine.topology().triangles()[fine as usize] {
+            let at_corners = if v != change.gone && mesh.is_alive(v) {
+                [v; 3]
+            } else {
+                let place = self.places[v as usize] as usize;
+                if change.region.samples().get(place) == Some(&v) {
+                    change.region.faces()[change.region.assigned()[place].0].corners
+                } else {
+                    mesh.corners(samples.holder(v))
+                }
+            };
+            for corner in at_corners {
+                for h in mesh.outgoing_ring(corner).take(MOST_AROUND) {
+                    if !change.old.contains(&(h / 3)) {
+                        let corners = mesh.corners(h / 3);
+                        self.candidates.add(h / 3, corners, corners.map(|v| samples.position(v)));
+                    }
+                }
+            }
+        }
+        self.candidates.len() > before
+    }
+
+    fn prove_triangles(&mut self, change: &Change<'_>, goal: f64) -> bool {
+        self.bounds.clear();
+        for (i, new) in change.region.faces().iter().enumerate() {
+            let near = new.corners.map(|v| self.fine_face_at(v));
+            let below = self.rests.iter().find(|rest| rest.used >> i & 1 == 1);
+            let start = below.map_or(near[0], |rest| rest.fine);
+            let bound = self.worker.within(change.region.planes()[i].corners, start, near, goal);
+            if !is_within(bound, goal) {
+                return false;
+            }
+            self.bounds.push(bound);
+        }
+        true
+    }
+
+    /// Takes in a change without proof; [`Self::finish`] has to follow.
+    pub(super) fn defer(&mut self, change: &Change<'_>, mesh: &EditableMesh, samples: &FineSamples) {
+        self.gather(change, mesh, samples);
+        for &face in change.old {
+            self.resting[face as usize].clear();
+        }
+        let new = change.region.faces();
+        for &fine in &self.affected {
+            self.backward[fine as usize] = f64::INFINITY;
+            // Any face near it will do: who looks for the fine faces that matter finds it there, most of the time.
+            let corners = self.fine.topology().triangles()[fine as usize];
+            let holder = corners.iter().find_map(|&v| {
+                let place = self.places[v as usize] as usize;
+                let is_below = change.region.samples().get(place) == Some(&v);
+                is_below.then(|| change.region.assigned()[place].0)
+            });
+            let at_corner = || new.iter().position(|new| corners.iter().any(|v| new.corners.contains(v)));
+            let face = holder.or_else(at_corner).unwrap_or(0);
+            self.resting[new[face].face as usize].push(fine);
+        }
+        for new in new {
+            self.forward[new.face as usize] = f64::INFINITY;
+        }
+    }
+
+    /// Takes the proofs that were put off; whether all that is there is proven now to be within `goal`.
+    pub(super) fn finish(
+        &mut self,
+        mesh: &EditableMesh,
+        samples: &FineSamples,
+        goal: f64,
+        watch: &mut Watch<'_>,
+    ) -> Result<bool, Cancelled> {
+        let region = StarRegion::default();
+        let nothing = Change { old: &[], around: &[], gone: NONE, region: &region };
+        for fine in 0..self.fine.face_count() as u32 {
+            if self.backward[fine as usize].is_finite() {
                 continue;
             }
-            let more = (error - tolerance).max(0.0) + MARGIN * f64::from(1u32 << (attempt / 2)) * tolerance;
-            for v in collapser.surface.corners(face).into_iter().chain(collapser.samples.of(face)) {
-                let reserve = &mut reserves[v as usize];
-                *reserve = reserve.max(before[v as usize] + more);
+            if fine % OBSERVED == 0 {
+                watch.poll()?;
             }
+            self.candidates.clear();
+            self.affected.clear();
+            self.affected.push(fine);
+            if !self.prove_fine_faces(&nothing, mesh, samples, goal) {
+                return Ok(false);
+            }
+            self.backward[fine as usize] = self.rests[0].bound;
         }
+        for face in mesh.faces() {
+            if self.forward[face as usize].is_finite() {
+                continue;
+            }
+            if face % OBSERVED == 0 {
+                watch.poll()?;
+            }
+            let corners = mesh.corners(face);
+            let near = corners.map(|v| self.fine_face_at(v));
+            let start = samples.of(face).next().map_or(near[0], |v| self.fine_face_at(v));
+            let triangle = corners.map(|v| samples.position(v));
+            let bound = self.worker.within(triangle, start, near, goal);
+            if !is_within(bound, goal) {
+                return Ok(false);
+            }
+            self.forward[face as usize] = bound;
+        }
+        Ok(true)
     }
 
-    /// For each triangle the greatest distance of some of its points from the fine mesh.
-    fn errors(&self, coarse: Triangles<'_>) -> Vec<f64> {
-        parallel::map(coarse.triangles.len(), |face| {
-            let [a, b, c] = coarse.corners(face).map(vector);
-            let mut guess = u32::MAX;
-            let distances = POINTS.map(|[u, v, w]| {
-                let closest = self.fine.closest_from((a * u + b * v + c * w).to_array(), guess);
-                guess = closest.face;
-                closest.distance
-            });
-            distances.into_iter().fold(0.0, f64::max)
-        })
+    /// A fine face at a vertex of the fine mesh.
+    fn fine_face_at(&self, v: u32) -> u32 {
+        self.fine.topology().outgoing(VertexId(v)).face().0
+    }
+
+    /// Takes in the change for which the last [`Self::prove`] held.
+    pub(super) fn commit(&mut self, change: &Change<'_>) {
+        for &face in change.old {
+            self.resting[face as usize].clear();
+        }
+        let new = change.region.faces();
+        for rest in &self.rests {
+            self.backward[rest.fine as usize] = rest.bound;
+            let mut used = rest.used;
+            while used != 0 {
+                let place = used.trailing_zeros() as usize;
+                used &= used - 1;
+                let list = &mut self.resting[self.candidates.face(place) as usize];
+                if place < new.len() || !list.contains(&rest.fine) {
+                    list.push(rest.fine);
+                }
+            }
+        }
+        for (new, &bound) in new.iter().zip(&self.bounds) {
+            self.forward[new.face as usize] = bound;
+        }
     }
 }

@@ -20,6 +20,7 @@ const LEAST_SHAPE: f64 = 0.01;
 pub(super) const LEAST_AGREEMENT: f64 = 0.95;
 
 /// Kinds and normals of the fine mesh's vertices.
+#[derive(Clone, Copy)]
 pub(super) struct Reference<'a> {
     pub(super) kinds: &'a [Kind],
     /// Unit normals; not used at creases and boundaries, where one does not tell.
@@ -41,8 +42,8 @@ impl Worst {
     pub(super) const NONE: Self = Self { shape: 1.0, turn: 1.0 };
 
     /// Takes account of a triangle, `None` where it spans no plane.
-    pub(super) fn add(&mut self, plane: Option<&Plane>, corners: [u32; 3], ground: &Reference<'_>) {
-        let (shape, turn) = plane.map_or((0.0, -1.0), |plane| (plane.shape, ground.turn(plane, corners)));
+    pub(super) fn add(&mut self, plane: Option<&Plane>, corners: [u32; 3], reference: &Reference<'_>) {
+        let (shape, turn) = plane.map_or((0.0, -1.0), |plane| (plane.shape, reference.turn(plane, corners)));
         self.shape = self.shape.min(shape);
         self.turn = self.turn.min(turn);
     }

@@ -9,7 +9,16 @@ use super::reference::Reference;
 use super::triangle_plane::{Plane, nearest};
 use crate::vector::DVec3;
 
-/// FineSamples, triangles, and the face that each triangle would be; filled anew for each piece.
+/// A triangle that would be there, and where.
+#[derive(Clone, Copy)]
+pub(super) struct NewFace {
+    /// Fine vertices.
+    pub(super) corners: [u32; 3],
+    /// Its number in the mesh.
+    pub(super) face: u32,
+}
+
+/// Samples, triangles, and the face that each triangle would be; filled anew for each piece.
 #[derive(Default)]
 pub(super) struct StarRegion {
     /// Fine vertices that the faces care for.
@@ -18,9 +27,10 @@ pub(super) struct StarRegion {
     /// Corners of the faces, which are samples of the surface too, but have no distance.
     rim: Vec<(u32, DVec3)>,
     planes: Vec<Plane>,
-    faces: Vec<u32>,
+    faces: Vec<NewFace>,
+    /// For each sample the nearest triangle and a distance that it is within of it.
+    assigned: Vec<(usize, f64)>,
     probes: BackwardProbes,
-    reserve: f64,
 }
 
 impl StarRegion {
@@ -30,7 +40,6 @@ impl StarRegion {
         self.points.clear();
         self.rim.clear();
         self.probes.forget();
-        self.reserve = 0.0;
     }
 
     /// Adds a sample.
@@ -38,7 +47,6 @@ impl StarRegion {
     pub(super) fn add_sample(&mut self, sample: u32, samples: &FineSamples) {
         self.samples.push(sample);
         self.points.push(samples.position(sample));
-        self.reserve = self.reserve.max(samples.reserve_at(sample));
     }
 
     /// Adds the samples of a face.
@@ -53,19 +61,18 @@ impl StarRegion {
     #[inline]
     pub(super) fn add_corner(&mut self, vertex: u32, samples: &FineSamples) {
         self.rim.push((vertex, samples.position(vertex)));
-        self.reserve = self.reserve.max(samples.reserve_at(vertex));
-    }
-
-    /// What is to be added to estimates here: the greatest reserve of the samples and corners.
-    #[inline]
-    pub(super) fn reserve(&self) -> f64 {
-        self.reserve
     }
 
     /// Number of samples.
     #[inline]
     pub(super) fn sample_count(&self) -> usize {
         self.points.len()
+    }
+
+    /// The samples.
+    #[inline]
+    pub(super) fn samples(&self) -> &[u32] {
+        &self.samples
     }
 
     /// Forgets the triangles.
@@ -77,15 +84,21 @@ impl StarRegion {
 
     /// Adds a triangle and the face that it would be.
     #[inline]
-    pub(super) fn add_triangle(&mut self, plane: Plane, face: u32) {
+    pub(super) fn add_triangle(&mut self, plane: Plane, corners: [u32; 3], face: u32) {
         self.planes.push(plane);
-        self.faces.push(face);
+        self.faces.push(NewFace { corners, face });
     }
 
     /// The triangles.
     #[inline]
     pub(super) fn planes(&self) -> &[Plane] {
         &self.planes
+    }
+
+    /// Their corners and numbers.
+    #[inline]
+    pub(super) fn faces(&self) -> &[NewFace] {
+        &self.faces
     }
 
     /// The greatest distance of a sample from the triangles, where it is greater than `error`; `None` if that is not below
@@ -111,7 +124,7 @@ impl StarRegion {
 
     /// The greatest distance from the surface of the triangles' centroids and of the edges given to [`Self::probe_edge`],
     /// which are forgotten.
-    pub(super) fn backward_error(&mut self, ground: &Reference<'_>) -> f64 {
+    pub(super) fn backward_error(&mut self, reference: &Reference<'_>) -> f64 {
         if self.probes.is_empty() {
             let samples = self.samples.iter().copied().zip(self.points.iter().copied());
             self.probes.surround(samples.chain(self.rim.iter().copied()));
@@ -119,15 +132,32 @@ impl StarRegion {
         for plane in &self.planes {
             self.probes.add(plane.centroid());
         }
-        self.probes.measure(ground)
+        self.probes.measure(reference)
     }
 
-    /// Gives the samples to the triangles nearest to them, which are there now; `cleared` are the faces that had them.
+    /// Finds the nearest triangle of each sample.
+    pub(super) fn assign(&mut self) {
+        self.assigned.clear();
+        let planes = &self.planes;
+        self.assigned.extend(self.points.iter().map(|&point| {
+            let i = nearest(planes, point).1;
+            (i, planes[i].distance(point))
+        }));
+    }
+
+    /// For each sample the place of the nearest triangle and a distance that the sample is certainly within of it, but for
+    /// rounding, as [`Self::assign`] found them.
+    #[inline]
+    pub(super) fn assigned(&self) -> &[(usize, f64)] {
+        &self.assigned
+    }
+
+    /// Gives the samples to the triangles that they were assigned to, which are there now; `cleared` are the faces that had
+    /// them.
     pub(super) fn hand_over(&self, samples: &mut FineSamples, cleared: impl Iterator<Item = u32>) {
         cleared.for_each(|face| samples.clear(face));
-        for (&sample, &point) in self.samples.iter().zip(&self.points) {
-            let (distance, i) = nearest(&self.planes, point);
-            samples.give(self.faces[i], sample, distance);
+        for (&sample, &(i, distance)) in self.samples.iter().zip(&self.assigned) {
+            samples.give(self.faces[i].face, sample, distance);
         }
     }
 }

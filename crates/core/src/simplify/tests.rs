@@ -1,6 +1,8 @@
 use super::*;
 use crate::index::FaceId;
-use crate::measure::{Bvh, SamplingOptions, hausdorff, limit_reference};
+use crate::measure::{
+    Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff, limit_reference,
+};
 use crate::mesh::{BuildOptions, CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use crate::models;
 use crate::scheme::Loop;
@@ -318,4 +320,78 @@ fn the_bound_holds_for_a_given_number_of_triangles() {
     assert_eq!(quick.bound, None);
     let quick = hausdorff(quick.mesh.as_triangles(), fine.as_triangles(), &options).unwrap().symmetric();
     assert!(distance <= 1.01 * quick);
+}
+
+/// Encloses the distance by another way: branch and bound over both meshes as a whole.
+fn enclosed(coarse: &Simplified, fine: &Mesh) -> (f64, f64) {
+    let options = CertifiedOptions::default().gap(Some(1e-12)).relative_gap(0.01);
+    let distance = certified_hausdorff(coarse.mesh.as_triangles(), fine.as_triangles(), &options).unwrap();
+    (distance.lower(), distance.upper())
+}
+
+#[test]
+fn the_proven_bound_holds_and_is_tight() {
+    for (name, levels) in [("bumpy", 3), ("cup", 2), ("head", 3), ("sheet", 3), ("cusp", 2), ("bunny", 2)] {
+        let fine = limit_reference(&model(name), &Loop, levels).unwrap();
+        let tolerance = 0.002 * fine.diagonal();
+        let coarse = run(&fine, &within(tolerance));
+        let (lower, upper) = enclosed(&coarse, &fine);
+        let bound = coarse.bound.unwrap();
+        assert!(lower <= bound && bound <= tolerance, "{name}: {lower} {bound} {tolerance}");
+        assert!(bound <= 1.05 * upper, "{name}: {bound} where {upper} is true");
+        // The greater part of the tolerance is used.
+        assert!(lower > 0.9 * tolerance, "{name}: {lower} of {tolerance}");
+    }
+}
+
+#[test]
+fn more_tolerance_never_asks_for_more_triangles() {
+    let fine = limit_reference(&model("cusp"), &Loop, 3).unwrap();
+    let mut before = usize::MAX;
+    for step in 0..8 {
+        let tolerance = 0.0004 * 1.2f64.powi(step) * fine.diagonal();
+        let count = run(&fine, &within(tolerance)).mesh.face_count();
+        assert!(count as f64 <= 1.05 * before as f64, "{count} after {before}");
+        before = count;
+    }
+}
+
+#[test]
+fn cancelling_gives_what_there_is() {
+    let fine = limit_reference(&model("bumpy"), &Loop, 4).unwrap();
+    let enough = fine.face_count() * 3 / 4;
+    let mut observer = |progress: &crate::progress::Progress| match progress.triangles {
+        1.. if progress.triangles < enough => core::ops::ControlFlow::Break(()),
+        _ => core::ops::ControlFlow::Continue(()),
+    };
+    let options = SimplifyOptions::default().triangles(Some(100));
+    let error = simplify_observed(&fine, &Features::default(), &options, &mut observer).unwrap_err();
+    let SimplifyError::Cancelled(coarse) = error else { panic!("{error}") };
+    check_invariants(&fine, &coarse);
+    assert!((enough / 2..enough).contains(&coarse.mesh.face_count()));
+    let (lower, upper) = enclosed(&coarse, &fine);
+    let bound = coarse.bound.unwrap();
+    assert!(lower <= bound && bound <= 1.1 * upper, "{lower} {bound} {upper}");
+    // Before the first collapse there is the fine mesh.
+    let stop = &mut |_: &crate::progress::Progress| core::ops::ControlFlow::Break(());
+    let error = simplify_observed(&fine, &Features::default(), &options, stop).unwrap_err();
+    assert!(matches!(error, SimplifyError::Cancelled(coarse) if coarse.mesh == fine));
+}
+
+#[test]
+fn the_observer_is_called_often() {
+    let fine = limit_reference(&model("bunny"), &Loop, 3).unwrap();
+    let (mut last, mut longest, mut least) = (None, core::time::Duration::ZERO, usize::MAX);
+    let mut observer = |progress: &crate::progress::Progress| {
+        let now = std::time::Instant::now();
+        longest = longest.max(last.map_or(core::time::Duration::ZERO, |last| now - last));
+        last = Some(now);
+        least = least.min(if progress.triangles > 0 { progress.triangles } else { usize::MAX });
+        core::ops::ControlFlow::Continue(())
+    };
+    let options = within(0.001 * fine.diagonal());
+    let coarse = simplify_observed(&fine, &Features::default(), &options, &mut observer).unwrap();
+    assert!(least < 2 * coarse.mesh.face_count(), "{least}");
+    // Ten times what is promised: other programs may be running.
+    assert!(longest.as_millis() < 1000, "{longest:?}");
 }

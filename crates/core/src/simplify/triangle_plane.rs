@@ -48,6 +48,18 @@ impl Plane {
         above.then(|| from.dot(self.normal).abs())
     }
 
+    /// The distance of `point` from a point of the triangle, the nearest but for rounding.
+    pub(super) fn distance(&self, point: DVec3) -> f64 {
+        let [a, b, c] = self.corners;
+        let from = point - a;
+        let (v, w) = (from.dot(self.along[0]), from.dot(self.along[1]));
+        if v >= 0.0 && w >= 0.0 && v + w <= 1.0 {
+            let foot = a * (1.0 - v - w) + b * v + c * w;
+            return point.distance(foot);
+        }
+        self.squared_to_sides(point).sqrt()
+    }
+
     /// The mean of the corners.
     pub(super) fn centroid(&self) -> DVec3 {
         (self.corners[0] + self.corners[1] + self.corners[2]) / 3.0

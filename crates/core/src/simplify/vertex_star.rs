@@ -1,9 +1,10 @@
 //! The faces around a vertex, gathered into one place, and what they would become if the vertex were collapsed into one
 //! of its neighbours.
 
-use super::editable_mesh::{EditableMesh, previous};
+use super::editable_mesh::{EditableMesh, next, previous};
 use super::fine_samples::FineSamples;
 use super::kept_features::{Kind, walk_chain};
+use super::proof::Change;
 use super::reference::{LEAST_TURN, Reference, Worst, bulge};
 use super::star_region::StarRegion;
 use super::triangle_plane::{Plane, squared_to_segment};
@@ -30,6 +31,9 @@ pub(super) struct VertexStar {
     /// The fine vertices of the chain between the centre's two neighbours on it, the centre's own included.
     chain: Vec<DVec3>,
     chain_ends: [u32; 2],
+    /// The faces of the star, and those across its border.
+    faces: Vec<u32>,
+    around: Vec<u32>,
 }
 
 /// A neighbour that the centre may go to.
@@ -48,7 +52,7 @@ impl VertexStar {
         centre: u32,
         surface: &EditableMesh,
         samples: &FineSamples,
-        ground: &Reference<'_>,
+        reference: &Reference<'_>,
     ) {
         self.centre = centre;
         self.position = samples.position(centre);
@@ -73,17 +77,17 @@ impl VertexStar {
             self.region.add_corner(v, samples);
         }
         self.worst = None;
-        self.gather_chain(surface, samples, ground);
+        self.gather_chain(surface, samples, reference);
     }
 
     /// Walks from the centre along its crease or boundary to the next vertices that are still there.
-    fn gather_chain(&mut self, surface: &EditableMesh, samples: &FineSamples, ground: &Reference<'_>) {
+    fn gather_chain(&mut self, surface: &EditableMesh, samples: &FineSamples, reference: &Reference<'_>) {
         self.chain.clear();
-        let Kind::Chain(ways) = ground.kind(self.centre) else { return };
+        let Kind::Chain(ways) = reference.kind(self.centre) else { return };
         self.chain.push(self.position);
         self.chain_ends = ways.map(|way| {
             let chain = &mut self.chain;
-            walk_chain(self.centre, way, surface, ground.kinds, |v| chain.push(samples.position(v)))
+            walk_chain(self.centre, way, surface, reference.kinds, |v| chain.push(samples.position(v)))
         });
     }
 
@@ -100,7 +104,7 @@ impl VertexStar {
     }
 
     /// The worst of the triangles that are there, and all their normals.
-    fn look_at_faces(&mut self, ground: &Reference<'_>) -> Worst {
+    fn look_at_faces(&mut self, reference: &Reference<'_>) -> Worst {
         if let Some(worst) = self.worst {
             return worst;
         }
@@ -108,7 +112,7 @@ impl VertexStar {
         self.normals.clear();
         for [i, j] in self.sectors() {
             let plane = Plane::new([self.position, self.ring_positions[i], self.ring_positions[j]]);
-            worst.add(plane.as_ref(), [self.centre, self.ring[i], self.ring[j]], ground);
+            worst.add(plane.as_ref(), [self.centre, self.ring[i], self.ring[j]], reference);
             self.normals.push(plane.map_or(DVec3::ZERO, |plane| plane.normal));
         }
         self.worst = Some(worst);
@@ -116,15 +120,15 @@ impl VertexStar {
     }
 
     /// Finds the neighbours that the centre may go to, those with the least bulge first.
-    pub(super) fn find_ways(&mut self, ground: &Reference<'_>) {
+    pub(super) fn find_ways(&mut self, reference: &Reference<'_>) {
         self.ways.clear();
-        let ends = match ground.kind(self.centre) {
+        let ends = match reference.kind(self.centre) {
             Kind::Smooth => None,
             // A closed chain of which two vertices are left must keep both.
             Kind::Chain(_) if self.chain_ends[0] != self.chain_ends[1] => Some(self.chain_ends),
             _ => return,
         };
-        self.measure_chords(ground);
+        self.measure_chords(reference);
         for slot in 0..self.ring.len() {
             if ends.is_none_or(|ends| ends.contains(&self.ring[slot])) {
                 let bulge = self.bulge_after(slot);
@@ -141,14 +145,14 @@ impl VertexStar {
     }
 
     /// Measures how far the surface bulges over each chord between two neighbours.
-    fn measure_chords(&mut self, ground: &Reference<'_>) {
+    fn measure_chords(&mut self, reference: &Reference<'_>) {
         let n = self.ring.len();
         self.sagittas.clear();
         self.sagittas.resize(n * n, 0.0);
         for i in 0..n {
             for j in i + 1..n {
                 let ends = [self.ring_positions[i], self.ring_positions[j]];
-                let sagitta = ground.sagitta([self.ring[i], self.ring[j]], ends);
+                let sagitta = reference.sagitta([self.ring[i], self.ring[j]], ends);
                 self.sagittas[i * n + j] = sagitta;
                 self.sagittas[j * n + i] = sagitta;
             }
@@ -165,10 +169,10 @@ impl VertexStar {
 
     /// Looks at the triangles of the star once the centre has gone to the neighbour at `slot`: whether all of them stand
     /// well.
-    pub(super) fn collapse_into(&mut self, slot: usize, ground: &Reference<'_>) -> bool {
-        let worst = self.look_at_faces(ground);
+    pub(super) fn collapse_into(&mut self, slot: usize, reference: &Reference<'_>) -> bool {
+        let worst = self.look_at_faces(reference);
         let (apex, at) = (self.ring[slot], self.ring_positions[slot]);
-        let normal = ground.normal(self.centre);
+        let normal = reference.normal(self.centre);
         self.region.clear_triangles();
         for [i, j] in self.sectors() {
             if i == slot || j == slot {
@@ -179,10 +183,10 @@ impl VertexStar {
             };
             let turn = plane.normal.dot(normal.unwrap_or(self.normals[i]));
             let corners = [apex, self.ring[i], self.ring[j]];
-            if turn < LEAST_TURN.min(worst.turn) || !ground.fits(&plane, corners, worst) {
+            if turn < LEAST_TURN.min(worst.turn) || !reference.fits(&plane, corners, worst) {
                 return false;
             }
-            self.region.add_triangle(plane, self.spokes[i] / 3);
+            self.region.add_triangle(plane, corners, self.spokes[i] / 3);
         }
         !self.region.planes().is_empty()
     }
@@ -192,15 +196,13 @@ impl VertexStar {
         self.region.planes().iter().map(|plane| plane.shape).fold(1.0, f64::min)
     }
 
-    /// The cost of the triangles that [`Self::collapse_into`] left for this way: their greatest error, and the reserve.
-    /// `None` if that is not below `bound`.
-    pub(super) fn cost(&mut self, way: Way, ground: &Reference<'_>, bound: f64) -> Option<f64> {
-        let reserve = self.region.reserve();
-        let bound = bound - reserve;
+    /// The cost of the triangles that [`Self::collapse_into`] left for this way: their greatest error. `None` if that is not
+    /// below `bound`.
+    pub(super) fn cost(&mut self, way: Way, reference: &Reference<'_>, bound: f64) -> Option<f64> {
         let error = self.region.forward_error(self.chain_error().max(way.bulge), bound)?;
         // With few samples the normals at the corners tell as much.
         if self.region.sample_count() <= 2 * self.spokes.len() {
-            return Some(error + reserve);
+            return Some(error);
         }
         let (slot, n) = (way.slot, self.ring.len());
         let at = self.ring_positions[slot];
@@ -211,13 +213,19 @@ impl VertexStar {
                 self.region.probe_edge(at, to);
             }
         }
-        let error = error.max(self.region.backward_error(ground));
-        (error < bound).then_some(error + reserve)
+        let error = error.max(self.region.backward_error(reference));
+        (error < bound).then_some(error)
     }
 
-    /// The part of the cost that is no estimate but a reserve.
-    pub(super) fn reserve(&self) -> f64 {
-        self.region.reserve()
+    /// The change of the mesh that the last [`Self::collapse_into`] would be.
+    pub(super) fn change(&mut self, surface: &EditableMesh) -> Change<'_> {
+        self.faces.clear();
+        self.faces.extend(self.spokes.iter().map(|h| h / 3));
+        self.around.clear();
+        let across = self.spokes.iter().map(|&h| surface.twin(next(h)));
+        self.around.extend(across.filter(|&twin| twin != NONE).map(|twin| twin / 3));
+        self.region.assign();
+        Change { old: &self.faces, around: &self.around, gone: self.centre, region: &self.region }
     }
 
     /// How far the removed vertices of the chain would be from the edge that replaces them.
@@ -230,8 +238,8 @@ impl VertexStar {
         self.chain.iter().map(|&p| squared_to_segment(p, a, b)).fold(0.0, f64::max).sqrt()
     }
 
-    /// Gives all samples of the star to the triangles of the last [`Self::collapse_into`], which are there now.
+    /// Gives all samples of the star to the triangles of the last [`Self::change`], which are there now.
     pub(super) fn hand_over(&self, samples: &mut FineSamples) {
-        self.region.hand_over(samples, self.spokes.iter().map(|h| h / 3));
+        self.region.hand_over(samples, self.faces.iter().copied());
     }
 }

@@ -117,6 +117,9 @@ pub(super) fn run(
     let rounds = Mutex::new(Vec::new());
     let observer = |round: &ExactProgress| {
         progress.stage(format!("refining: {}", counted(round.triangles, "triangle", "triangles")));
+        if round.round == 0 {
+            return ControlFlow::Continue(());
+        }
         let mut rounds = rounds.lock().unwrap_or_else(PoisonError::into_inner);
         // Where refinement tries two ways, the second starts again; the report counts on.
         let number = rounds.len() + 1;
@@ -130,13 +133,13 @@ pub(super) fn run(
     let error = ErrorReport::new(&found.error, goals.diagonal);
     let outcome = outcome(&found, goals, &error, arguments);
     let achieved = achieved(&found, &error);
-    let Exact { mesh, normals, origins, parents, pixels, open_cones, stop, levels, .. } = found;
+    let Exact { mesh, normals, origins, parents, pixels, open_cones, stop, levels, refused, .. } = found;
     Ok(Refined {
         mesh,
         normals: Some(normals),
         provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents)),
         achieved: Some(achieved),
-        how: counted(levels, "level", "levels"),
+        how: how(levels, refused),
         report: MethodReport {
             steps: Vec::new(),
             rounds,
@@ -162,6 +165,15 @@ fn achieved(found: &Exact, error: &ErrorReport) -> String {
         format!("; {triangles} outside the angle, where the surface has no tangent plane or as good as none")
     });
     [Some(error.in_words()), pixels, cones].into_iter().flatten().collect()
+}
+
+/// How the mesh came about, in words.
+fn how(levels: usize, refused: usize) -> String {
+    let levels = counted(levels, "level", "levels");
+    if refused == 0 {
+        return levels;
+    }
+    format!("{levels}; {} kept where a collapse was not proven", counted(refused, "vertex", "vertices"))
 }
 
 /// What was asked for, defaults filled in.

@@ -136,6 +136,11 @@ impl Cover {
             + target.scale.slack
     }
 
+    /// Whether the last sheet had ends within t, so that the bound holds a step sideways.
+    pub(super) fn is_inset(&self) -> bool {
+        !self.ends.is_empty()
+    }
+
     /// Gathers the sheet and the ends that it has within t. Whether it is of at most `limit` triangles.
     fn gather(&mut self, target: &Target<'_, '_>, view: &View, start: u32, goal: f64, limit: usize) -> bool {
         self.sheet.clear();

@@ -16,6 +16,7 @@
 //! asks for one nearest point and three scalar products a triangle.
 
 mod cover;
+mod nearby;
 mod piece;
 mod scale;
 mod search;
@@ -29,9 +30,10 @@ use crate::mesh::Triangles;
 use crate::options::options;
 use crate::progress::{Observer, Stage, Watch, unobserved};
 use crate::vector::vector;
+pub(crate) use piece::Worker;
 use scale::Scale;
 use search::Search;
-use target::Target;
+pub(crate) use target::Target;
 
 options! {
     /// How narrow the interval is to be.

@@ -49,11 +49,11 @@ impl Sample {
 }
 
 /// What bounding pieces needs beside them; its memory is used again.
-pub(super) struct Worker<'t, 's, 'a> {
-    target: &'t Target<'s, 'a>,
-    cover: Cover,
+pub(crate) struct Worker<'t, 's, 'a> {
+    pub(super) target: &'t Target<'s, 'a>,
+    pub(super) cover: Cover,
     /// Triangles in a sheet at most.
-    limit: usize,
+    pub(super) limit: usize,
     /// Whether the middle of a piece is looked at before a sheet is gathered from a corner.
     middle_first: bool,
     /// The farthest point met.

@@ -6,7 +6,7 @@ use crate::measure::bvh::Bvh;
 use crate::vector::{DVec3, vector};
 
 /// A surface to which distances are measured.
-pub(super) struct Target<'s, 'a> {
+pub(crate) struct Target<'s, 'a> {
     pub(super) bvh: &'s Bvh<'a>,
     /// For each side that exactly two triangles share the other one's side, [`NONE`] for others.
     pub(super) twins: Vec<u32>,

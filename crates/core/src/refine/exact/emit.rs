@@ -81,6 +81,7 @@ impl Growth<'_> {
                 .map(|node| self.forest.level(node))
                 .max()
                 .unwrap_or(0),
+            refused: 0,
         };
         exact.open_cones = self.open_cones(&exact);
         if exact.open_cones > 0 && exact.stop == ExactStop::Met {

@@ -201,7 +201,7 @@ impl<'a> ExactOptions<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ExactProgress {
-    /// 1 for the first round.
+    /// 1 for the first round; 0 while edges are collapsed, which goes without rounds.
     pub round: usize,
     /// Triangles that would be emitted now.
     pub triangles: usize,
@@ -286,6 +286,9 @@ pub struct Exact {
     pub stop: ExactStop,
     /// Levels of the deepest part of the hierarchy.
     pub levels: usize,
+    /// After optimisation, how many vertices stayed only because the proof failed where they are: around them the fine
+    /// triangles were not collapsed any further.
+    pub refused: usize,
 }
 
 impl Exact {
