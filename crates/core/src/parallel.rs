@@ -195,6 +195,12 @@ pub(crate) fn map_polled<T: Send + Clone + Default, F: Fn(usize) -> T + Sync>(
     Ok(slots)
 }
 
+/// The results of `work` on every job, in order.
+pub(crate) fn for_each_job<J: Send, R: Send, F: Fn(J) -> R + Sync>(jobs: Vec<J>, work: F) -> Vec<R> {
+    // Nobody cancels.
+    hand_out(jobs.into_iter(), &mut |_| Ok(()), work).unwrap_or_default()
+}
+
 /// Runs `work` on every block and gives the results in order. `poll` is called after each block that the calling thread
 /// does, with the number of blocks done, and while it waits for others; once it fails no further block is begun.
 fn hand_out<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send, F: Fn(B) -> R + Sync>(

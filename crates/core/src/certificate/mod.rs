@@ -6,13 +6,17 @@
 //! What is not a number fails: wherever something is compared with a limit, it must be known to be below it.
 
 mod bounds;
+mod cell_rows;
 mod deviation;
+mod quartic_cell;
 mod sampled;
 mod sub_triangle;
 mod triangle_frame;
 
 pub(crate) use bounds::{Effort, Pieces};
+pub(crate) use cell_rows::{CellRows, MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, RowTarget};
 pub(crate) use deviation::Deviation;
+pub(crate) use quartic_cell::{Cell, QuarticJet};
 pub(crate) use sampled::Samples;
 pub(crate) use sub_triangle::SubTriangle;
 pub(crate) use triangle_frame::TriangleFrame;
@@ -20,7 +24,7 @@ pub(crate) use triangle_frame::TriangleFrame;
 /// Whether a value is not known to be within a limit: also where either is not a number.
 #[inline]
 #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "what is not a number must not pass")]
-fn exceeds(value: f64, limit: f64) -> bool {
+pub(crate) fn exceeds(value: f64, limit: f64) -> bool {
     !(value <= limit)
 }
 

@@ -111,6 +111,18 @@ impl TriangleFrame {
         self.lengths[edge]
     }
 
+    /// Unit vector along the edge from corner `edge`; zero where it has no length.
+    #[inline]
+    pub(crate) fn along(&self, edge: usize) -> DVec3 {
+        self.along[edge]
+    }
+
+    /// Unit vector in the plane, at right angles to an edge, that points out of the triangle.
+    #[inline]
+    pub(crate) fn outward(&self, edge: usize) -> DVec3 {
+        self.outward[edge]
+    }
+
     /// Height of a point over the plane.
     #[inline]
     pub(crate) fn height(&self, point: DVec3) -> f64 {

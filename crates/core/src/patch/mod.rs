@@ -24,10 +24,12 @@ pub(crate) use from_mesh::root_patch;
 pub(crate) use rules::Rules;
 
 use crate::vector::{DVec3, unit_or_zero};
-use box_spline::{Points, Refined};
+pub(crate) use box_spline::Points;
+use box_spline::Refined;
 use extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use mesh_patch::{MeshPatch, RefinedMeshPatch};
 use pole::{LARGEST_RING, PolePatch, RefinedPole};
+pub(crate) use quartic::Quartic;
 use sector::{RefinedSectors, SectorPatch};
 use semi_sharp::{RefinedSemiSharp, SemiSharpPatch};
 
@@ -67,6 +69,11 @@ impl LimitPoint {
         let across = SINE * ((b - e) + (c - f));
         Self { position, normal: unit_or_zero(along.cross(across)) }
     }
+}
+
+/// The points of a part of a regular piece.
+pub(crate) fn refined_part(points: &Points, part: usize) -> Points {
+    Refined::of(points).part(part)
 }
 
 /// A patch refined once: its parts and the limits of its new vertices.

@@ -68,6 +68,12 @@ impl Quartic {
         Self { coefficients, tangent_scale, least_square: least * least }
     }
 
+    /// The coefficients of u², uv, v², of u³ to v³, and of u⁴ to v⁴.
+    pub(crate) fn powers(&self) -> ([DVec3; 3], [DVec3; 4], [DVec3; 5]) {
+        let a = &self.coefficients;
+        ([a[9], a[6], a[2]], [a[12], a[10], a[7], a[3]], [a[14], a[13], a[11], a[8], a[4]])
+    }
+
     /// The point at (u, v).
     pub(crate) fn point(&self, u: f64, v: f64) -> DVec3 {
         let mut points = [[0.0; 3]];
@@ -120,6 +126,37 @@ impl Quartic {
         }
         let tangents = [by_axis(&by_u), by_axis(&by_v)];
         fill(&NormalRow { tangents, least_square: self.least_square }, start, step, normals);
+    }
+
+    /// What [`Self::points_and_normals_along`] gives, by axis; `count` places, rounded up to a multiple of eight.
+    pub(crate) fn by_axis_along<const N: usize>(
+        &self,
+        v: f64,
+        start: f64,
+        step: f64,
+        count: usize,
+        [points, normals]: [&mut [[f64; N]; 3]; 2],
+    ) {
+        let by_u = self.positions(v);
+        let row = PointRow(by_axis(&by_u));
+        let [mut by_u, mut by_v] = [derivative(&by_u), self.slopes(v)];
+        if self.tangent_scale != 1.0 {
+            by_u.iter_mut().chain(&mut by_v).for_each(|a| *a *= self.tangent_scale);
+        }
+        let tangents = [by_axis(&by_u), by_axis(&by_v)];
+        let normal_row = NormalRow { tangents, least_square: self.least_square };
+        for first in (0..count.min(N)).step_by(LANES) {
+            let mut u = [0.0; LANES];
+            for (l, u) in u.iter_mut().enumerate() {
+                *u = start + (first + l) as f64 * step;
+            }
+            let (at, normal) = (row.at_each(&u), normal_row.at_each(&u));
+            for axis in 0..3 {
+                let length = LANES.min(N - first);
+                points[axis][first..first + length].copy_from_slice(&at[axis][..length]);
+                normals[axis][first..first + length].copy_from_slice(&normal[axis][..length]);
+            }
+        }
     }
 
     /// The coefficients of powers of u along constant v.

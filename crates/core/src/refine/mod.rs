@@ -2,6 +2,7 @@
 //!
 //! Takes a control mesh, a scheme and what decides (levels, a criterion); gives a finer mesh and a report.
 
+mod adaptive;
 mod driver;
 mod exact;
 mod junctions;

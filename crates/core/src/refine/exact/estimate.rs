@@ -5,7 +5,7 @@ use super::options::{BYTES_PER_TRIANGLE, Estimate, ExactOptions, ExactStop};
 use super::scale;
 use crate::mesh::Mesh;
 use crate::patch::Rules;
-use crate::refine::RefineError;
+use crate::refine::{RefineError, adaptive};
 use crate::scheme::Scheme;
 
 /// Goals are approached by halves from this many times too coarse.
@@ -38,21 +38,40 @@ pub fn exact_estimate(
         let triangles = triangles.min(options.budget().0).max(control.face_count());
         Estimate { triangles, memory_bytes: triangles.saturating_mul(BYTES_PER_TRIANGLE), is_counted }
     };
-    let mut growth = Growth::new(control, &rules, options)?;
-    if !growth.criteria.is_some() {
+    let quality = options.tolerance.is_some() || options.angle.is_some() || options.pixels.is_some();
+    if !quality {
         return Ok(of(options.budget().0, false));
     }
-    let (mut floor, mut before) = (COARSEST, control.face_count());
+    if let Some(tolerance) = options.tolerance.filter(|_| options.is_of_distance()) {
+        return approached(control.face_count(), of, |times| {
+            let triangles = adaptive::count(control, scheme, times * tolerance, options.max_levels)?;
+            Ok((triangles, true))
+        });
+    }
+    let mut growth = Growth::new(control, &rules, options)?;
+    approached(control.face_count(), of, |times| {
+        let stop = growth.grow(times)?;
+        Ok((growth.forest.triangle_count(), stop == ExactStop::Met))
+    })
+}
+
+/// Counts triangles for goals that are so many times too coarse, given with whether the goals were met, until they are many or
+/// the goals the right ones.
+fn approached(
+    faces: usize,
+    of: impl Fn(usize, bool) -> Estimate,
+    mut count: impl FnMut(f64) -> Result<(usize, bool), RefineError>,
+) -> Result<Estimate, RefineError> {
+    let (mut times, mut before) = (COARSEST, faces);
     loop {
-        let stop = growth.grow(floor)?;
-        let count = growth.forest.triangle_count();
-        if stop != ExactStop::Met || floor == 1.0 {
-            return Ok(of(count, true));
+        let (triangles, is_met) = count(times)?;
+        if !is_met || times == 1.0 {
+            return Ok(of(triangles, true));
         }
-        if count > COUNTED && count > before {
-            let growth = (count as f64 / before as f64).min(MOST_GROWTH);
-            return Ok(of((count as f64 * growth.powf(floor.log2())) as usize, false));
+        if triangles > COUNTED && triangles > before {
+            let growth = (triangles as f64 / before as f64).min(MOST_GROWTH);
+            return Ok(of((triangles as f64 * growth.powf(times.log2())) as usize, false));
         }
-        (floor, before) = (floor / 2.0, count);
+        (times, before) = (times / 2.0, triangles);
     }
 }

@@ -15,7 +15,7 @@ mod estimate;
 mod evaluate;
 mod forest;
 mod grow;
-mod leaf;
+pub(super) mod leaf;
 mod options;
 mod probe;
 mod scale;
@@ -47,6 +47,9 @@ pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions<'_>) ->
     }
     if options.optimize {
         return super::simplified::simplified(control, scheme, options);
+    }
+    if options.is_of_distance() {
+        return super::adaptive::adaptive(control, scheme, options);
     }
     let rules = Rules::of(scheme);
     let grown = |levels: usize| {

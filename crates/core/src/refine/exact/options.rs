@@ -140,8 +140,13 @@ impl<'a> ExactOptions<'a> {
         self
     }
 
+    /// Whether nothing but distances and numbers of triangles count, with vertices on the limit surface.
+    pub(in crate::refine) fn is_of_distance(&self) -> bool {
+        self.angle.is_none() && self.pixels.is_none() && !self.balance
+    }
+
     /// Triangles that must not be exceeded, and why.
-    pub(super) fn budget(&self) -> (usize, ExactStop) {
+    pub(in crate::refine) fn budget(&self) -> (usize, ExactStop) {
         let by_memory = self.max_memory.map(|bytes| bytes / BYTES_PER_TRIANGLE);
         let limits = [
             (self.triangles, ExactStop::Triangles),

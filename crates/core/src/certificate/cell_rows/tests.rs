@@ -1,0 +1,101 @@
+//! Rows against dense samples of each part by itself.
+
+use super::*;
+use crate::certificate::TriangleFrame;
+use crate::patch::bezier_triangle::BezierTriangle;
+
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// A bent piece over a sheared triangle.
+fn piece(numbers: &mut Numbers, noise: f64) -> Quartic {
+    let mut points = [DVec3::ZERO; 15];
+    let mut at = 0;
+    for k in 0..5 {
+        for j in 0..5 - k {
+            let stir = DVec3::new(numbers.next(), numbers.next(), numbers.next()) * noise;
+            let (x, y) = (j as f64 / 4.0 + 0.2 * k as f64 / 4.0, k as f64 / 4.0);
+            points[at] = DVec3::new(x, y, 0.2 * (x * x + 0.5 * x * y - y * y)) + stir;
+            at += 1;
+        }
+    }
+    Quartic::of(&BezierTriangle(points), 0)
+}
+
+#[test]
+fn samples_of_parts_that_pass_lie_within_the_target() {
+    let mut numbers = Numbers(5);
+    let (mut passed, mut failed, mut open) = (0, 0, 0);
+    for round in 0..60 {
+        let piece = piece(&mut numbers, [0.0, 0.01, 0.03][round % 3]);
+        let jet = QuarticJet::of(&piece);
+        let (at, size) = if round % 2 == 0 { ([0.0, 0.0], 1.0) } else { ([0.5, 0.5], -0.5) };
+        let block = RowBlock::of(&piece, &jet, at, size);
+        let divisions = 1 + (round % 4) as u32;
+        let n = 1usize << divisions;
+        let step = size / n as f64;
+        let distance = 0.03 * step * step * (1.0 + 0.5 * numbers.next());
+        let target = RowTarget { distance, tilt: 0.2, slope: f64::INFINITY, drift_share: 0.3 };
+        let mut extent = RowExtent::NONE;
+        let mut marks = Marks::default();
+        CellRows::default().test(&block, divisions, &target, &mut extent, &mut marks);
+        for j in 0..n {
+            for i in 0..n - j {
+                for is_headlong in [false, true] {
+                    if is_headlong && i + j + 1 >= n {
+                        continue;
+                    }
+                    let (i, j) = (i as f64, j as f64);
+                    let corners = if is_headlong {
+                        [[i + 1.0, j + 1.0], [i, j + 1.0], [i + 1.0, j]]
+                    } else {
+                        [[i, j], [i + 1.0, j], [i, j + 1.0]]
+                    };
+                    let domain = corners.map(|[i, j]| [at[0] + step * i, at[1] + step * j]);
+                    let frame = TriangleFrame::new(domain.map(|[u, v]| piece.point(u, v)));
+                    let (mut highest, mut outside) = (0.0f64, 0.0f64);
+                    for a in 0..=12 {
+                        for b in 0..=12 - a {
+                            let (b, c) = (f64::from(a) / 12.0, f64::from(b) / 12.0);
+                            let place = [0, 1].map(|x| {
+                                domain[0][x]
+                                    + b * (domain[1][x] - domain[0][x])
+                                    + c * (domain[2][x] - domain[0][x])
+                            });
+                            let point = piece.point(place[0], place[1]);
+                            highest = highest.max(frame.height(point).abs());
+                            for edge in 0..3 {
+                                outside = outside.max(frame.beside(edge, point).outside);
+                            }
+                        }
+                    }
+                    let tilts = domain.map(|[u, v]| piece.normal(u, v).distance(frame.normal()));
+                    let tilt = tilts.into_iter().fold(0.0, f64::max);
+                    match marks.at(i as usize, j as usize, is_headlong) {
+                        Mark::Passes => {
+                            passed += 1;
+                            let chord = tilt + target.tilt;
+                            let value = highest * (1.0 + 0.5 * chord * chord) + chord * outside;
+                            assert!(value <= distance, "round {round}: {value} of {distance}");
+                            assert!(
+                                tilt <= extent.tilt && frame.least_slope() >= extent.slope * (1.0 - 1e-9)
+                            );
+                        }
+                        Mark::Fails => {
+                            failed += 1;
+                            assert!(highest > 0.98 * distance, "round {round}: {highest} of {distance}");
+                        }
+                        Mark::Open => open += 1,
+                    }
+                }
+            }
+        }
+    }
+    assert!(passed > 500 && failed > 500 && open > 0, "{passed} {failed} {open}");
+}

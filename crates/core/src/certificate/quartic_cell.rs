@@ -1,0 +1,450 @@
+//! How far a triangle can be from its part of a regular piece, from the piece's derivatives.
+//!
+//! A regular piece is a quartic S over its domain. Let T be the triangle over part D of the domain, its corners on those of
+//! S, and f the height of S over the plane of T: a quartic that is 0 at the corners of D. Fifteen coefficients less three
+//! are left: the second derivatives W₁, W₂, W₃ along the edges in their middles, four third derivatives at the centroid and
+//! five fourth ones. Each group fixes one part of f = q + c + r ([`Heights`]):
+//!
+//! * q = −½ Σ λᵢλⱼ Wᵢⱼ, whose greatest height has a closed form;
+//! * c = −Σ (tᵢ/12) λₐλ_b(λ_b − λₐ) + B λ₀λ₁λ₂, tᵢ the third derivative along edge i from a to b, and
+//!   B = −¼(t₁ + 2 f‴[e₁e₁e₂]) + (t₂ − t₃)/12: so |c| is at most [`CUBIC`] max |tᵢ| + |B|/27;
+//! * r, linear in the fourth derivatives, is at most [`QUARTIC`] times the greatest of the six |f⁗[eᵢeᵢeⱼeⱼ]|.
+//!
+//! So the greatest height lies within |c| + |r| of that of q, for parts of any size. Where that does not decide, the
+//! coefficients of f in Bernstein's basis over sixteen parts of D bound it.
+//!
+//! **Beside the edges.** Along an edge the curve of S differs from its chord by −½τ(1 − τ)W + (T/6)(x³ − x/4) + (F/24)(x⁴ − 1/16),
+//! x = τ − ½, W, T and F being the second, third and fourth derivatives along the edge in its middle. Its distance from the
+//! chord and its slope towards the chord's ends follow term by term. Let M bound second derivatives along edges all over D.
+//! Derivatives of S along an edge differ from the chord by 2M at most (½M on the edge itself, where both ends
+//! agree, and 3/2 M for the way from there, mixed derivatives being at most that). Where such a difference is less than the
+//! change of the point on T, whatever the direction, the projection of S on the plane of T takes no two points to one
+//! place, and its rim is the three curves: then nothing of S reaches over an edge farther than the edge's own curve.
+//! Otherwise all that is known is |S − T| ≤ ½ Σ λᵢλⱼ M ≤ M/6.
+
+use super::deviation::Deviation;
+use super::triangle_frame::TriangleFrame;
+use crate::patch::Quartic;
+use crate::vector::DVec3;
+
+/// Bounds Σ λₐλ_b|λ_b − λₐ|/12 over the triangle: 0.1177/12, found on a grid with a margin for what lies between.
+pub(super) const CUBIC: f64 = 0.00985;
+
+/// Bounds |r| where the six fourth derivatives along pairs of edges are at most 1: 0.00505, found likewise.
+pub(super) const QUARTIC: f64 = 0.0052;
+
+/// The greatest of |x³ − x/4|/6 for |x| ≤ 1/2, √3/216, rounded up.
+pub(super) const CURVE_CUBIC: f64 = 0.00802;
+
+/// A direction or a place in a piece's domain.
+pub(crate) type Domain = [f64; 2];
+
+/// The second, third and fourth derivatives of a regular piece, or of its height over a plane.
+#[derive(Clone, Copy, Debug)]
+struct Jet<T> {
+    /// By u twice, by u and v, by v twice: coefficients of 1, u, v, u², uv, v².
+    second: [[T; 6]; 3],
+    /// By u three times to v three times: coefficients of 1, u, v.
+    third: [[T; 3]; 4],
+    /// By u four times to v four times.
+    fourth: [T; 5],
+}
+
+impl<T> Jet<T>
+where
+    T: Copy + core::ops::Mul<f64, Output = T>,
+{
+    /// The derivatives of a polynomial with these coefficients of u², uv, v², of u³ to v³, and of u⁴ to v⁴.
+    #[inline]
+    fn of(square: [T; 3], cubic: [T; 4], quartic: [T; 5]) -> Self {
+        let ([uu, uv, vv], [uuu, uuv, uvv, vvv], [uuuu, uuuv, uuvv, uvvv, vvvv]) = (square, cubic, quartic);
+        Self {
+            second: [
+                [uu * 2.0, uuu * 6.0, uuv * 2.0, uuuu * 12.0, uuuv * 6.0, uuvv * 2.0],
+                [uv, uuv * 2.0, uvv * 2.0, uuuv * 3.0, uuvv * 4.0, uvvv * 3.0],
+                [vv * 2.0, uvv * 2.0, vvv * 6.0, uuvv * 2.0, uvvv * 6.0, vvvv * 12.0],
+            ],
+            third: [
+                [uuu * 6.0, uuuu * 24.0, uuuv * 6.0],
+                [uuv * 2.0, uuuv * 6.0, uuvv * 4.0],
+                [uvv * 2.0, uuvv * 4.0, uvvv * 6.0],
+                [vvv * 6.0, uvvv * 6.0, vvvv * 24.0],
+            ],
+            fourth: [uuuu * 24.0, uuuv * 6.0, uuvv * 4.0, uvvv * 6.0, vvvv * 24.0],
+        }
+    }
+}
+
+/// A regular piece with what bounds its parts.
+#[derive(Clone, Debug)]
+pub(crate) struct QuarticJet {
+    jet: Jet<DVec3>,
+    /// The coefficients of the polynomial by their powers of u and v: the second, third and fourth ones.
+    powers: ([DVec3; 3], [DVec3; 4], [DVec3; 5]),
+    /// What third derivatives along three directions with coordinates up to 1 come to at most.
+    most_third: f64,
+    /// The same for fourth derivatives.
+    most_fourth: f64,
+}
+
+/// A part of a piece's domain: a triangle with three corners.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cell(pub(crate) [Domain; 3]);
+
+impl QuarticJet {
+    pub(crate) fn of(piece: &Quartic) -> Self {
+        let (square, cubic, quartic) = piece.powers();
+        let jet = Jet::of(square, cubic, quartic);
+        // Third derivatives are linear: greatest in a corner.
+        let at_corners = jet.third.map(|[c, u, v]| {
+            let squares = [c, c + u, c + v].map(|c: DVec3| c.length_squared());
+            squares.into_iter().fold(0.0, f64::max).sqrt()
+        });
+        let sizes = jet.fourth.map(|c: DVec3| c.length());
+        Self {
+            jet,
+            powers: (square, cubic, quartic),
+            most_third: at_corners[0] + 3.0 * (at_corners[1] + at_corners[2]) + at_corners[3],
+            most_fourth: sizes[0] + 4.0 * (sizes[1] + sizes[3]) + 6.0 * sizes[2] + sizes[4],
+        }
+    }
+
+    /// The heights of a part over the plane of its corners.
+    #[inline]
+    pub(crate) fn heights(&self, cell: &Cell, normal: DVec3) -> Heights {
+        let (square, cubic, quartic) = &self.powers;
+        let (mut heights, mut thirds, mut fourths) = ([0.0; 3], [0.0; 4], [0.0; 5]);
+        (0..3).for_each(|i| heights[i] = normal.dot(square[i]));
+        (0..4).for_each(|i| thirds[i] = normal.dot(cubic[i]));
+        (0..5).for_each(|i| fourths[i] = normal.dot(quartic[i]));
+        Heights::of(&Jet::of(heights, thirds, fourths), cell)
+    }
+
+    /// What a part of the surface does beside the edges of the triangle of its corners; `open` edges have no neighbour.
+    pub(crate) fn beside(&self, cell: &Cell, frame: &TriangleFrame, open: [bool; 3]) -> BesideEdges {
+        let Cell(corners) = *cell;
+        let mut reach = 0.0f64;
+        let mut bends = [DVec3::ZERO; 3];
+        for edge in 0..3 {
+            let (from, to) = (corners[edge], corners[(edge + 1) % 3]);
+            let direction = minus(to, from);
+            reach = reach.max(direction[0].abs()).max(direction[1].abs());
+            bends[edge] = self.bend(halfway(from, to), direction);
+        }
+        let (third, fourth) = self.most(reach);
+        let most = bends.iter().map(|bend| bend.length_squared()).fold(0.0, f64::max).sqrt();
+        let most = most + third + fourth;
+        let mut found = BesideEdges { side: 0.0, open: 0.0, drift: 0.0, slope: 0.0, loose: None };
+        let mut is_plain = !frame.is_flat() && keeps_apart(frame, 2.0 * most);
+        for edge in 0..3 {
+            // Outwards where the derivative points inwards.
+            let outward = -bends[edge].dot(frame.outward(edge));
+            let along = bends[edge].dot(frame.along(edge)).abs();
+            let rest = CURVE_CUBIC * third + fourth / 384.0;
+            let steep = third / 12.0 + fourth / 48.0;
+            let room = frame.length(edge) - (0.5 * along + steep);
+            let swing = (0.5 * outward.abs() + steep) / room;
+            is_plain &= room > 0.0 && swing <= frame.least_slope();
+            let off = 0.125 * outward.abs() + rest;
+            found.side = found.side.max(off);
+            if open[edge] {
+                found.open = found.open.max(off);
+            } else {
+                found.drift = found.drift.max((0.125 * outward + rest).max(0.0));
+                found.slope = found.slope.max((0.5 * outward + steep).max(0.0) / room);
+            }
+        }
+        if !is_plain {
+            found.loose = Some(most / 6.0);
+        }
+        found
+    }
+
+    /// The second derivatives, as coefficients of 1, u, v, u², uv, v².
+    pub(super) fn second(&self) -> &[[DVec3; 6]; 3] {
+        &self.jet.second
+    }
+
+    /// The third derivatives at a place: by u three times to v three times.
+    pub(super) fn third_at(&self, [u, v]: Domain) -> [DVec3; 4] {
+        self.jet.third.map(|[c, by_u, by_v]| c + by_u * u + by_v * v)
+    }
+
+    /// The fourth derivatives.
+    pub(super) fn fourth(&self) -> &[DVec3; 5] {
+        &self.jet.fourth
+    }
+
+    /// What third and fourth derivatives along directions with coordinates up to `reach` come to at most.
+    pub(super) fn most(&self, reach: f64) -> (f64, f64) {
+        let cube = reach * reach * reach;
+        (self.most_third * cube, self.most_fourth * cube * reach)
+    }
+
+    /// The second derivative along a direction.
+    #[inline]
+    fn bend(&self, at: Domain, [du, dv]: Domain) -> DVec3 {
+        let [uu, uv, vv] = &self.jet.second;
+        quadratic(uu, at) * (du * du) + quadratic(uv, at) * (2.0 * du * dv) + quadratic(vv, at) * (dv * dv)
+    }
+}
+
+/// What a part of the surface does beside the edges of its triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BesideEdges {
+    /// How far curves are from their edges within the triangle's plane.
+    side: f64,
+    /// The same for edges without a neighbour.
+    open: f64,
+    /// How far curves reach over the others.
+    drift: f64,
+    /// The greatest ratio of that to the distance from the edge's ends.
+    slope: f64,
+    /// Where none of that tells how far the surface reaches: how far it is from the triangle.
+    loose: Option<f64>,
+}
+
+impl BesideEdges {
+    /// The deviation where the surface is so high at most.
+    pub(crate) fn deviation(&self, height: f64) -> Deviation {
+        match self.loose {
+            Some(own) => Deviation { slope: f64::INFINITY, ..Deviation::alone(own) },
+            None => {
+                let alone = height.hypot(self.open);
+                let across = if self.open > 0.0 { alone } else { 0.0 };
+                let (own, drift, slope) = (height.hypot(self.side), self.drift, self.slope);
+                Deviation { own, height: alone, drift, slope, across }
+            }
+        }
+    }
+}
+
+/// Whether a map that differs from the triangle's own by derivatives of at most `difference` along edges takes no two points
+/// to one place.
+fn keeps_apart(frame: &TriangleFrame, difference: f64) -> bool {
+    // A unit vector is a combination of two unit vectors with sizes of at most √(2/(1 − |cos|)) in all.
+    let pairs = [0, 1, 2].map(|edge| {
+        let next = (edge + 1) % 3;
+        let cosine = frame.along(edge).dot(frame.along(next)).abs();
+        (1.0 - cosine) * frame.length(edge).min(frame.length(next)).powi(2)
+    });
+    let best = pairs.into_iter().fold(0.0, f64::max);
+    2.0 * difference * difference < best
+}
+
+/// The heights of a quartic over the plane of its corners: coefficients of sⁱrʲ, s and r running from the first corner
+/// to the second and to the third.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Heights {
+    ss: f64,
+    sr: f64,
+    rr: f64,
+    sss: f64,
+    ssr: f64,
+    srr: f64,
+    rrr: f64,
+    ssss: f64,
+    sssr: f64,
+    ssrr: f64,
+    srrr: f64,
+    rrrr: f64,
+}
+
+impl Heights {
+    #[inline]
+    fn of(jet: &Jet<f64>, cell: &Cell) -> Self {
+        let Cell([at, second, third]) = *cell;
+        let (s, r) = (minus(second, at), minus(third, at));
+        let fourth = jet.fourth;
+        let (mut cubic, mut square) = ([0.0; 4], [0.0; 3]);
+        for (value, [c, u, v]) in cubic.iter_mut().zip(&jet.third) {
+            *value = c + u * at[0] + v * at[1];
+        }
+        (0..3).for_each(|i| square[i] = quadratic(&jet.second[i], at));
+        let (cubic_s, cubic_r) = (contracted4(cubic, s), contracted4(cubic, r));
+        let (square_s, square_r) = (contracted3(square, s), contracted3(square, r));
+        let (fourth_s, fourth_r) = (contracted5(fourth, s), contracted5(fourth, r));
+        let (ss, rr) = (contracted4(fourth_s, s), contracted4(fourth_r, r));
+        Self {
+            ss: contracted2(square_s, s) / 2.0,
+            sr: contracted2(square_s, r),
+            rr: contracted2(square_r, r) / 2.0,
+            sss: contracted2(contracted3(cubic_s, s), s) / 6.0,
+            ssr: contracted2(contracted3(cubic_s, s), r) / 2.0,
+            srr: contracted2(contracted3(cubic_r, r), s) / 2.0,
+            rrr: contracted2(contracted3(cubic_r, r), r) / 6.0,
+            ssss: contracted2(contracted3(ss, s), s) / 24.0,
+            sssr: contracted2(contracted3(ss, s), r) / 6.0,
+            ssrr: contracted2(contracted3(ss, r), r) / 4.0,
+            srrr: contracted2(contracted3(rr, r), s) / 6.0,
+            rrrr: contracted2(contracted3(rr, r), r) / 24.0,
+        }
+    }
+
+    /// The greatest height lies between these.
+    pub(crate) fn range(&self) -> (f64, f64) {
+        let Self { ss, sr, rr, sss, ssr, srr, rrr, ssss, sssr, ssrr, srrr, rrrr } = *self;
+        // Second derivatives along the edges in their middles.
+        let first = 2.0 * ss + 3.0 * (sss + ssss);
+        let last = 2.0 * rr + 3.0 * (rrr + rrrr);
+        let both = 2.0 * (ss + rr - sr) + 3.0 * (sss + rrr + ssss + rrrr) - (ssr + srr) - ssrr;
+        let quadratic = quadratic_height([first, both, last]);
+        // Third derivatives along the edges at the centroid, and the bubble's.
+        let [a, b, c, d] = [
+            6.0 * sss + 8.0 * ssss + 2.0 * sssr,
+            2.0 * ssr + 2.0 * sssr + 4.0 / 3.0 * ssrr,
+            2.0 * srr + 4.0 / 3.0 * ssrr + 2.0 * srrr,
+            6.0 * rrr + 2.0 * srrr + 8.0 * rrrr,
+        ];
+        let across = d - a + 3.0 * (b - c);
+        let bubble = -0.25 * (a + 2.0 * (b - a)) + (across + d) / 12.0;
+        let cubic = CUBIC * a.abs().max(d.abs()).max(across.abs()) + bubble.abs() / 27.0;
+        // Fourth derivatives along pairs of edges.
+        let pairs = [
+            24.0 * ssss,
+            24.0 * rrrr,
+            24.0 * (ssss - sssr + ssrr - srrr + rrrr),
+            4.0 * ssrr,
+            24.0 * ssss - 12.0 * sssr + 4.0 * ssrr,
+            24.0 * rrrr - 12.0 * srrr + 4.0 * ssrr,
+        ];
+        let rest = cubic + QUARTIC * pairs.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+        ((quadratic - rest).max(0.0), quadratic + rest)
+    }
+
+    /// A bound for the greatest height by Bernstein coefficients over the parts that `levels` divisions into four give.
+    pub(crate) fn refined(&self, levels: u32) -> f64 {
+        divided(&self.bernstein(), levels)
+    }
+
+    /// The coefficients in Bernstein's basis, in rows of constant power of r.
+    fn bernstein(&self) -> [f64; 15] {
+        let Self { ss, sr, rr, sss, ssr, srr, rrr, ssss, sssr, ssrr, srrr, rrrr } = *self;
+        // Heights of 0 at the corners fix the first derivatives.
+        let s = -(ss + sss + ssss);
+        let r = -(rr + rrr + rrrr);
+        let power = [
+            [0.0, r, rr, rrr, rrrr],
+            [s, sr, srr, srrr, 0.0],
+            [ss, ssr, ssrr, 0.0, 0.0],
+            [sss, sssr, 0.0, 0.0, 0.0],
+            [ssss, 0.0, 0.0, 0.0, 0.0],
+        ];
+        let mut coefficients = [0.0; 15];
+        let mut at = 0;
+        for (k, of_r) in SHARES.iter().enumerate() {
+            for (j, of_s) in SHARES.iter().enumerate().take(5 - k) {
+                for p in 0..=j {
+                    for q in 0..=k {
+                        coefficients[at] += power[p][q] * of_s[p] * of_r[q] * WEIGHTS[p][q];
+                    }
+                }
+                at += 1;
+            }
+        }
+        coefficients
+    }
+}
+
+/// Binomial coefficients.
+const SHARES: [[f64; 5]; 5] = [
+    [1.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0, 0.0, 0.0],
+    [1.0, 2.0, 1.0, 0.0, 0.0],
+    [1.0, 3.0, 3.0, 1.0, 0.0],
+    [1.0, 4.0, 6.0, 4.0, 1.0],
+];
+
+/// p! q! (4 − p − q)!/4! by p and q.
+const WEIGHTS: [[f64; 5]; 5] = [
+    [1.0, 1.0 / 4.0, 1.0 / 6.0, 1.0 / 4.0, 1.0],
+    [1.0 / 4.0, 1.0 / 12.0, 1.0 / 12.0, 1.0 / 4.0, 0.0],
+    [1.0 / 6.0, 1.0 / 12.0, 1.0 / 6.0, 0.0, 0.0],
+    [1.0 / 4.0, 1.0 / 4.0, 0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0, 0.0, 0.0],
+];
+
+/// Where each row of a net starts.
+const ROWS: [usize; 5] = [0, 5, 9, 12, 14];
+
+/// The greatest size of a coefficient after dividing into four so many times.
+fn divided(net: &[f64; 15], levels: u32) -> f64 {
+    if levels == 0 {
+        return net.iter().fold(0.0, |most, x| most.max(x.abs()));
+    }
+    // Halves by the middle of the edge between the first two corners, and each of those by its other two edges' middles.
+    let [first, second] = halves(net);
+    [first, second].iter().flat_map(halves).fold(0.0, |most, part| most.max(divided(&part, levels - 1)))
+}
+
+/// The halves of a net, each with the middle of its first edge between the corner that it keeps and the third, so that
+/// the next halving cuts another edge.
+fn halves(net: &[f64; 15]) -> [[f64; 15]; 2] {
+    let mut halves = [[0.0; 15]; 2];
+    for k in 0..5 {
+        let degree = 4 - k;
+        let mut row = [0.0; 5];
+        row[..=degree].copy_from_slice(&net[ROWS[k]..=ROWS[k] + degree]);
+        for step in 0..=degree {
+            // Number of the coefficient in the half: `step` towards the middle, k towards the third corner.
+            halves[0][ROWS[step] + degree - step] = row[0];
+            halves[1][ROWS[step] + k] = row[degree - step];
+            for j in 0..degree - step {
+                row[j] = 0.5 * (row[j] + row[j + 1]);
+            }
+        }
+    }
+    halves
+}
+
+/// The greatest height of a quadratic that is 0 at the corners, by its second derivatives along the edges from the first
+/// corner to the second, on to the third, and back.
+pub(crate) fn quadratic_height([p, q, s]: [f64; 3]) -> f64 {
+    let edges = 0.125 * p.abs().max(q.abs()).max(s.abs());
+    // Where the derivatives along two edges vanish.
+    let (l2, l1, l0) = (p * (q + s - p), s * (p + q - s), q * (p + s - q));
+    let total = l0 + l1 + l2;
+    let is_inside = l0 * total > 0.0 && l1 * total > 0.0 && l2 * total > 0.0;
+    if is_inside { edges.max((0.5 * p * q * s / total).abs()) } else { edges }
+}
+
+/// The value of a quadratic polynomial.
+#[inline]
+pub(super) fn quadratic<T>(c: &[T; 6], [u, v]: Domain) -> T
+where
+    T: Copy + core::ops::Add<Output = T> + core::ops::Mul<f64, Output = T>,
+{
+    c[0] + (c[1] + c[3] * u + c[4] * v) * u + (c[2] + c[5] * v) * v
+}
+
+fn minus(a: Domain, b: Domain) -> Domain {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn halfway(a: Domain, b: Domain) -> Domain {
+    [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
+}
+
+/// A form of second degree with one direction put in.
+#[inline]
+fn contracted3([a, b, c]: [f64; 3], [u, v]: Domain) -> [f64; 2] {
+    [a * u + b * v, b * u + c * v]
+}
+
+#[inline]
+fn contracted2([a, b]: [f64; 2], [u, v]: Domain) -> f64 {
+    a * u + b * v
+}
+
+#[inline]
+fn contracted4([a, b, c, d]: [f64; 4], [u, v]: Domain) -> [f64; 3] {
+    [a * u + b * v, b * u + c * v, c * u + d * v]
+}
+
+#[inline]
+fn contracted5([a, b, c, d, e]: [f64; 5], [u, v]: Domain) -> [f64; 4] {
+    [a * u + b * v, b * u + c * v, c * u + d * v, d * u + e * v]
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,272 @@
+//! Bounds of parts of regular pieces against dense samples, and the two constants against grids.
+
+use super::*;
+use crate::patch::bezier_triangle::BezierTriangle;
+
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// A piece whose points are the unit triangle's, stirred and bent.
+    fn piece(&mut self, noise: f64) -> Quartic {
+        let mut points = [DVec3::ZERO; 15];
+        let mut at = 0;
+        for k in 0..5 {
+            for j in 0..5 - k {
+                let stir = DVec3::new(self.next(), self.next(), self.next()) * noise;
+                points[at] = DVec3::new(j as f64 / 4.0 + 0.3 * k as f64 / 4.0, k as f64 / 4.0, 0.0) + stir;
+                at += 1;
+            }
+        }
+        Quartic::of(&BezierTriangle(points), 0)
+    }
+
+    fn cell(&mut self) -> Cell {
+        let size = 0.5f64.powi((4.0 * self.next().abs()) as i32);
+        let [u, v] = [0.4 * self.next().abs(), 0.4 * self.next().abs()];
+        let turned = if self.next() > 0.0 { 1.0 } else { -1.0 };
+        let corners = [[u, v], [u + turned * size, v], [u, v + turned * size]];
+        match (4.0 * self.next().abs()) as u32 {
+            0 => Cell([corners[0], corners[1], halfway(corners[1], corners[2])]),
+            1 => Cell([halfway(corners[0], corners[2]), corners[1], halfway(corners[1], corners[2])]),
+            _ => Cell(corners),
+        }
+    }
+}
+
+const GRID: usize = 60;
+
+/// Barycentric coordinates all over a triangle.
+fn grid(n: usize) -> impl Iterator<Item = [f64; 3]> {
+    (0..=n).flat_map(move |j| {
+        (0..=n - j).map(move |i| {
+            let (b, c) = (i as f64 / n as f64, j as f64 / n as f64);
+            [1.0 - b - c, b, c]
+        })
+    })
+}
+
+fn place(cell: &Cell, weights: [f64; 3]) -> Domain {
+    [0, 1].map(|axis| (0..3).map(|i| weights[i] * cell.0[i][axis]).sum())
+}
+
+#[test]
+fn dense_samples_lie_within_the_bounds() {
+    let mut numbers = Numbers(3);
+    let (mut tight, mut counted) = (0, 0);
+    for round in 0..3000 {
+        let piece = numbers.piece([0.002, 0.02, 0.1, 0.4][round % 4]);
+        let (jet, cell) = (QuarticJet::of(&piece), numbers.cell());
+        let frame = TriangleFrame::new(cell.0.map(|[u, v]| piece.point(u, v)));
+        if frame.is_flat() {
+            continue;
+        }
+        let heights = jet.heights(&cell, frame.normal());
+        let (low, high) = heights.range();
+        let refined = heights.refined(2);
+        let deviation = jet.beside(&cell, &frame, [false, true, false]).deviation(high.min(refined));
+        let (mut highest, mut farthest, mut outside) = (0.0f64, 0.0f64, [0.0f64; 3]);
+        for weights in grid(GRID) {
+            let [u, v] = place(&cell, weights);
+            let point = piece.point(u, v);
+            highest = highest.max(frame.height(point).abs());
+            farthest = farthest.max(frame.squared(point).sqrt());
+            for edge in 0..3 {
+                outside[edge] = outside[edge].max(frame.beside(edge, point).outside);
+                // A point of the curve.
+                if weights[(edge + 2) % 3] == 0.0 {
+                    let from_edge = frame.squared_to_edge(edge, point).sqrt();
+                    assert!(from_edge <= deviation.own + 1e-12, "round {round}, edge {edge}");
+                    if edge == 1 {
+                        assert!(from_edge <= deviation.height + 1e-12, "round {round}, open edge");
+                    }
+                }
+            }
+        }
+        let slack = 1e-12;
+        assert!(highest <= high + slack && highest <= refined + slack, "round {round}: {highest} {high}");
+        assert!(low <= highest * 1.003 + slack, "round {round}: {low} {highest}");
+        assert!(farthest <= deviation.own + slack, "round {round}: {farthest} {deviation:?}");
+        if deviation.slope.is_finite() {
+            let most = outside[0].max(outside[2]);
+            assert!(most <= deviation.drift + slack, "round {round}: {most} {deviation:?}");
+        }
+        counted += 1;
+        tight += usize::from(refined.min(high) <= 1.06 * highest + 1e-9);
+    }
+    assert!(counted > 2500 && tight * 10 > counted * 9, "{tight} of {counted}");
+}
+
+/// The cubic part's constant: the sum is Lipschitz in each coordinate with constant 2, so a grid misses little.
+#[test]
+fn the_cubic_constant_holds() {
+    let n = 4000;
+    let sum = |[a, b, c]: [f64; 3]| {
+        [(a, b), (b, c), (c, a)].into_iter().map(|(x, y)| x * y * f64::abs(y - x)).sum::<f64>() / 12.0
+    };
+    let greatest = grid(n).map(sum).fold(0.0, f64::max);
+    // Derivatives of x y |y − x| are at most 1 in size; three terms, half a step.
+    let margin = 3.0 * 0.5 / n as f64 / 12.0;
+    assert!(greatest + margin <= CUBIC, "{greatest}");
+}
+
+/// The quartic part's constant: r is linear in the five fourth derivatives, so at each place it is greatest in a vertex of the
+/// polytope in which all six pairs are within ±1.
+#[test]
+fn the_quartic_constant_holds() {
+    let forms = |f: [f64; 5]| {
+        let [ssss, sssr, ssrr, srrr, rrrr] = f;
+        let heights = Heights {
+            ss: 0.0,
+            sr: 0.0,
+            rr: 0.0,
+            sss: 0.0,
+            ssr: 0.0,
+            srr: 0.0,
+            rrr: 0.0,
+            ssss: ssss / 24.0,
+            sssr: sssr / 6.0,
+            ssrr: ssrr / 4.0,
+            srrr: srrr / 6.0,
+            rrrr: rrrr / 24.0,
+        };
+        let pairs = [
+            ssss,
+            rrrr,
+            ssss - 4.0 * sssr + 6.0 * ssrr - 4.0 * srrr + rrrr,
+            ssrr,
+            ssss - 2.0 * sssr + ssrr,
+            rrrr - 2.0 * srrr + ssrr,
+        ];
+        (heights, pairs)
+    };
+    // r of a unit of each fourth derivative: what the quadratic and the cubic part leave of the polynomial, by the same
+    // formulas written for points.
+    let rest = |f: [f64; 5], [_, s, r]: [f64; 3]| remainder(&forms(f).0, s, r);
+    let units: [[f64; 5]; 5] =
+        core::array::from_fn(|i| core::array::from_fn(|j| f64::from(u8::from(i == j))));
+    let matrix: Vec<[f64; 5]> = (0..6).map(|row| units.map(|unit| forms(unit).1[row])).collect();
+    let mut vertices = Vec::new();
+    for left_out in 0..6 {
+        let rows: Vec<&[f64; 5]> = (0..6).filter(|&row| row != left_out).map(|row| &matrix[row]).collect();
+        for signs in 0..32u32 {
+            let a = nalgebra::Matrix5::from_fn(|i, j| rows[i][j]);
+            let b = nalgebra::Vector5::from_fn(|i, _| if signs >> i & 1 == 0 { 1.0 } else { -1.0 });
+            let Some(x) = a.lu().solve(&b) else { continue };
+            let f: [f64; 5] = core::array::from_fn(|i| x[i]);
+            if forms(f).1.iter().all(|pair| pair.abs() <= 1.0 + 1e-9) {
+                vertices.push(f);
+            }
+        }
+    }
+    assert!(vertices.len() >= 20, "{}", vertices.len());
+    let n = 200;
+    let mut greatest = 0.0f64;
+    for &f in &vertices {
+        for weights in grid(n) {
+            greatest = greatest.max(rest(f, weights).abs());
+        }
+    }
+    // Derivatives of r along edges are below 0.05; half a step on the grid.
+    assert!(greatest + 0.05 * 0.5 / n as f64 <= QUARTIC, "{greatest}");
+    assert!(greatest > 0.004, "{greatest}");
+}
+
+/// f − q − c at (s, r), the parts as the module's page gives them.
+fn remainder(heights: &Heights, s: f64, r: f64) -> f64 {
+    let Heights { ss, sr, rr, sss, ssr, srr, rrr, ssss, sssr, ssrr, srrr, rrrr } = *heights;
+    let (cs, cr) = (-(ss + sss + ssss), -(rr + rrr + rrrr));
+    let f = cs * s
+        + cr * r
+        + ss * s * s
+        + sr * s * r
+        + rr * r * r
+        + sss * s.powi(3)
+        + ssr * s * s * r
+        + srr * s * r * r
+        + rrr * r.powi(3)
+        + ssss * s.powi(4)
+        + sssr * s.powi(3) * r
+        + ssrr * s * s * r * r
+        + srrr * s * r.powi(3)
+        + rrrr * r.powi(4);
+    // Derivatives by central differences of the polynomial would round; these are its own.
+    let second = |[a, b]: [f64; 2], [s, r]: [f64; 2]| {
+        let by_ss = 2.0 * ss
+            + 6.0 * sss * s
+            + 2.0 * ssr * r
+            + 12.0 * ssss * s * s
+            + 6.0 * sssr * s * r
+            + 2.0 * ssrr * r * r;
+        let by_rr = 2.0 * rr
+            + 6.0 * rrr * r
+            + 2.0 * srr * s
+            + 12.0 * rrrr * r * r
+            + 6.0 * srrr * s * r
+            + 2.0 * ssrr * s * s;
+        let by_sr =
+            sr + 2.0 * ssr * s + 2.0 * srr * r + 3.0 * sssr * s * s + 4.0 * ssrr * s * r + 3.0 * srrr * r * r;
+        a * a * by_ss + 2.0 * a * b * by_sr + b * b * by_rr
+    };
+    let third = |x: [f64; 2], y: [f64; 2], z: [f64; 2]| {
+        let (s, r) = (1.0 / 3.0, 1.0 / 3.0);
+        let by = [
+            6.0 * sss + 24.0 * ssss * s + 6.0 * sssr * r,
+            2.0 * ssr + 6.0 * sssr * s + 4.0 * ssrr * r,
+            2.0 * srr + 4.0 * ssrr * s + 6.0 * srrr * r,
+            6.0 * rrr + 6.0 * srrr * s + 24.0 * rrrr * r,
+        ];
+        let mut sum = 0.0;
+        for i in 0..2 {
+            for j in 0..2 {
+                for k in 0..2 {
+                    sum += by[i + j + k] * x[i] * y[j] * z[k];
+                }
+            }
+        }
+        sum
+    };
+    let edges = [[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]];
+    let middles = [[0.5, 0.0], [0.5, 0.5], [0.0, 0.5]];
+    let l = [1.0 - s - r, s, r];
+    let mut rest = f;
+    for i in 0..3 {
+        let (a, b) = (l[i], l[(i + 1) % 3]);
+        rest += 0.5 * a * b * second(edges[i], middles[i]);
+        rest += third(edges[i], edges[i], edges[i]) / 12.0 * a * b * (b - a);
+    }
+    let [e1, e2, e3] = edges;
+    let bubble =
+        0.25 * (third(e1, e1, e3) - third(e1, e1, e2)) + (third(e2, e2, e2) - third(e3, e3, e3)) / 12.0;
+    rest - bubble * l[0] * l[1] * l[2]
+}
+
+/// The decomposition is one: cubics leave no remainder.
+#[test]
+fn cubics_have_no_rest() {
+    let mut numbers = Numbers(11);
+    for _ in 0..100 {
+        let mut x = || numbers.next();
+        let heights = Heights {
+            ss: x(),
+            sr: x(),
+            rr: x(),
+            sss: x(),
+            ssr: x(),
+            srr: x(),
+            rrr: x(),
+            ssss: 0.0,
+            sssr: 0.0,
+            ssrr: 0.0,
+            srrr: 0.0,
+            rrrr: 0.0,
+        };
+        for [_, s, r] in grid(9) {
+            assert!(remainder(&heights, s, r).abs() < 1e-14);
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! Neighbouring leaves at most one level apart, so that the closure patterns of the paper's Figure 5 close every gap.
+//!
+//! A node that has children needs a node of its own level beyond each of its edges. From the finest level down, what is
+//! missing is split; that asks only for nodes of coarser levels, so each level is done once. The result is the least
+//! restriction of the trees, whatever the order. All half-edges along an edge of cut sheets count as neighbours.
+
+use std::collections::HashSet;
+
+use super::quadtree::{Along, Beyond, Edges, Place, Trees, beyond, even_depth};
+
+/// Nodes with children whose neighbours must exist, by level.
+#[derive(Default)]
+pub(super) struct Pending(Vec<Vec<Place>>);
+
+impl Pending {
+    /// A node that has children.
+    pub(super) fn push(&mut self, place: Place) {
+        let level = place.level as usize;
+        if self.0.len() <= level {
+            self.0.resize_with(level + 1, Vec::new);
+        }
+        self.0[level].push(place);
+    }
+
+    /// The nodes with children in the tree of a control face: the lowest ones, which speak for those above.
+    pub(super) fn push_tree(&mut self, trees: &Trees, face: u32) {
+        self.push_below(trees, trees.root(face), Place::root(face));
+    }
+
+    fn push_below(&mut self, trees: &Trees, word: u32, place: Place) {
+        match even_depth(word) {
+            Some(0) => {}
+            Some(depth) => {
+                // Inside, neighbours are equally deep.
+                for edge in 0..3 {
+                    for index in 0..1 << (depth - 1) {
+                        self.push(place.along(edge, depth - 1, index));
+                    }
+                }
+            }
+            None => {
+                self.push(place);
+                (0..4).for_each(|child| self.push_below(trees, trees.child(word, child), place.child(child)));
+            }
+        }
+    }
+
+    /// Moves what another has over.
+    pub(super) fn append(&mut self, other: Pending) {
+        if self.0.len() < other.0.len() {
+            self.0.resize_with(other.0.len(), Vec::new);
+        }
+        self.0.iter_mut().zip(other.0).for_each(|(own, mut list)| own.append(&mut list));
+    }
+}
+
+/// Splits what must be for the nodes in `pending`; `split` is told each place that was. `false` if there would be too many
+/// nodes.
+pub(super) fn balance(
+    trees: &mut Trees,
+    edges: &Edges<'_>,
+    mut pending: Pending,
+    mut split: impl FnMut(Place),
+) -> bool {
+    let mut asked = HashSet::new();
+    let mut fresh = Vec::new();
+    // Nothing is missing beside a control face.
+    for level in (1..pending.0.len()).rev() {
+        while let Some(place) = pending.0[level].pop() {
+            for edge in 0..3 {
+                let mut ensure = |place: Place| trees.ensure(place, |place| fresh.push(place));
+                let fits = match beyond(place, edge) {
+                    Beyond::Same(other) => ensure(other),
+                    Beyond::Control(along) => ensure_along(edges, along, &mut asked, ensure),
+                };
+                if !fits {
+                    return false;
+                }
+                for place in fresh.drain(..) {
+                    split(place);
+                    pending.push(place);
+                }
+            }
+        }
+    }
+    true
+}
+
+/// Asks for the nodes along a part of an edge, on all other faces there; of the copies of a cut edge once for all.
+fn ensure_along(
+    edges: &Edges<'_>,
+    along: Along,
+    asked: &mut HashSet<(usize, u32, u32)>,
+    mut ensure: impl FnMut(Place) -> bool,
+) -> bool {
+    let h = along.half_edge;
+    if let Some(twin) = edges.twin(h) {
+        return ensure(along.node_at(twin, true).0);
+    }
+    let Some(group) = edges.group(h) else { return true };
+    let members = edges.members(group);
+    let own = members.iter().any(|&(member, turned)| member == h && turned);
+    // As the group's first half-edge counts.
+    let index = if own { (1 << along.level) - 1 - along.index } else { along.index };
+    if !asked.insert((group, along.level, index)) {
+        return true;
+    }
+    let first = Along { index, ..along };
+    members.iter().all(|&(member, turned)| ensure(first.node_at(member, turned).0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+    use crate::refine::adaptive::quadtree::{LEAF, Piece, is_split};
+
+    fn model(name: &str) -> Mesh {
+        Mesh::from_soup(&crate::models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    }
+
+    /// The places of all leaves.
+    fn leaves(trees: &Trees, word: u32, place: Place, found: &mut Vec<Place>) {
+        if !is_split(word) {
+            found.push(place);
+        } else {
+            (0..4).for_each(|child| leaves(trees, trees.child(word, child), place.child(child), found));
+        }
+    }
+
+    /// The level of the leaf at a place, or of the node there if it has children.
+    fn level_at(trees: &Trees, place: Place) -> u32 {
+        let mut word = trees.root(place.face);
+        for level in 0..place.level {
+            if !is_split(word) {
+                return level;
+            }
+            word = trees.child(word, place.digit(level));
+        }
+        place.level
+    }
+
+    /// Repeated passes over all leaves, splitting what is two levels above a neighbour, until nothing changes.
+    fn brute_force(trees: &mut Trees, edges: &Edges<'_>, faces: u32) {
+        loop {
+            let mut missing = Vec::new();
+            for face in 0..faces {
+                let mut found = Vec::new();
+                leaves(trees, trees.root(face), Place::root(face), &mut found);
+                for leaf in found.into_iter().filter(|leaf| leaf.level > 1) {
+                    for edge in 0..3 {
+                        let other = match beyond(leaf, edge) {
+                            Beyond::Same(place) => place,
+                            Beyond::Control(along) => {
+                                let Some(twin) = edges.twin(along.half_edge) else { continue };
+                                along.node_at(twin, true).0
+                            }
+                        };
+                        let above = Place { level: other.level - 1, path: other.path >> 2, ..other };
+                        if level_at(trees, other) < other.level - 1 {
+                            missing.push(above);
+                        }
+                    }
+                }
+            }
+            if missing.is_empty() {
+                return;
+            }
+            missing.into_iter().for_each(|place| assert!(trees.ensure(place, |_| ())));
+        }
+    }
+
+    #[test]
+    fn the_least_restriction_is_found() {
+        let mut state = 5u64;
+        let mut random = move |below: u64| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 33) % below
+        };
+        for name in ["tetrahedron", "torus", "sheet"] {
+            let mesh = model(name);
+            let edges = Edges::of(&mesh);
+            for _ in 0..20 {
+                let roots: Vec<u32> = (0..mesh.face_count()).map(|_| LEAF + random(3) as u32).collect();
+                let mut trees = Trees::of(&[Piece { roots, words: vec![] }]).unwrap();
+                for _ in 0..3 {
+                    let face = random(mesh.face_count() as u64) as u32;
+                    let level = 3 + random(3) as u32;
+                    let place = Place { face, level, path: random(1 << (2 * level)) };
+                    assert!(trees.ensure(place, |_| ()));
+                }
+                let mut expected = trees.clone();
+                brute_force(&mut expected, &edges, mesh.face_count() as u32);
+                let mut pending = Pending::default();
+                (0..mesh.face_count() as u32).for_each(|face| pending.push_tree(&trees, face));
+                assert!(balance(&mut trees, &edges, pending, |_| ()));
+                for face in 0..mesh.face_count() as u32 {
+                    let (mut a, mut b) = (Vec::new(), Vec::new());
+                    leaves(&trees, trees.root(face), Place::root(face), &mut a);
+                    leaves(&expected, expected.root(face), Place::root(face), &mut b);
+                    assert_eq!(a, b, "{name}, face {face}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! The greatest number of triangles that a budget allows: the least distance whose plan fits.
+//!
+//! Each distance has a plan of its own, the same that a tolerance would have, so that what is proven at a number of
+//! triangles is what a tolerance proves with as many. Counts follow a power of the distance; the search goes down
+//! from coarse ones, which cost little, and narrows what is left.
+
+use super::judge::Goal;
+use super::{Engine, Plan};
+use crate::progress::Cancelled;
+use crate::refine::RefineError;
+use crate::refine::exact::ExactStop;
+
+/// From one plan to the next the triangles grow by this much at most while none has passed the budget.
+const STEP: f64 = 6.0;
+
+/// The part of the budget that may be left (one in so many).
+const LEFT: usize = 100;
+
+/// Fewer triangles than this may be left in any case.
+const LEFT_AT_LEAST: usize = 12;
+
+/// Distances nearer to each other than this tell nothing any more.
+const NEAR: f64 = 1e-3;
+
+/// Budgets below this are spent to the last face.
+const EXACT: usize = 20_000;
+
+/// The finest plan within distances down to `floor` that has at most `most` triangles, and why it is not finer.
+pub(super) fn search(
+    engine: &Engine<'_>,
+    floor: f64,
+    most: usize,
+    cap: ExactStop,
+) -> Result<(Plan, ExactStop), RefineError> {
+    if floor > 0.0
+        && let Some(plan) = engine.plan(Goal::Within(floor), most)?
+    {
+        return Ok((plan, ExactStop::Met));
+    }
+    // Everything passes.
+    let Some(mut best) = engine.plan(Goal::Within(f64::INFINITY), usize::MAX)? else {
+        return Err(Cancelled.into());
+    };
+    let (mut high, mut low) = (best.worst(), floor);
+    let mut power = 1.0f64;
+    let enough = most - (most / LEFT).max(LEFT_AT_LEAST).min(most);
+    let mut bisects = false;
+    while best.triangles < enough && high > low * (1.0 + NEAR) && high > f64::MIN_POSITIVE {
+        let wanted = (most as f64 / best.triangles as f64).min(STEP);
+        let mut next = high / wanted.max(1.0 + NEAR).powf(1.0 / power);
+        if low > 0.0 {
+            let span = (high / low).ln();
+            // A guess, but never next to what is known already; every other time the middle.
+            let edge = (0.05 * span).exp();
+            next = if bisects { (high.ln() - 0.5 * span).exp() } else { next.clamp(low * edge, high / edge) };
+            bisects = !bisects;
+        }
+        if !(next < high && next > low) {
+            break;
+        }
+        match engine.plan(Goal::Within(next), most)? {
+            Some(plan) => {
+                let grown = plan.triangles as f64 / best.triangles as f64;
+                if grown > 1.05 {
+                    power = (grown.ln() / (high / next).ln()).clamp(0.5, 3.0);
+                }
+                (high, best) = (next, plan);
+            }
+            None => low = next,
+        }
+    }
+    if most < EXACT && low > 0.0 {
+        best = fill(engine, best, (high, low), most)?;
+    }
+    Ok((best, cap))
+}
+
+/// Spends what is left of a budget on the worst faces, as many as fit: they come within the lesser of two distances, the
+/// others within the greater.
+fn fill(engine: &Engine<'_>, plan: Plan, (high, low): (f64, f64), most: usize) -> Result<Plan, RefineError> {
+    filled(engine, plan, most, |is_finer| Goal::Partly(high, low, is_finer))
+}
+
+/// The finest plan whose worst faces, as many as fit, are marked in the goal.
+fn filled(
+    engine: &Engine<'_>,
+    plan: Plan,
+    most: usize,
+    goal: impl Fn(Vec<bool>) -> Goal,
+) -> Result<Plan, RefineError> {
+    let order = plan.faces_by_bound();
+    let (mut best, mut fits, mut fails) = (plan, 0, order.len());
+    while fits + 1 < fails {
+        let middle = fits.midpoint(fails);
+        let mut is_finer = vec![false; best.closed.len()];
+        order[..middle].iter().for_each(|&(_, face)| is_finer[face as usize] = true);
+        match engine.plan(goal(is_finer), most)? {
+            Some(plan) => (best, fits) = (plan, middle),
+            None => fails = middle,
+        }
+    }
+    Ok(best)
+}
+
+/// All faces divided evenly, as often as a budget allows, if that is any division.
+pub(super) fn even(engine: &Engine<'_>, most: usize) -> Result<Option<Plan>, RefineError> {
+    let faces = engine.control.mesh.face_count();
+    let levels = levels(engine, most);
+    if most >= EXACT || levels == 0 {
+        return Ok(None);
+    }
+    engine.plan(Goal::Even(levels, vec![false; faces]), most)
+}
+
+/// An even division, with what is left of a budget spent on its worst faces.
+pub(super) fn fill_even(engine: &Engine<'_>, even: Plan, most: usize) -> Result<Plan, RefineError> {
+    let levels = levels(engine, most);
+    if levels >= engine.max_levels {
+        return Ok(even);
+    }
+    filled(engine, even, most, |is_finer| Goal::Even(levels, is_finer))
+}
+
+/// How often all faces can be divided.
+fn levels(engine: &Engine<'_>, most: usize) -> u32 {
+    let faces = engine.control.mesh.face_count().max(1);
+    ((most / faces).max(1).ilog2() / 2).min(engine.max_levels)
+}

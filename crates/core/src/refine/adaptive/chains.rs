@@ -1,0 +1,131 @@
+//! The vertices on the edges of control faces, and their numbers.
+//!
+//! Along a control edge stand the vertices that the nodes on any side of it have put there. Both faces of an edge share
+//! them; the copies of a cut edge have the same ones, each its own.
+
+use super::quadtree::{Edges, FULL, Trees};
+use super::walk::{Knot, Side, merged, merged_all};
+use crate::mesh::Mesh;
+use crate::parallel;
+
+/// Control faces that one call takes together.
+const BLOCK: usize = 1024;
+
+/// The vertices on all control edges.
+#[derive(Default)]
+pub(super) struct Chains {
+    /// By half-edge, where its vertices start; those of a half-edge whose twin comes first are the twin's.
+    starts: Vec<u32>,
+    /// Places along the half-edge.
+    at: Vec<u32>,
+    /// The number of the first.
+    base: u32,
+}
+
+impl Chains {
+    pub(super) fn of(mesh: &Mesh, edges: &Edges<'_>, trees: &Trees) -> Self {
+        let half_edges = 3 * mesh.face_count();
+        let groups: Vec<Vec<u32>> =
+            (0..edges.group_count()).map(|group| group_places(edges, trees, group)).collect();
+        let blocks = parallel::pieces_of(half_edges, 3 * BLOCK, |block| {
+            let (mut counts, mut at) = (Vec::with_capacity(block.len()), Vec::new());
+            for h in block {
+                let before = at.len();
+                places(edges, trees, &groups, h as u32, &mut at);
+                counts.push((at.len() - before) as u32);
+            }
+            (counts, at)
+        });
+        let mut chains = Self {
+            starts: Vec::with_capacity(half_edges + 1),
+            at: Vec::new(),
+            base: mesh.vertex_count() as u32,
+        };
+        let mut start = 0;
+        for (counts, mut at) in blocks {
+            for count in counts {
+                chains.starts.push(start);
+                start += count;
+            }
+            chains.at.append(&mut at);
+        }
+        chains.starts.push(start);
+        chains
+    }
+
+    /// Vertices on edges.
+    pub(super) fn count(&self) -> usize {
+        self.at.len()
+    }
+
+    /// The vertices along a half-edge that has its own: the number of the first, and the places.
+    pub(super) fn own(&self, h: u32) -> (u32, &[u32]) {
+        let (start, end) = (self.starts[h as usize], self.starts[h as usize + 1]);
+        (self.base + start, &self.at[start as usize..end as usize])
+    }
+
+    /// Vertices inside an edge, from any side of it.
+    pub(super) fn along(&self, edges: &Edges<'_>, h: u32) -> usize {
+        self.own(first_of(edges, h)).1.len()
+    }
+
+    /// Appends the knots of a face's edges, and says where they are.
+    pub(super) fn sides(
+        &self,
+        mesh: &Mesh,
+        edges: &Edges<'_>,
+        face: u32,
+        knots: &mut Vec<Knot>,
+    ) -> [Side; 3] {
+        let corners = mesh.triangles()[face as usize];
+        [0, 1, 2].map(|edge| {
+            let h = 3 * face + edge as u32;
+            let first = knots.len();
+            let owner = first_of(edges, h);
+            let (number, at) = self.own(owner);
+            knots.push(Knot::new(0, corners[edge]));
+            if owner == h {
+                knots.extend((number..).zip(at).map(|(vertex, &at)| Knot::new(at, vertex)));
+            } else {
+                let numbers = (number..number + at.len() as u32).rev();
+                knots.extend(numbers.zip(at.iter().rev()).map(|(vertex, &at)| Knot::new(FULL - at, vertex)));
+            }
+            knots.push(Knot::new(FULL, corners[(edge + 1) % 3]));
+            Side { first, last: knots.len() - 1, reversed: false }
+        })
+    }
+}
+
+/// The half-edge that keeps the vertices of an edge.
+pub(super) fn first_of(edges: &Edges<'_>, h: u32) -> u32 {
+    edges.twin(h).map_or(h, |twin| twin.min(h))
+}
+
+/// The places along a half-edge, if it keeps them.
+fn places(edges: &Edges<'_>, trees: &Trees, groups: &[Vec<u32>], h: u32, at: &mut Vec<u32>) {
+    let own = (trees.root(h / 3), (h % 3) as usize, false);
+    if let Some(twin) = edges.twin(h) {
+        if h < twin {
+            let other = (trees.root(twin / 3), (twin % 3) as usize, true);
+            merged(trees, &[own, other], 0, FULL, &mut |place| at.push(place));
+        }
+    } else if let Some(group) = edges.group(h) {
+        let turned = edges.members(group).iter().any(|&(member, turned)| member == h && turned);
+        if turned {
+            at.extend(groups[group].iter().rev().map(|&place| FULL - place));
+        } else {
+            at.extend(&groups[group]);
+        }
+    } else {
+        merged(trees, &[own], 0, FULL, &mut |place| at.push(place));
+    }
+}
+
+/// The places along all copies of an edge, as its first copy counts.
+fn group_places(edges: &Edges<'_>, trees: &Trees, group: usize) -> Vec<u32> {
+    let members = edges.members(group).iter();
+    let members: Vec<_> = members.map(|&(h, turned)| (trees.root(h / 3), (h % 3) as usize, turned)).collect();
+    let mut at = Vec::new();
+    merged_all(trees, &members, 0, FULL, &mut |place| at.push(place));
+    at
+}

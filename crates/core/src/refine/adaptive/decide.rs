@@ -1,0 +1,550 @@
+//! How far each control face is divided: depth first, each node judged by itself.
+//!
+//! Takes the control mesh and what is asked; gives a quadtree a face, and what the leaves come to. What triangles may count on of
+//! those beside ([`Allowance`]) is guessed from the control faces' own curvature, checked against what came out, and
+//! widened where it was too little.
+
+use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
+use core::sync::atomic::{AtomicUsize, Ordering};
+
+use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, MOST_NODES, Piece, Place, Trees, UNJUDGED};
+use super::surface::{Ground, Spot, child_corners};
+use crate::certificate::{CellRows, MOST_DIVISIONS, Mark, Marks, Pieces, RowBlock, RowExtent, SubTriangle};
+use crate::index::{FaceId, HalfEdgeId};
+use crate::limit::SidedNormals;
+use crate::mesh::{Mesh, MeshError, Sharpness};
+use crate::parallel;
+use crate::patch::{LimitPoint, Patch, RefinedPatch, Rules, root_patch};
+use crate::refine::RefineError;
+use crate::vector::vector;
+
+/// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
+const BLOCK: usize = 64;
+
+/// The least tilt that neighbours are allowed: it costs next to nothing.
+const LEAST_TILT: f64 = 0.01;
+
+/// What a guess leaves for triangles that bend more than their control face does on the whole.
+const GENEROUS: f64 = 1.6;
+
+/// What is added to an allowance that was too little.
+const WIDER: f64 = 1.1;
+
+/// Divisions below a node that make whole rows worth while.
+const FEWEST_DIVISIONS: u32 = 2;
+
+/// Levels below the first that are tested at most.
+const MOST_SPREAD: u32 = 2;
+
+/// Levels tested at most.
+const MOST_TESTED: usize = MOST_SPREAD as usize + 1;
+
+/// Leaves that are added to the common count together.
+const COUNTED: usize = 256;
+
+/// Rounds after which triangles count on nothing where allowances still do not hold.
+const MOST_ROUNDS: usize = 6;
+
+/// What is known of the control mesh.
+pub(super) struct Control<'a> {
+    pub(super) mesh: &'a Mesh,
+    pub(super) sharpness: &'a Sharpness<'a>,
+    /// What is sharp in the limit.
+    pub(super) lasting: &'a Sharpness<'a>,
+    pub(super) positions: Vec<[f64; 3]>,
+    /// Limit normals by side.
+    pub(super) sided: SidedNormals,
+    pub(super) rules: &'a Rules<'a>,
+}
+
+impl Control<'_> {
+    pub(super) fn patch(&self, face: u32) -> Patch {
+        root_patch(self.mesh, self.sharpness, FaceId(face), self.rules)
+    }
+
+    /// The limits of a face's corners, normals on its side.
+    pub(super) fn corners(&self, face: u32) -> [LimitPoint; 3] {
+        [0, 1, 2].map(|corner| {
+            let h = HalfEdgeId::of(FaceId(face), corner);
+            let topology = self.mesh.topology();
+            let position = vector(self.positions[topology.origin(h).index()]);
+            LimitPoint { position, normal: vector(self.sided.at(topology, h)) }
+        })
+    }
+
+    /// Which edges of a face lie on the boundary or on a sharp edge.
+    pub(super) fn open(&self, face: u32) -> [bool; 3] {
+        [0, 1, 2].map(|edge| self.lasting.edge(HalfEdgeId::of(FaceId(face), edge)) > 0.0)
+    }
+}
+
+/// The trees, and what their leaves come to and count on, by control face.
+pub(super) struct Decision {
+    pub(super) trees: Trees,
+    pub(super) allowances: Vec<Allowance>,
+    found: Vec<Found>,
+    /// How often faces were divided again.
+    rounds: usize,
+}
+
+/// The open edges of a node's child.
+#[inline]
+pub(super) fn child_open(open: [bool; 3], child: usize) -> [bool; 3] {
+    if child == 3 {
+        return [false; 3];
+    }
+    let mut own = open;
+    own[(child + 1) % 3] = false;
+    own
+}
+
+/// What one face came to.
+struct Found {
+    extent: Extent,
+    allowance: Allowance,
+    has_failed: bool,
+    /// Leaves that pass on conditions, in the order of the tree.
+    conditions: Vec<Condition>,
+}
+
+/// Divides all control faces; `None` if that takes more than `most` leaves.
+pub(super) fn decide(
+    control: &Control<'_>,
+    goal: &Goal,
+    edges: &Edges<'_>,
+    max_levels: u32,
+    most: usize,
+) -> Result<Option<Decision>, RefineError> {
+    let faces = control.mesh.face_count();
+    let count = Count { leaves: AtomicUsize::new(0), most };
+    let blocks = parallel::pieces_of(faces, BLOCK, |block| {
+        let mut decider = Decider::new(control, goal, max_levels, &count);
+        let found: Vec<Found> = block.map(|face| decider.face(face as u32, None)).collect();
+        decider.tell();
+        (decider.piece, found)
+    });
+    if count.is_passed() {
+        return Ok(None);
+    }
+    let (mut pieces, mut found) = (Vec::with_capacity(blocks.len()), Vec::with_capacity(faces));
+    for (piece, mut list) in blocks {
+        pieces.push(piece);
+        found.append(&mut list);
+    }
+    let mut decision = Decision {
+        trees: Trees::of(&pieces).ok_or_else(too_many)?,
+        allowances: found.iter().map(|found| found.allowance).collect(),
+        found,
+        rounds: 0,
+    };
+    drop(pieces);
+    loop {
+        match decision.settle(control, goal, edges, (max_levels, most), |_| None)? {
+            Some(faces) if faces.is_empty() => return Ok(Some(decision)),
+            Some(_) => {}
+            None => return Ok(None),
+        }
+    }
+}
+
+fn too_many() -> MeshError {
+    MeshError::TooMany { what: "nodes", count: MOST_NODES, limit: MOST_NODES }
+}
+
+impl Decision {
+    /// Divides again the faces that counted on more than those beside them keep, `closing` being what came about since in a
+    /// face; gives their numbers, or `None` if that takes too many leaves.
+    pub(super) fn settle<'c>(
+        &mut self,
+        control: &Control<'_>,
+        goal: &Goal,
+        edges: &Edges<'_>,
+        (max_levels, most): (u32, usize),
+        closing: impl Fn(u32) -> Option<&'c Extent> + Sync,
+    ) -> Result<Option<Vec<u32>>, RefineError> {
+        let all = |face: u32| {
+            let mut extent = self.found[face as usize].extent;
+            if let Some(closing) = closing(face) {
+                extent.add(closing);
+            }
+            extent
+        };
+        let faces = self.found.len() as u32;
+        let mut wanting = Vec::new();
+        for face in 0..faces {
+            let own = all(face);
+            let (mut tilt, mut slope) = (own.tilt, own.slope);
+            for other in beside(control, edges, face).map(all) {
+                (tilt, slope) = (tilt.max(other.tilt), slope.min(other.slope));
+            }
+            let allowance = &self.allowances[face as usize];
+            // What counts on nothing needs nothing.
+            if *allowance != Allowance::NOTHING && !(tilt <= allowance.tilt && own.drift_slope <= slope) {
+                wanting.push((face, tilt, slope));
+            }
+        }
+        for &(face, tilt, slope) in &wanting {
+            let own = &mut self.allowances[face as usize];
+            *own = if self.rounds >= MOST_ROUNDS {
+                Allowance::NOTHING
+            } else {
+                Allowance { tilt: own.tilt.max(WIDER * tilt), slope: own.slope.min(slope / WIDER) }
+            };
+        }
+        self.rounds += 1;
+        let count = Count { leaves: AtomicUsize::new(0), most };
+        let again = parallel::pieces_of(wanting.len(), BLOCK, |block| {
+            let again = wanting[block].iter().map(|&(face, ..)| {
+                let mut decider = Decider::new(control, goal, max_levels, &count);
+                let found = decider.face(face, Some(self.allowances[face as usize]));
+                decider.tell();
+                (face, decider.piece, found)
+            });
+            again.collect::<Vec<_>>()
+        });
+        if count.is_passed() {
+            return Ok(None);
+        }
+        for (face, piece, found) in again.into_iter().flatten() {
+            if !self.trees.replace(face, &piece) {
+                return Err(too_many().into());
+            }
+            self.found[face as usize] = found;
+        }
+        Ok(Some(wanting.into_iter().map(|(face, ..)| face).collect()))
+    }
+
+    /// The leaves of a face that pass on conditions, in the order of the tree; those that were split since are among them.
+    pub(super) fn conditions(&self, face: u32) -> &[Condition] {
+        &self.found[face as usize].conditions
+    }
+
+    /// The greatest bound of a leaf of a face, conditions expected to hold.
+    pub(super) fn bound(&self, face: u32) -> f64 {
+        let found = &self.found[face as usize];
+        let conditional = found.conditions.iter().map(|condition| condition.deviation.height);
+        conditional.fold(found.extent.bound, f64::max)
+    }
+
+    /// Whether leaves fail that must not be divided.
+    pub(super) fn has_failed(&self) -> bool {
+        self.found.iter().any(|found| found.has_failed)
+    }
+
+    /// What the leaves of the faces come to.
+    pub(super) fn extents(&self) -> impl Iterator<Item = &Extent> {
+        self.found.iter().map(|found| &found.extent)
+    }
+}
+
+/// Leaves of all faces, counted while they come about: each is a triangle at least.
+struct Count {
+    leaves: AtomicUsize,
+    most: usize,
+}
+
+impl Count {
+    fn is_passed(&self) -> bool {
+        self.leaves.load(Ordering::Relaxed) > self.most
+    }
+}
+
+/// The faces beyond the edges of a face that are not sharp.
+fn beside<'c>(control: &'c Control<'_>, edges: &'c Edges<'_>, face: u32) -> impl Iterator<Item = u32> + 'c {
+    let open = control.open(face);
+    let inner = (0..3u32).filter(move |&edge| !open[edge as usize]);
+    inner.filter_map(move |edge| edges.twin(3 * face + edge)).map(|h| h / 3)
+}
+
+/// Divides faces one by one.
+struct Decider<'a> {
+    control: &'a Control<'a>,
+    goal: &'a Goal,
+    /// Of the face at hand.
+    judge: Judge<'a>,
+    max_levels: u32,
+    piece: Piece,
+    allowance: Allowance,
+    extent: Extent,
+    conditions: Vec<Condition>,
+    has_failed: bool,
+    cell_rows: Box<CellRows>,
+    marks: [Marks; MOST_TESTED],
+    /// Leaves that were not added to the count.
+    leaves: usize,
+    count: &'a Count,
+}
+
+impl<'a> Decider<'a> {
+    fn new(control: &'a Control<'a>, goal: &'a Goal, max_levels: u32, count: &'a Count) -> Self {
+        Self {
+            control,
+            goal,
+            judge: goal.judge(control.rules, 0),
+            max_levels: max_levels.min(MOST_LEVELS),
+            piece: Piece::default(),
+            allowance: Allowance::NOTHING,
+            extent: Extent::NONE,
+            conditions: Vec::new(),
+            has_failed: false,
+            cell_rows: Box::default(),
+            marks: Default::default(),
+            leaves: 0,
+            count,
+        }
+    }
+
+    fn face(&mut self, face: u32, allowance: Option<Allowance>) -> Found {
+        if let Goal::Even(levels, is_finer) = self.goal {
+            let word = self.even(levels + u32::from(is_finer[face as usize]));
+            self.piece.roots.push(word);
+            let (extent, allowance) = (Extent::NONE, Allowance::NOTHING);
+            return Found { extent, allowance, has_failed: false, conditions: Vec::new() };
+        }
+        self.judge = self.goal.judge(self.control.rules, face);
+        let patch = self.control.patch(face);
+        let corners = self.control.corners(face);
+        (self.extent, self.has_failed) = (Extent::NONE, false);
+        let (open, place) = (self.control.open(face), Place::root(face));
+        let word = if let Patch::Regular(points) = &patch {
+            let ground = Ground::of(points, 0);
+            let middles = [0, 1, 2].map(|edge| ground.at(Spot::WHOLE.along(edge, 0.5)));
+            self.allowance = allowance.unwrap_or_else(|| self.guess(&corners, &middles));
+            self.part(&ground, Spot::WHOLE, corners, open, (place, true))
+        } else {
+            let refined = patch.refined(self.control.rules);
+            let middles = [0, 1, 2].map(|edge| refined.middle(edge));
+            self.allowance = allowance.unwrap_or_else(|| self.guess(&corners, &middles));
+            self.general(&patch, (&refined, middles), corners, open, place)
+        };
+        self.piece.roots.push(word);
+        Found {
+            extent: self.extent,
+            allowance: self.allowance,
+            has_failed: self.has_failed,
+            conditions: core::mem::take(&mut self.conditions),
+        }
+    }
+
+    /// A node with leaves so many levels below it that were not judged.
+    fn even(&mut self, levels: u32) -> u32 {
+        if levels == 0 {
+            self.count_leaves(1);
+            return LEAF | UNJUDGED;
+        }
+        let children = [0; 4].map(|_| self.even(levels - 1));
+        self.piece.node(children)
+    }
+
+    /// Tells how many leaves were not told yet.
+    fn tell(&mut self) {
+        self.count.leaves.fetch_add(core::mem::take(&mut self.leaves), Ordering::Relaxed);
+    }
+
+    /// The tilt that triangles of a face will have: angles shrink with the size of triangles, heights with its square.
+    fn guess(&self, corners: &[LimitPoint; 3], middles: &[LimitPoint; 3]) -> Allowance {
+        let (height, tilt) = self.judge.bend(corners, middles);
+        let levels = if height > self.judge.distance { (self.judge.distance / height).sqrt() } else { 1.0 };
+        Allowance { tilt: (GENEROUS * tilt * levels).max(LEAST_TILT), slope: f64::INFINITY }
+    }
+
+    fn node(&mut self, patch: &Patch, corners: [LimitPoint; 3], open: [bool; 3], place: Place) -> u32 {
+        if let Patch::Regular(points) = patch {
+            let ground = Ground::of(points, place.level);
+            return self.part(&ground, Spot::WHOLE, corners, open, (place, true));
+        }
+        let refined = patch.refined(self.control.rules);
+        let middles = [0, 1, 2].map(|edge| refined.middle(edge));
+        self.general(patch, (&refined, middles), corners, open, place)
+    }
+
+    /// A piece that is not regular, with its refinement and the limits in the middles of its edges.
+    fn general(
+        &mut self,
+        patch: &Patch,
+        (refined, middles): (&RefinedPatch<'_>, [LimitPoint; 3]),
+        corners: [LimitPoint; 3],
+        open: [bool; 3],
+        place: Place,
+    ) -> u32 {
+        if self.is_too_much() {
+            return LEAF;
+        }
+        let judge = self.judge;
+        if place.level >= self.max_levels || judge.bend(&corners, &middles).0 <= judge.distance {
+            let mut pieces = Pieces::of(patch);
+            let verdict = judge.general(&mut pieces, SubTriangle::Whole, &corners, open, &self.allowance);
+            if !verdict.fails() || place.level >= self.max_levels {
+                return self.leaf(place, &verdict);
+            }
+        }
+        let children = [0, 1, 2, 3].map(|child| {
+            let own = child_corners(corners, middles, child);
+            self.node(&refined.part(child), own, child_open(open, child), place.child(child))
+        });
+        self.piece.node(children)
+    }
+
+    /// A part of a regular piece; `has_rows` as long as whole rows may be worth while below.
+    fn part(
+        &mut self,
+        ground: &Ground,
+        spot: Spot,
+        corners: [LimitPoint; 3],
+        open: [bool; 3],
+        (place, has_rows): (Place, bool),
+    ) -> u32 {
+        if self.is_too_much() {
+            return LEAF;
+        }
+        let mut has_rows = has_rows;
+        if has_rows && open == [false; 3] {
+            match self.rows(ground, spot, place) {
+                Ok(word) => return word,
+                Err(is_hopeless) => has_rows = !is_hopeless,
+            }
+        }
+        let verdict = self.judge.regular(
+            ground,
+            (place, SubTriangle::Whole),
+            &spot.cell(),
+            &corners,
+            open,
+            &self.allowance,
+        );
+        if !verdict.fails() || place.level >= self.max_levels {
+            return self.leaf(place, &verdict);
+        }
+        let middles = [0, 1, 2].map(|edge| ground.at(spot.along(edge, 0.5)));
+        let children = [0, 1, 2, 3].map(|child| {
+            let own = child_corners(corners, middles, child);
+            let at = (place.child(child), has_rows);
+            self.part(ground, spot.child(child), own, child_open(open, child), at)
+        });
+        self.piece.node(children)
+    }
+
+    /// Divides a part of a regular piece by testing all nodes of some levels at once; fails where that is not worth while,
+    /// saying whether it will not be below either.
+    fn rows(&mut self, ground: &Ground, spot: Spot, place: Place) -> Result<u32, bool> {
+        let target = self.judge.row_target(&self.allowance);
+        let block = RowBlock::of(&ground.piece, &ground.jet, [spot.u, spot.v], spot.size);
+        let (least, most) = block.levels(target.distance);
+        if least < FEWEST_DIVISIONS {
+            return Err(most < FEWEST_DIVISIONS);
+        }
+        let last = most.min(least + MOST_SPREAD);
+        if least > MOST_DIVISIONS || most > last || !block.is_fine(least, target.distance) {
+            return Err(false);
+        }
+        let last = last.min(MOST_DIVISIONS);
+        if place.level + last > self.max_levels {
+            return Err(true);
+        }
+        let mut levels = core::mem::take(&mut self.marks);
+        let mut rows = core::mem::take(&mut self.cell_rows);
+        let mut extent = RowExtent::NONE;
+        let mut tested = 0;
+        for divisions in least..=last {
+            let marks = &mut levels[tested];
+            rows.test(&block, divisions, &target, &mut extent, marks);
+            tested += 1;
+            if marks.are_all_passing() {
+                break;
+            }
+        }
+        self.add_rows(place, &extent);
+        let word = if tested == 1 && levels[0].are_all_passing() {
+            self.count_leaves(1 << (2 * least));
+            LEAF + least
+        } else {
+            let found = Rows { ground, place, spot, marks: &levels[..tested], first: least };
+            self.row_node(&found, (0, 0, false), 0)
+        };
+        (self.marks, self.cell_rows) = (levels, rows);
+        Ok(word)
+    }
+
+    /// A node `level` levels below the one whose rows were tested.
+    fn row_node(&mut self, rows: &Rows<'_>, (i, j, is_headlong): (usize, usize, bool), level: u32) -> u32 {
+        if level >= rows.first {
+            let tested = (level - rows.first) as usize;
+            let mark = rows.marks[tested].at(i, j, is_headlong);
+            if mark == Mark::Passes {
+                self.count_leaves(1);
+                return LEAF;
+            }
+            let is_last = tested + 1 == rows.marks.len();
+            if is_last || mark == Mark::Open {
+                let spot = rows.spot.row(level, i, j, is_headlong);
+                let place = rows.place.leaf(level, (i, j), is_headlong);
+                let corners = spot.corners().map(|at| rows.ground.at(at));
+                if is_last {
+                    return self.part(rows.ground, spot, corners, [false; 3], (place, false));
+                }
+                let at = (place, SubTriangle::Whole);
+                let verdict =
+                    self.judge.regular(rows.ground, at, &spot.cell(), &corners, [false; 3], &self.allowance);
+                if !verdict.fails() {
+                    return self.leaf(place, &verdict);
+                }
+            }
+        }
+        let (x, y) = (2 * i, 2 * j);
+        let below = if is_headlong {
+            [(x + 1, y + 1, true), (x, y + 1, true), (x + 1, y, true), (x + 1, y + 1, false)]
+        } else {
+            [(x, y, false), (x + 1, y, false), (x, y + 1, false), (x, y, true)]
+        };
+        let mut children = [LEAF; 4];
+        for (word, at) in children.iter_mut().zip(below) {
+            *word = self.row_node(rows, at, level + 1);
+        }
+        self.piece.node(children)
+    }
+
+    /// Keeps what the nodes that passed in rows come to.
+    fn add_rows(&mut self, place: Place, rows: &RowExtent) {
+        let RowExtent { tilt, slope, drift_slope, bound, worst } = *rows;
+        let worst = worst.map(|(i, j, is_headlong, depth)| place.leaf(depth, (i, j), is_headlong));
+        self.extent.add(&Extent { tilt, slope, drift_slope, bound, worst });
+    }
+
+    fn count_leaves(&mut self, count: usize) {
+        self.leaves += count;
+        if self.leaves >= COUNTED {
+            self.tell();
+        }
+    }
+
+    /// Whether there are too many leaves by now, so that nothing matters any more.
+    fn is_too_much(&self) -> bool {
+        self.leaves == 0 && self.count.is_passed()
+    }
+
+    fn leaf(&mut self, place: Place, verdict: &Verdict) -> u32 {
+        self.extent.add(&Extent { worst: Some(place), ..verdict.extent });
+        self.count_leaves(1);
+        match verdict.outcome {
+            Outcome::Passes => LEAF,
+            Outcome::Fails => {
+                self.has_failed = true;
+                LEAF
+            }
+            Outcome::Depends { deviation } => {
+                self.conditions.push(Condition { place, deviation });
+                LEAF | CONDITIONAL
+            }
+        }
+    }
+}
+
+/// A node whose rows were tested.
+struct Rows<'a> {
+    ground: &'a Ground,
+    place: Place,
+    spot: Spot,
+    /// By level from `first` below the node on.
+    marks: &'a [Marks],
+    first: u32,
+}

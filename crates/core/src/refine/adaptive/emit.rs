@@ -1,0 +1,567 @@
+//! Emits the leaves as a conforming mesh: vertices and their limits, triangles, twins, parents, origins.
+//!
+//! Vertices stand in this order: those of the control mesh, those on its edges, those inside its faces; triangles face
+//! by face, in the order of the walk. Where each face's begin follows from the counts, so faces are written at once
+//! by as many threads as there are, each into its own parts of the arrays.
+
+use super::chains::{Chains, first_of};
+use super::close::Closed;
+use super::decide::{Control, Decision};
+use super::judge::Condition;
+use super::quadtree::{Edges, FULL, Place, is_split};
+use super::rim::{Rim, bits};
+use super::surface::{Spot, Surface, with_patch};
+use super::walk::{Knot, Node, Visitor, Walk};
+use crate::emit::{Diagonal, closure};
+use crate::mesh::{Junctions, MAX_FACES, MeshError, NONE};
+use crate::parallel;
+use crate::patch::LimitPoint;
+use crate::refine::exact::Origin;
+use crate::vector::{DVec3, unit_or_zero, vector};
+
+/// Triangles that one call writes, about.
+const JOB: u32 = 8192;
+
+/// What is emitted.
+pub(super) struct Emission {
+    pub(super) positions: Vec<[f64; 3]>,
+    pub(super) normals: Vec<[f64; 3]>,
+    pub(super) origins: Vec<Origin>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) twins: Vec<u32>,
+    pub(super) parents: Vec<u32>,
+    /// The half-edges along each control half-edge, from its start.
+    pub(super) borders: Borders,
+    /// By control half-edge along a sharp edge, the normals on its side of the vertices inside it.
+    pub(super) sharp: Vec<(u32, Vec<[f64; 3]>)>,
+    /// Copies of vertices and edges of cut sheets.
+    pub(super) junctions: Junctions,
+    /// Leaves that pass on conditions, with their first triangles, and one past the last.
+    pub(super) conditions: Vec<(Condition, u32, u32)>,
+}
+
+/// The emitted half-edges along the edges of control faces.
+pub(super) struct Borders {
+    starts: Vec<u32>,
+    half_edges: Vec<u32>,
+}
+
+impl Borders {
+    /// Along a control half-edge, from its start.
+    pub(super) fn along(&self, h: u32) -> &[u32] {
+        &self.half_edges[self.starts[h as usize] as usize..self.starts[h as usize + 1] as usize]
+    }
+}
+
+const NOWHERE: Origin = Origin { face: NONE, barycentric: [0.0; 3] };
+
+/// Emits all leaves, or those of some control faces only. `closed` is what the walks over the faces found.
+///
+/// With some faces only the arrays are as long, since numbers stay the same, but nothing else of them is written or touched;
+/// that is enough to look at the triangles of faces that are two faces away from what is left out.
+pub(super) fn emit(
+    control: &Control<'_>,
+    edges: &Edges<'_>,
+    (decision, chains): (&Decision, &Chains),
+    closed: &[Closed],
+    only: Option<&[bool]>,
+) -> Result<Emission, MeshError> {
+    let faces = control.mesh.face_count();
+    let too_many = |what, count| MeshError::TooMany { what, count, limit: MAX_FACES };
+    let total: usize = closed.iter().map(|face| face.triangles as usize).sum();
+    let inside: usize = closed.iter().map(|face| face.vertices as usize).sum();
+    let on_edges = control.mesh.vertex_count() + chains.count();
+    if total > MAX_FACES || on_edges + inside >= NONE as usize {
+        return Err(too_many("triangles", total));
+    }
+    let mut starts = vec![0u32; 3 * faces + 1];
+    for h in 0..3 * faces {
+        starts[h + 1] = starts[h] + chains.along(edges, h as u32) as u32 + 1;
+    }
+    let mut emission = Emission {
+        positions: vec![[0.0; 3]; on_edges + inside],
+        normals: vec![[0.0; 3]; on_edges + inside],
+        origins: vec![NOWHERE; if only.is_some() { 0 } else { on_edges + inside }],
+        triangles: vec![[0; 3]; total],
+        twins: vec![0; 3 * total],
+        parents: vec![0; total],
+        borders: Borders { half_edges: vec![0; starts[3 * faces] as usize], starts },
+        sharp: Vec::new(),
+        junctions: Junctions::default(),
+        conditions: Vec::new(),
+    };
+    corners(control, &mut emission);
+    let is_wanted = |face: u32| only.is_none_or(|only| only[face as usize]);
+    let jobs = jobs(control, edges, chains, (closed, &is_wanted), &mut emission);
+    let conditions =
+        parallel::for_each_job(jobs, |job| write(control, edges, (decision, chains), closed, job));
+    emission.conditions = conditions.concat();
+    join(edges, &is_wanted, &mut emission);
+    sharp_edges(control, edges, chains, &is_wanted, &mut emission);
+    Ok(emission)
+}
+
+/// The control vertices.
+fn corners(control: &Control<'_>, emission: &mut Emission) {
+    let count = control.mesh.vertex_count();
+    emission.positions[..count].copy_from_slice(&control.positions);
+    emission.normals[..count].copy_from_slice(control.sided.by_vertex());
+    if emission.origins.is_empty() {
+        return;
+    }
+    for (face, triangle) in (0..).zip(control.mesh.triangles()) {
+        for (corner, &vertex) in triangle.iter().enumerate() {
+            let origin = &mut emission.origins[vertex as usize];
+            if origin.face == NONE {
+                let mut barycentric = [0.0; 3];
+                barycentric[corner] = 1.0;
+                *origin = Origin { face, barycentric };
+            }
+        }
+    }
+}
+
+/// A run of vertices to be written: the first's number, then positions, normals, origins.
+struct Vertices<'a> {
+    first: u32,
+    positions: &'a mut [[f64; 3]],
+    normals: &'a mut [[f64; 3]],
+    origins: &'a mut [Origin],
+}
+
+impl<'a> Vertices<'a> {
+    /// Takes the first `count` off.
+    fn take(&mut self, count: usize) -> Vertices<'a> {
+        let originating = count.min(self.origins.len());
+        let (positions, normals, origins) = (
+            split_off(&mut self.positions, count),
+            split_off(&mut self.normals, count),
+            split_off(&mut self.origins, originating),
+        );
+        let first = self.first;
+        self.first += count as u32;
+        Vertices { first, positions, normals, origins }
+    }
+
+    fn set(&mut self, vertex: u32, point: LimitPoint, origin: Origin) {
+        let at = (vertex - self.first) as usize;
+        self.positions[at] = point.position.to_array();
+        self.normals[at] = point.normal.to_array();
+        if let Some(slot) = self.origins.get_mut(at) {
+            *slot = origin;
+        }
+    }
+}
+
+fn split_off<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    let (head, tail) = core::mem::take(slice).split_at_mut(count);
+    *slice = tail;
+    head
+}
+
+/// Consecutive control faces, and the parts of the arrays that are theirs.
+struct Job<'a> {
+    faces: core::ops::Range<u32>,
+    on_edges: Vertices<'a>,
+    inside: Vertices<'a>,
+    first_triangle: u32,
+    triangles: &'a mut [[u32; 3]],
+    twins: &'a mut [u32],
+    parents: &'a mut [u32],
+    borders: &'a mut [u32],
+}
+
+fn jobs<'a>(
+    control: &Control<'_>,
+    edges: &Edges<'_>,
+    chains: &Chains,
+    (closed, is_wanted): (&[Closed], &impl Fn(u32) -> bool),
+    emission: &'a mut Emission,
+) -> Vec<Job<'a>> {
+    let count = control.mesh.vertex_count();
+    let Emission { positions, normals, origins, triangles, twins, parents, borders, .. } = emission;
+    let first = count as u32;
+    let known = count.min(origins.len());
+    let (positions, normals, origins) =
+        (&mut positions[count..], &mut normals[count..], &mut origins[known..]);
+    let mut inside = Vertices { first, positions, normals, origins };
+    let mut on_edges = inside.take(chains.count());
+    let mut rest = (&mut triangles[..], &mut twins[..], &mut parents[..], &mut borders.half_edges[..]);
+    let (mut jobs, mut from, mut first_triangle) = (Vec::new(), 0u32, 0u32);
+    let (mut triangles, mut own, mut vertices, mut segments) = (0u32, 0usize, 0usize, 0usize);
+    let faces = closed.len() as u32;
+    for (face, found) in (0..).zip(closed) {
+        triangles += found.triangles;
+        vertices += found.vertices as usize;
+        for h in 3 * face..3 * face + 3 {
+            own += chains.own(h).1.len();
+            segments += chains.along(edges, h) + 1;
+        }
+        let is_last = face + 1 == faces || is_wanted(face) != is_wanted(face + 1);
+        if triangles >= JOB || is_last {
+            let job = Job {
+                faces: from..face + 1,
+                on_edges: on_edges.take(own),
+                inside: inside.take(vertices),
+                first_triangle,
+                triangles: split_off(&mut rest.0, triangles as usize),
+                twins: split_off(&mut rest.1, 3 * triangles as usize),
+                parents: split_off(&mut rest.2, triangles as usize),
+                borders: split_off(&mut rest.3, segments),
+            };
+            if is_wanted(face) {
+                jobs.push(job);
+            }
+            first_triangle += triangles;
+            from = face + 1;
+            (triangles, own, vertices, segments) = (0, 0, 0, 0);
+        }
+    }
+    jobs
+}
+
+/// Writes the faces of a job.
+fn write(
+    control: &Control<'_>,
+    edges: &Edges<'_>,
+    (decision, chains): (&Decision, &Chains),
+    closed: &[Closed],
+    mut job: Job<'_>,
+) -> Vec<(Condition, u32, u32)> {
+    let trees = &decision.trees;
+    job.twins.fill(NONE);
+    let mut walk = Walk { trees, rules: control.rules, knots: Vec::new(), next: job.inside.first };
+    let mut writer = Writer {
+        rules: control.rules,
+        face: 0,
+        diagonals: &[],
+        conditions: [&[], &[]],
+        found: Vec::new(),
+        next_triangle: job.first_triangle,
+        inside: job.inside,
+        first_triangle: job.first_triangle,
+        triangles: job.triangles,
+        twins: job.twins,
+        rim: Rim::default(),
+        below: Vec::new(),
+        places: Vec::new(),
+    };
+    for face in job.faces {
+        walk.knots.clear();
+        let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
+        (writer.face, writer.diagonals) = (face, &closed[face as usize].diagonals);
+        writer.conditions = [decision.conditions(face), &closed[face as usize].conditions];
+        let before = writer.next_triangle - job.first_triangle;
+        let at = (Place::root(face), Spot::WHOLE);
+        let own = [0, 1, 2].map(|edge| chains.own(3 * face + edge));
+        if !is_split(trees.root(face)) && own.iter().all(|(_, places)| places.is_empty()) {
+            // No vertex is its own.
+            walk.node(trees.root(face), at, sides, &Surface::Unknown, &mut writer);
+        } else {
+            with_patch(&control.patch(face), control.corners(face), 0, &mut |surface| {
+                for (edge, (number, places)) in own.into_iter().enumerate() {
+                    on_edge(control, face, edge, places, surface, |i, point, origin| {
+                        job.on_edges.set(number + i as u32, point, origin);
+                    });
+                }
+                walk.node(trees.root(face), at, sides, surface, &mut writer);
+            });
+        }
+        let after = writer.next_triangle - job.first_triangle;
+        job.parents[before as usize..after as usize].fill(face);
+        for side in sides {
+            let own = split_off(&mut job.borders, side.segments());
+            for (i, border) in own.iter_mut().enumerate() {
+                *border = walk.knots[side.stretch(i)].half_edge;
+            }
+        }
+    }
+    writer.found
+}
+
+/// Evaluates the vertices at the given places along an edge of a control face.
+fn on_edge(
+    control: &Control<'_>,
+    face: u32,
+    edge: usize,
+    places: &[u32],
+    surface: &Surface<'_>,
+    mut found: impl FnMut(usize, LimitPoint, Origin),
+) {
+    if places.is_empty() {
+        return;
+    }
+    let places: Vec<f64> = places.iter().map(|&at| fraction(at)).collect();
+    surface.along(control.rules, edge, &places, &mut |i, point| {
+        let mut barycentric = [0.0; 3];
+        (barycentric[edge], barycentric[(edge + 1) % 3]) = (1.0 - places[i], places[i]);
+        found(i, point, Origin { face, barycentric });
+    });
+}
+
+fn fraction(at: u32) -> f64 {
+    f64::from(at) / f64::from(FULL)
+}
+
+/// Writes the leaves of control faces.
+struct Writer<'a> {
+    rules: &'a crate::patch::Rules<'a>,
+    face: u32,
+    /// Those of the face that have not come yet.
+    diagonals: &'a [bool],
+    /// Conditions of the face that have not come yet: those of its division, and those of its closing.
+    conditions: [&'a [Condition]; 2],
+    found: Vec<(Condition, u32, u32)>,
+    next_triangle: u32,
+    inside: Vertices<'a>,
+    first_triangle: u32,
+    triangles: &'a mut [[u32; 3]],
+    twins: &'a mut [u32],
+    rim: Rim,
+    /// By column, the half-edge that waits for the row above.
+    below: Vec<u32>,
+    places: Vec<f64>,
+}
+
+impl Visitor for Writer<'_> {
+    fn chain(&mut self, knots: &[Knot], edge: usize, spot: Spot, middle: &Surface<'_>) {
+        let last = knots.len() - 1;
+        if last < 2 {
+            return;
+        }
+        let mut places = core::mem::take(&mut self.places);
+        places.clear();
+        // The middle child's edge runs the other way.
+        places.extend(knots[1..last].iter().rev().map(|knot| 1.0 - fraction(knot.at)));
+        middle.along(self.rules, edge, &places, &mut |i, point| {
+            let origin = self.origin(spot.along(edge, places[i]));
+            self.inside.set(knots[last - 1 - i].vertex, point, origin);
+        });
+        self.places = places;
+    }
+
+    fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+        self.interior(node);
+        self.rim.set(node, knots);
+        self.cover(node, knots);
+    }
+}
+
+impl Writer<'_> {
+    fn origin(&self, [u, v]: [f64; 2]) -> Origin {
+        Origin { face: self.face, barycentric: [1.0 - u - v, u, v] }
+    }
+
+    /// The vertices inside a node, row by row.
+    fn interior(&mut self, node: &Node<'_>) {
+        let n = 1usize << node.depth;
+        let Surface::Regular(ground, spot) = node.surface else { return };
+        let mut at = (node.interior - self.inside.first) as usize;
+        let (step, own) = (spot.size / n as f64, node.spot);
+        for j in 1..n.max(2) - 1 {
+            let count = n - 1 - j;
+            let row = at..at + count;
+            ground.piece.points_and_normals_along(
+                spot.v + step * j as f64,
+                spot.u + step,
+                step,
+                &mut self.inside.positions[row.clone()],
+                &mut self.inside.normals[row],
+            );
+            if !self.inside.origins.is_empty() {
+                for i in 1..=count {
+                    let leaf = own.leaf(node.depth, i, j);
+                    self.inside.origins[at + i - 1] = self.origin([leaf.u, leaf.v]);
+                }
+            }
+            at += count;
+        }
+    }
+
+    /// The vertex at a corner of the leaves.
+    fn vertex(&self, node: &Node<'_>, knots: &[Knot], i: usize, j: usize) -> u32 {
+        let n = 1usize << node.depth;
+        if j == 0 {
+            knots[self.rim.corner(0, i)].vertex
+        } else if i == 0 {
+            knots[self.rim.corner(2, n - j)].vertex
+        } else if i + j == n {
+            knots[self.rim.corner(1, j)].vertex
+        } else {
+            node.interior + ((j - 1) * (n - 1) - (j - 1) * j / 2 + i - 1) as u32
+        }
+    }
+
+    /// The triangles of all leaves below a node, row by row: each leaf that stands upright is followed by the one to its right
+    /// that stands on its head.
+    fn cover(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+        let n = 1usize << node.depth;
+        self.below.clear();
+        self.below.resize(n, NONE);
+        for j in 0..n {
+            let mut left = NONE;
+            for i in 0..n - j {
+                let corners = [(i, j), (i + 1, j), (i, j + 1)].map(|(i, j)| self.vertex(node, knots, i, j));
+                let right = self.upright(node, knots, (i, j), corners, left);
+                if i + j + 1 < n {
+                    let far = self.vertex(node, knots, i + 1, j + 1);
+                    let first = self.push([corners[1], far, corners[2]]);
+                    self.pair(first + 2, right);
+                    left = first;
+                    self.below[i] = first + 1;
+                }
+            }
+        }
+    }
+
+    /// The triangles of an upright leaf, whose left edge has the given half-edge beyond it. Gives the half-edge along its
+    /// edge to the right.
+    fn upright(
+        &mut self,
+        node: &Node<'_>,
+        knots: &mut [Knot],
+        (i, j): (usize, usize),
+        [a, b, c]: [u32; 3],
+        left: u32,
+    ) -> u32 {
+        let n = 1usize << node.depth;
+        let on_side = [j == 0, i + j + 1 == n, i == 0];
+        let split = if on_side == [false; 3] { [None; 3] } else { self.rim.split(n, i, j) };
+        let bits = bits(&split);
+        let mut diagonal = Diagonal::FromStart;
+        if bits.count_ones() == 2
+            && let [from_end, rest @ ..] = self.diagonals
+        {
+            self.diagonals = rest;
+            diagonal = if *from_end { Diagonal::FromEnd } else { Diagonal::FromStart };
+        }
+        let pattern = closure(bits, diagonal);
+        let [d, e, f] = split.map(|knot| knot.map_or(NONE, |knot| knots[knot].vertex));
+        let labels = [a, b, c, d, e, f];
+        let first = 3 * self.next_triangle;
+        for triangle in pattern.triangles() {
+            self.push(triangle.map(|label| labels[label as usize]));
+        }
+        for h in 0..3 * pattern.triangles().len() {
+            if let Some(twin) = pattern.twin(h) {
+                self.twins[(first + h as u32 - 3 * self.first_triangle) as usize] = first + twin as u32;
+            }
+        }
+        if node.is_conditional || !self.conditions[1].is_empty() {
+            let closing = node.is_unjudged || bits != 0;
+            self.condition(node.place.leaf(node.depth, (i, j), false), usize::from(closing), first / 3);
+        }
+        let place = [i, j, n - 1 - j];
+        for edge in 0..3 {
+            let border = pattern.border(edge).map(|h| first + h as u32);
+            if on_side[edge] {
+                let [start, end] = [0, 1].map(|step| self.rim.corner(edge, place[edge] + step));
+                match split[edge] {
+                    None => self.meet(knots, start.min(end), border[0]),
+                    Some(middle) => {
+                        self.meet(knots, start.min(middle), border[0]);
+                        self.meet(knots, middle.min(end), border[1]);
+                    }
+                }
+            } else if edge == 0 {
+                self.pair(border[0], self.below[i]);
+            } else if edge == 2 {
+                self.pair(border[0], left);
+            }
+        }
+        first + pattern.border(1)[0] as u32
+    }
+
+    /// Keeps the condition of a leaf, if it has one in the list.
+    fn condition(&mut self, place: Place, list: usize, first: u32) {
+        let conditions = self.conditions[list];
+        if let Some(at) = conditions.iter().position(|condition| condition.place == place) {
+            self.found.push((conditions[at], first, self.next_triangle));
+            self.conditions[list] = &conditions[at + 1..];
+        }
+    }
+
+    /// Adds a triangle; gives its first half-edge.
+    #[inline]
+    fn push(&mut self, triangle: [u32; 3]) -> u32 {
+        self.triangles[(self.next_triangle - self.first_triangle) as usize] = triangle;
+        self.next_triangle += 1;
+        3 * (self.next_triangle - 1)
+    }
+
+    #[inline]
+    fn pair(&mut self, a: u32, b: u32) {
+        let first = 3 * self.first_triangle;
+        self.twins[(a - first) as usize] = b;
+        self.twins[(b - first) as usize] = a;
+    }
+
+    /// A half-edge along a stretch of a chain: the twin of the one that was there before, if there was.
+    #[inline]
+    fn meet(&mut self, knots: &mut [Knot], stretch: usize, half_edge: u32) {
+        let other = knots[stretch].half_edge;
+        if other == NONE {
+            knots[stretch].half_edge = half_edge;
+        } else {
+            self.pair(half_edge, other);
+        }
+    }
+}
+
+/// Makes the half-edges on both sides of control edges twins.
+fn join(edges: &Edges<'_>, is_wanted: &impl Fn(u32) -> bool, emission: &mut Emission) {
+    let Emission { borders, twins, .. } = emission;
+    for h in 0..borders.starts.len() as u32 - 1 {
+        let twin = edges.twin(h).filter(|&twin| h < twin && is_wanted(h / 3) && is_wanted(twin / 3));
+        if let Some(twin) = twin {
+            for (&a, &b) in borders.along(h).iter().zip(borders.along(twin).iter().rev()) {
+                twins[a as usize] = b;
+                twins[b as usize] = a;
+            }
+        }
+    }
+}
+
+/// Normals on both sides of sharp edges: a vertex has their average.
+fn sharp_edges(
+    control: &Control<'_>,
+    edges: &Edges<'_>,
+    chains: &Chains,
+    is_wanted: &impl Fn(u32) -> bool,
+    emission: &mut Emission,
+) {
+    if control.lasting.is_empty() {
+        return;
+    }
+    for face in (0..control.mesh.face_count() as u32).filter(|&face| is_wanted(face)) {
+        let open = control.open(face);
+        for edge in (0..3).filter(|&edge| open[edge]) {
+            let h = 3 * face + edge as u32;
+            let Some(twin) = edges.twin(h) else { continue };
+            let (number, places) = chains.own(first_of(edges, h));
+            let mut normals = vec![[0.0; 3]; places.len()];
+            if h < twin {
+                normals.copy_from_slice(&emission.normals[number as usize..number as usize + places.len()]);
+            } else {
+                let turned: Vec<u32> = places.iter().rev().map(|&at| FULL - at).collect();
+                with_patch(&control.patch(face), control.corners(face), 0, &mut |surface| {
+                    on_edge(control, face, edge, &turned, surface, |i, point, _| {
+                        normals[i] = point.normal.to_array();
+                    });
+                });
+            }
+            emission.sharp.push((h, normals));
+        }
+    }
+    for (h, normals) in &emission.sharp {
+        let owner = first_of(edges, *h);
+        if owner != *h {
+            let number = chains.own(owner).0;
+            for (vertex, normal) in (number..).zip(normals.iter().rev()) {
+                let known = &mut emission.normals[vertex as usize];
+                let sum: DVec3 = vector(*known) + vector(*normal);
+                *known = unit_or_zero(sum).to_array();
+            }
+        }
+    }
+}

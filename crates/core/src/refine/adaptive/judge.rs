@@ -1,0 +1,304 @@
+//! Whether a triangle stands well enough for its part of the surface: a value of the triangle alone.
+//!
+//! What a triangle's bound needs to know of its neighbours (see [`crate::certificate`]) are the angles between their planes
+//! and its own and the angles at their corners. Neighbours share a corner and its limit normal, so the chord between two planes is at
+//! most the sum of the chords between each and that normal, their *tilts*. Each control face therefore has an
+//! [`Allowance`]: how far the triangles in it and beside it may be tilted, and how acute they may be. What is let pass is checked
+//! against it face by face, so no triangle has to look at its neighbours.
+
+use super::quadtree::Place;
+use super::surface::Ground;
+use crate::certificate::{Cell, Deviation, Effort, Pieces, RowTarget, SubTriangle, TriangleFrame, exceeds};
+use crate::patch::{LimitPoint, Rules};
+use crate::vector::DVec3;
+
+/// Halvings of a net before a triangle is given up: the bound is within some per cent of the truth then.
+const HALVINGS: usize = 2;
+
+/// Divisions into four of the heights over a plane, to the same end.
+const DIVISIONS: u32 = 2;
+
+/// Drifts are counted on up to this part of what a triangle's own angles allow: those of the triangles beside it may be more acute,
+/// closing triangles above all.
+const DRIFT_SHARE: f64 = 0.3;
+
+/// Unit vectors are off by no more than this.
+const ROUNDING: f64 = 1e-12;
+
+/// The chord of all tilts that are possible.
+pub(super) const ANY_TILT: f64 = 2.0;
+
+/// What triangles count on of those beside them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Allowance {
+    /// Triangles beside one are tilted by chords of at most this.
+    pub(super) tilt: f64,
+    /// Tangents of the angles of triangles beside one are at least this.
+    pub(super) slope: f64,
+}
+
+impl Allowance {
+    /// Nothing is expected of those beside.
+    pub(super) const NOTHING: Self = Self { tilt: 2.0 * ANY_TILT, slope: 0.0 };
+}
+
+/// What the triangles that were let pass come to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent {
+    /// The greatest tilt.
+    pub(super) tilt: f64,
+    /// The least tangent of an angle.
+    pub(super) slope: f64,
+    /// The greatest slope of a drift that was counted on.
+    pub(super) drift_slope: f64,
+    /// The greatest bound of a distance.
+    pub(super) bound: f64,
+    /// The leaf that has it.
+    pub(super) worst: Option<Place>,
+}
+
+impl Extent {
+    pub(super) const NONE: Self =
+        Self { tilt: 0.0, slope: f64::INFINITY, drift_slope: 0.0, bound: 0.0, worst: None };
+
+    pub(super) fn add(&mut self, other: &Self) {
+        self.tilt = self.tilt.max(other.tilt);
+        self.slope = self.slope.min(other.slope);
+        self.drift_slope = self.drift_slope.max(other.drift_slope);
+        if other.bound > self.bound {
+            (self.bound, self.worst) = (other.bound, other.worst);
+        }
+    }
+}
+
+/// What is asked of the triangles of each control face.
+#[derive(Clone, Debug)]
+pub(super) enum Goal {
+    /// Greatest distance between a triangle and its part of the surface.
+    Within(f64),
+    /// The same, and a lesser one for marked faces.
+    Partly(f64, f64, Vec<bool>),
+    /// All faces divided by so many levels, marked ones once more, whatever comes of it.
+    Even(u32, Vec<bool>),
+}
+
+impl Goal {
+    /// The judge of a face's triangles.
+    pub(super) fn judge<'a>(&self, rules: &'a Rules<'a>, face: u32) -> Judge<'a> {
+        let (distance, is_lenient) = match self {
+            Self::Within(distance) => (*distance, false),
+            Self::Partly(_, less, is_finer) if is_finer[face as usize] => (*less, false),
+            Self::Partly(distance, ..) => (*distance, false),
+            // Bounds as tight as they get.
+            Self::Even(..) => (0.0, true),
+        };
+        Judge { rules, distance, is_lenient }
+    }
+
+    /// What bounds may come to once the neighbours are known.
+    pub(super) fn allowed(&self, face: u32) -> f64 {
+        match self {
+            Self::Within(distance) => *distance,
+            Self::Partly(_, less, is_finer) if is_finer[face as usize] => *less,
+            Self::Partly(distance, ..) => *distance,
+            Self::Even(..) => f64::INFINITY,
+        }
+    }
+}
+
+/// What is asked of triangles.
+#[derive(Clone, Copy)]
+pub(super) struct Judge<'a> {
+    pub(super) rules: &'a Rules<'a>,
+    /// Greatest distance between a triangle and its part of the surface.
+    pub(super) distance: f64,
+    /// Everything passes, and all that counts is how far it is off among its neighbours.
+    is_lenient: bool,
+}
+
+/// What becomes of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Outcome {
+    /// Good enough, as long as allowances hold.
+    Passes,
+    /// To be divided.
+    Fails,
+    /// Good enough if this deviation, with the neighbours as they are emitted, comes to no more than the greatest distance.
+    Depends {
+        /// How far the triangle is from its part of the surface.
+        deviation: Deviation,
+    },
+}
+
+/// A leaf that passes if its neighbours turn out as expected.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Condition {
+    pub(super) place: Place,
+    pub(super) deviation: Deviation,
+}
+
+/// What becomes of a triangle, and what it comes to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Verdict {
+    pub(super) outcome: Outcome,
+    pub(super) extent: Extent,
+}
+
+impl Verdict {
+    /// That of no triangle.
+    pub(super) const NONE: Self = Self { outcome: Outcome::Passes, extent: Extent::NONE };
+
+    pub(super) fn fails(&self) -> bool {
+        matches!(self.outcome, Outcome::Fails)
+    }
+
+    /// That of two triangles together.
+    pub(super) fn and(mut self, other: &Self) -> Self {
+        self.extent.add(&other.extent);
+        self.outcome = match (self.outcome, other.outcome) {
+            (Outcome::Fails, _) | (_, Outcome::Fails) => Outcome::Fails,
+            (Outcome::Passes, other) => other,
+            (own, Outcome::Passes) => own,
+            (Outcome::Depends { deviation }, Outcome::Depends { deviation: second }) => {
+                Outcome::Depends { deviation: deviation.max(second) }
+            }
+        };
+        self
+    }
+}
+
+impl Judge<'_> {
+    /// A triangle over a part of a regular piece: the part of the node at a place, whose domain is given.
+    pub(super) fn regular(
+        &self,
+        ground: &Ground,
+        (place, part): (Place, SubTriangle),
+        cell: &Cell,
+        corners: &[LimitPoint; 3],
+        open: [bool; 3],
+        allowance: &Allowance,
+    ) -> Verdict {
+        let seen = Seen::of(corners);
+        if self.is_lenient {
+            return self.by_pieces(&seen, &mut Pieces::of(&ground.patch(place)), part, open, allowance);
+        }
+        let heights = ground.jet.heights(cell, seen.frame.normal());
+        let (low, high) = heights.range();
+        if exceeds(low, self.distance) {
+            return Verdict { outcome: Outcome::Fails, extent: Extent { bound: low, ..seen.extent() } };
+        }
+        let beside = ground.jet.beside(cell, &seen.frame, open);
+        let verdict = self.decided(&seen, beside.deviation(high), allowance);
+        if !verdict.fails() {
+            return verdict;
+        }
+        // Higher than that it is not; or what fails is not the height.
+        let least = self.decided(&seen, beside.deviation(low), allowance);
+        if !least.fails() {
+            let high = heights.refined(DIVISIONS).min(high);
+            return self.decided(&seen, beside.deviation(high), allowance);
+        }
+        // Wide parts are better seen by their points.
+        let patch = ground.patch(place);
+        self.by_pieces(&seen, &mut Pieces::of(&patch), part, open, allowance)
+    }
+
+    /// A triangle over a part of any piece.
+    pub(super) fn general<'p>(
+        &'p self,
+        pieces: &mut Pieces<'p>,
+        part: SubTriangle,
+        corners: &[LimitPoint; 3],
+        open: [bool; 3],
+        allowance: &Allowance,
+    ) -> Verdict {
+        let seen = Seen::of(corners);
+        self.by_pieces(&seen, pieces, part, open, allowance)
+    }
+
+    fn by_pieces<'p>(
+        &'p self,
+        seen: &Seen,
+        pieces: &mut Pieces<'p>,
+        part: SubTriangle,
+        open: [bool; 3],
+        allowance: &Allowance,
+    ) -> Verdict {
+        let (chord, slope) = seen.expected();
+        let effort = Effort { target: self.distance, halvings: HALVINGS, open, chord, slope };
+        let deviation = pieces.deviation(part, &seen.frame, self.rules, effort);
+        self.decided(seen, deviation, allowance)
+    }
+
+    /// What becomes of a triangle with this deviation.
+    fn decided(&self, seen: &Seen, deviation: Deviation, allowance: &Allowance) -> Verdict {
+        let (chord, slope) = seen.allowed(allowance);
+        let bound = deviation.bound(chord, slope);
+        let verdict = |outcome, bound: f64, drift_slope| Verdict {
+            outcome,
+            extent: Extent { bound, drift_slope, ..seen.extent() },
+        };
+        if bound <= self.distance {
+            // Drifts that are too steep are not counted on.
+            let counted = if deviation.slope <= slope { deviation.slope } else { 0.0 };
+            return verdict(Outcome::Passes, bound, counted);
+        }
+        let (chord, slope) = seen.expected();
+        let bound = deviation.bound(chord, slope);
+        if self.is_lenient || bound <= self.distance {
+            // What it comes to is known when its neighbours are.
+            return verdict(Outcome::Depends { deviation }, 0.0, 0.0);
+        }
+        verdict(Outcome::Fails, bound, 0.0)
+    }
+
+    /// The same for rows of triangles.
+    pub(super) fn row_target(&self, allowance: &Allowance) -> RowTarget {
+        let Allowance { tilt, slope } = *allowance;
+        RowTarget { distance: self.distance, tilt, slope, drift_share: DRIFT_SHARE }
+    }
+
+    /// How high the given points of a piece stand over its triangle, and the triangle's tilt.
+    pub(super) fn bend(&self, corners: &[LimitPoint; 3], points: &[LimitPoint]) -> (f64, f64) {
+        let seen = Seen::of(corners);
+        let heights = points.iter().map(|point| seen.frame.height(point.position).abs());
+        (heights.fold(0.0, f64::max), seen.tilt)
+    }
+}
+
+/// A triangle as its neighbours see it.
+struct Seen {
+    frame: TriangleFrame,
+    tilt: f64,
+}
+
+impl Seen {
+    fn of(corners: &[LimitPoint; 3]) -> Self {
+        let frame = TriangleFrame::new(corners.map(|corner| corner.position));
+        // Of the two corners that neighbours share one must have a normal.
+        let known = corners.iter().filter(|corner| corner.normal != DVec3::ZERO);
+        let (mut squared, mut count) = (0.0f64, 0);
+        for corner in known {
+            squared = squared.max(corner.normal.distance_squared(frame.normal()));
+            count += 1;
+        }
+        let tilt = if count < 2 || frame.is_flat() { ANY_TILT } else { squared.sqrt() + ROUNDING };
+        Self { frame, tilt }
+    }
+
+    fn extent(&self) -> Extent {
+        let slope = if self.frame.is_flat() { 0.0 } else { self.frame.least_slope() };
+        Extent { tilt: self.tilt, slope, ..Extent::NONE }
+    }
+
+    /// The chord of the angles to the neighbours and the greatest slope of a drift that are certain.
+    fn allowed(&self, allowance: &Allowance) -> (f64, f64) {
+        let slope = (DRIFT_SHARE * self.frame.least_slope()).min(allowance.slope);
+        (self.tilt + allowance.tilt, slope)
+    }
+
+    /// The same as they are expected: neighbours are alike, on the other side of the limit normals.
+    fn expected(&self) -> (f64, f64) {
+        (2.0 * self.tilt, self.frame.least_slope())
+    }
+}

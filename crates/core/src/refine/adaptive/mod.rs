@@ -1,0 +1,441 @@
+//! Exact refinement: triangles within a tolerance of the true limit surface, with all vertices on it.
+//!
+//! Takes a control mesh, a scheme and goals; gives a conforming mesh, limit normals, where each vertex and triangle
+//! came from, and a certified interval for the distance between the mesh and the limit surface.
+//!
+//! Passes, each a function of what came before:
+//!
+//! 1. [`decide`]: a quadtree over each control face, from its piece of the limit surface alone;
+//! 2. [`balance`]: neighbouring leaves at most one level apart;
+//! 3. [`chains`] and [`close`]: the vertices on edges, the closing triangles, judged and counted; what fails is split, and
+//!    2 and 3 are done again there;
+//! 4. [`emit`]: vertices, triangles and their connections, written at once;
+//! 5. [`probe`]: the certified interval.
+
+mod balance;
+mod budget;
+mod chains;
+mod close;
+mod decide;
+mod emit;
+mod judge;
+mod probe;
+mod quadtree;
+mod rim;
+mod settle;
+mod sides;
+mod surface;
+mod walk;
+
+use super::RefineError;
+use super::exact::{Exact, ExactOptions, ExactStop};
+use super::junctions::join_copies;
+use crate::certificate::exceeds;
+use crate::criterion::Distance;
+use crate::limit::LimitTable;
+use crate::mesh::{Mesh, MeshError, Sharpness, Topology, check_finite, outgoing_half_edges};
+use crate::parallel;
+use crate::patch::Rules;
+use crate::scheme::Scheme;
+use balance::{Pending, balance};
+use chains::Chains;
+use close::{Closed, Verdicts, close};
+use decide::{Control, Decision, decide};
+use emit::Emission;
+use judge::Goal;
+use quadtree::{Edges, MOST_NODES, Place, Trees};
+
+/// Control faces that one call takes together.
+const BLOCK: usize = 256;
+
+/// Rounds of dividing leaves whose conditions do not hold; what still fails after them has to pass without conditions.
+const MOST_ROUNDS: usize = 2;
+
+/// Triangles that splitting a leaf adds, closing included, on the average.
+const ADDED: usize = 6;
+
+/// Under a budget, the part that is kept for leaves whose conditions do not hold (one in so many) where that was too little.
+const RESERVE: usize = 100;
+
+/// Refines until the goals are met, or as far as the caps allow.
+pub(super) fn adaptive(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    options: &ExactOptions<'_>,
+) -> Result<Exact, RefineError> {
+    with_engine(mesh, scheme, options, |engine, rounding| {
+        let floor = options.tolerance.map_or(0.0, |tolerance| Distance::new(tolerance, rounding).allowed());
+        let (most, cap) = options.budget();
+        let most = most.max(mesh.face_count());
+        let (mut room, mut reserve) = (most, most / RESERVE + 1);
+        loop {
+            let (mut plan, stop) = budget::search(engine, floor, room, cap)?;
+            match engine.emit(&mut plan, most, stop != ExactStop::Met)? {
+                Some(emission) => {
+                    let worst_first = finish(engine, &plan, emission, stop, rounding, options)?;
+                    if stop == ExactStop::Met || options.tolerance.is_some() {
+                        return Ok(worst_first);
+                    }
+                    // Evenly curved models are best divided evenly, though drifts may allow to prove less of that. Lower
+                    // bounds are found distances, within some per cent of the truth.
+                    let Some((even, emission)) = engine.even(most)? else { return Ok(worst_first) };
+                    let even = finish(engine, &even, emission, stop, rounding, options)?;
+                    let is_better = even.error.lower < worst_first.error.lower;
+                    return Ok(if is_better { even } else { worst_first });
+                }
+                // Conditions that did not hold took more triangles than there were left.
+                None => {
+                    room -= reserve.min(room);
+                    reserve *= 2;
+                }
+            }
+        }
+    })
+}
+
+/// The triangles that a tolerance takes, but for those of leaves whose conditions turn out not to hold.
+pub(super) fn count(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    tolerance: f64,
+    max_levels: usize,
+) -> Result<usize, RefineError> {
+    let options = ExactOptions::default().tolerance(tolerance).max_levels(max_levels);
+    with_engine(mesh, scheme, &options, |engine, rounding| {
+        let plan = engine.plan(Goal::Within(Distance::new(tolerance, rounding).allowed()), usize::MAX)?;
+        Ok(plan.map_or(0, |plan| plan.triangles))
+    })
+}
+
+fn with_engine<T>(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    options: &ExactOptions<'_>,
+    run: impl FnOnce(&Engine<'_>, f64) -> Result<T, RefineError>,
+) -> Result<T, RefineError> {
+    let rules = Rules::of(scheme);
+    let table = LimitTable::new(scheme);
+    let (mut positions, sided) = (table.positions(mesh)?, table.sided_normals(mesh)?);
+    join_copies(&mut positions, &mesh.junctions().vertices);
+    let sharpness = Sharpness::of(mesh);
+    let lasting = sharpness.lasting();
+    let control = Control { mesh, sharpness: &sharpness, lasting: &lasting, positions, sided, rules: &rules };
+    let rounding = probe::rounding(mesh, options.max_levels);
+    let engine = Engine { control: &control, edges: Edges::of(mesh), max_levels: options.max_levels as u32 };
+    run(&engine, rounding)
+}
+
+/// What stays the same whatever is asked.
+pub(super) struct Engine<'a> {
+    control: &'a Control<'a>,
+    edges: Edges<'a>,
+    max_levels: u32,
+}
+
+/// Trees whose closed leaves pass, and what emitting them takes.
+pub(super) struct Plan {
+    goal: Goal,
+    decision: Decision,
+    chains: Chains,
+    closed: Vec<Closed>,
+    triangles: usize,
+    /// Leaves fail that must not be divided.
+    has_failed: bool,
+    /// By control face whose leaves that pass on conditions do so, the greatest bound of one, and the leaf.
+    settled: Vec<Option<(f64, Place)>>,
+}
+
+impl Engine<'_> {
+    /// Divides as asked; `None` if that takes more than `most` triangles.
+    fn plan(&self, goal: Goal, most: usize) -> Result<Option<Plan>, RefineError> {
+        let Some(decision) = decide(self.control, &goal, &self.edges, self.max_levels, most)? else {
+            return Ok(None);
+        };
+        let faces = self.control.mesh.face_count();
+        let closed = vec![Closed::default(); faces];
+        let mut plan = Plan {
+            goal,
+            decision,
+            chains: Chains::default(),
+            closed,
+            triangles: 0,
+            has_failed: false,
+            settled: vec![None; faces],
+        };
+        Ok(self.carry_out(&mut plan, vec![true; faces], most)?.then_some(plan))
+    }
+
+    /// Restricts and closes until everything holds, beginning with the marked faces; `false` if there are too many triangles.
+    fn carry_out(&self, plan: &mut Plan, mut is_dirty: Vec<bool>, most: usize) -> Result<bool, RefineError> {
+        loop {
+            self.restrict(&mut plan.decision.trees, &mut is_dirty)?;
+            if !self.close(plan, marked(&is_dirty), most)? {
+                return Ok(false);
+            }
+            let closed = &plan.closed;
+            let closing = |face: u32| closed[face as usize].extent.as_ref();
+            let limits = (self.max_levels, most);
+            let again = plan.decision.settle(self.control, &plan.goal, &self.edges, limits, closing)?;
+            let Some(again) = again else { return Ok(false) };
+            if again.is_empty() {
+                plan.has_failed |= plan.decision.has_failed();
+                return Ok(true);
+            }
+            is_dirty.fill(false);
+            again.iter().for_each(|&face| plan.closed[face as usize].verdicts = Verdicts::default());
+            again.iter().for_each(|&face| self.mark(face, &mut is_dirty));
+        }
+    }
+
+    /// Emits a plan, dividing where conditions do not hold; `None` if there are too many triangles.
+    fn emit(&self, plan: &mut Plan, most: usize, is_budget: bool) -> Result<Option<Emission>, RefineError> {
+        let mut rounds = 0;
+        loop {
+            let only = self.conditional(plan);
+            let chains = (&plan.decision, &plan.chains);
+            let emission = match &only {
+                Some(only) => emit::emit(self.control, &self.edges, chains, &plan.closed, Some(only))?,
+                None => self.emit_all(plan)?,
+            };
+            let failing = settle::settle(&emission, &plan.goal, &mut plan.settled);
+            let mut is_dirty = vec![false; plan.closed.len()];
+            let mut is_split = false;
+            rounds += 1;
+            // Where a budget is all that ends the division, what does not fit any more counts as it is.
+            let has_room = !is_budget || plan.triangles + ADDED * failing.len() <= most;
+            for (place, bound) in failing {
+                if place.level >= self.max_levels || !has_room {
+                    plan.has_failed |= has_room;
+                    let known = &mut plan.settled[place.face as usize];
+                    if known.is_none_or(|(known, _)| bound > known) {
+                        *known = Some((bound, place));
+                    }
+                    continue;
+                }
+                is_split = true;
+                self.mark(place.face, &mut is_dirty);
+                if rounds > MOST_ROUNDS {
+                    plan.decision.trees.make_strict(place);
+                }
+                self.split(&mut plan.decision.trees, place, |place| self.mark(place.face, &mut is_dirty))?;
+            }
+            if !is_split {
+                if only.is_some() {
+                    drop(emission);
+                    return self.emit_all(plan).map(Some);
+                }
+                return Ok(Some(emission));
+            }
+            if !self.carry_out(plan, is_dirty, most)? {
+                return Ok(None);
+            }
+        }
+    }
+
+    /// The even division that fits, what is left spent on its worst faces.
+    fn even(&self, most: usize) -> Result<Option<(Plan, Emission)>, RefineError> {
+        let Some(mut even) = budget::even(self, most)? else { return Ok(None) };
+        if self.emit(&mut even, most, true)?.is_none() {
+            return Ok(None);
+        }
+        let mut filled = budget::fill_even(self, even, most)?;
+        Ok(self.emit(&mut filled, most, true)?.map(|emission| (filled, emission)))
+    }
+
+    /// Emits all of a plan.
+    fn emit_all(&self, plan: &Plan) -> Result<Emission, RefineError> {
+        let chains = (&plan.decision, &plan.chains);
+        let mut emission = emit::emit(self.control, &self.edges, chains, &plan.closed, None)?;
+        let junctions = sides::junctions(self.control, &self.edges, &plan.chains, &emission);
+        join_copies(&mut emission.positions, &junctions.vertices);
+        emission.junctions = junctions;
+        Ok(emission)
+    }
+
+    /// The faces with leaves that pass on conditions which were not looked at, and two rings around them, if they are few.
+    fn conditional(&self, plan: &Plan) -> Option<Vec<bool>> {
+        let has = |face: usize| {
+            let conditions = [plan.decision.conditions(face as u32), &plan.closed[face].conditions];
+            plan.settled[face].is_none() && conditions.iter().any(|list| !list.is_empty())
+        };
+        let mut marked: Vec<bool> = (0..plan.closed.len()).map(has).collect();
+        for _ in 0..2 {
+            let mut wider = marked.clone();
+            (0..marked.len())
+                .filter(|&face| marked[face])
+                .for_each(|face| self.mark(face as u32, &mut wider));
+            marked = wider;
+        }
+        let triangles = plan.closed.iter().zip(&marked).filter(|&(_, &is_marked)| is_marked);
+        let triangles: usize = triangles.map(|(face, _)| face.triangles as usize).sum();
+        (2 * triangles < plan.triangles).then_some(marked)
+    }
+
+    fn split(&self, trees: &mut Trees, place: Place, fresh: impl FnMut(Place)) -> Result<(), RefineError> {
+        let limit = MOST_NODES;
+        let fits = trees.split(place, fresh);
+        fits.then_some(()).ok_or(MeshError::TooMany { what: "nodes", count: limit, limit }.into())
+    }
+
+    /// Neighbouring leaves are at most one level apart; marks what changes. Only marked faces may have more leaves than before.
+    fn restrict(&self, trees: &mut Trees, is_dirty: &mut [bool]) -> Result<(), RefineError> {
+        let faces = marked(is_dirty);
+        let lists = parallel::pieces_of(faces.len(), BLOCK, |block| {
+            let mut pending = Pending::default();
+            faces[block].iter().for_each(|&face| pending.push_tree(trees, face));
+            pending
+        });
+        let mut all = Pending::default();
+        lists.into_iter().for_each(|list| all.append(list));
+        self.balance(trees, all, |place| self.mark(place.face, is_dirty))
+    }
+
+    fn balance(
+        &self,
+        trees: &mut Trees,
+        pending: Pending,
+        split: impl FnMut(Place),
+    ) -> Result<(), RefineError> {
+        let fits = balance(trees, &self.edges, pending, split);
+        let limit = MOST_NODES;
+        fits.then_some(()).ok_or(MeshError::TooMany { what: "nodes", count: limit, limit }.into())
+    }
+
+    /// Walks over the given faces, splitting what fails, until nothing does; `false` if there are too many triangles.
+    fn close(&self, plan: &mut Plan, mut dirty: Vec<u32>, most: usize) -> Result<bool, RefineError> {
+        let mesh = self.control.mesh;
+        loop {
+            let chains = Chains::of(mesh, &self.edges, &plan.decision.trees);
+            let decision = &plan.decision;
+            // Most faces are walked over once.
+            let is_first = dirty.len() == plan.closed.len();
+            let found = parallel::pieces_of(dirty.len(), BLOCK, |block| {
+                let mut knots = Vec::new();
+                let walks = dirty[block].iter().map(|&face| {
+                    let allowance = &decision.allowances[face as usize];
+                    let trees = (&decision.trees, &chains);
+                    let known = &plan.closed[face as usize].verdicts;
+                    close(
+                        self.control,
+                        &plan.goal,
+                        &self.edges,
+                        trees,
+                        (allowance, known, !is_first),
+                        face,
+                        &mut knots,
+                    )
+                });
+                walks.collect::<Vec<_>>()
+            });
+            for (&face, found) in dirty.iter().zip(found.into_iter().flatten()) {
+                plan.closed[face as usize] = found;
+                plan.settled[face as usize] = None;
+            }
+            plan.chains = chains;
+            plan.triangles = plan.closed.iter().map(|face| face.triangles as usize).sum();
+            if plan.triangles > most {
+                return Ok(false);
+            }
+            let mut pending = Pending::default();
+            let mut is_dirty = vec![false; mesh.face_count()];
+            let mut is_split = false;
+            for &face in &dirty {
+                for place in core::mem::take(&mut plan.closed[face as usize].failing) {
+                    if place.level >= self.max_levels {
+                        plan.has_failed = true;
+                        continue;
+                    }
+                    is_split = true;
+                    self.mark(face, &mut is_dirty);
+                    self.split(&mut plan.decision.trees, place, |place| pending.push(place))?;
+                }
+            }
+            if !is_split {
+                return Ok(true);
+            }
+            self.balance(&mut plan.decision.trees, pending, |place| self.mark(place.face, &mut is_dirty))?;
+            dirty = marked(&is_dirty);
+        }
+    }
+
+    /// Marks a face and all beyond its edges.
+    fn mark(&self, face: u32, is_dirty: &mut [bool]) {
+        is_dirty[face as usize] = true;
+        for h in 3 * face..3 * face + 3 {
+            if let Some(twin) = self.edges.twin(h) {
+                is_dirty[twin as usize / 3] = true;
+            } else if let Some(group) = self.edges.group(h) {
+                self.edges.members(group).iter().for_each(|&(h, _)| is_dirty[h as usize / 3] = true);
+            }
+        }
+    }
+}
+
+fn marked(is_marked: &[bool]) -> Vec<u32> {
+    (0..).zip(is_marked).filter(|&(_, &is_marked)| is_marked).map(|(face, _)| face).collect()
+}
+
+/// Measures what was emitted.
+fn finish(
+    engine: &Engine<'_>,
+    plan: &Plan,
+    emission: Emission,
+    stop: ExactStop,
+    rounding: f64,
+    options: &ExactOptions<'_>,
+) -> Result<Exact, RefineError> {
+    let control = engine.control;
+    let stop = if stop == ExactStop::Met && plan.has_failed { ExactStop::LevelCap } else { stop };
+    check_finite(&emission.positions)?;
+    if let Some(why) = control.rules.failure() {
+        return Err(why.clone().into());
+    }
+    let error = probe::probe(engine, plan, &emission, rounding);
+    let failed = options.tolerance.filter(|&tolerance| exceeds(error.upper, tolerance));
+    let stop = if stop == ExactStop::Met && failed.is_some() { ExactStop::Rounding } else { stop };
+    let beyond = failed.map_or(0.0, |tolerance| error.upper / tolerance);
+    let (tags, sides) = (sides::tags(control, &emission), sides::sides(control, &emission));
+    let levels = (0..control.mesh.face_count() as u32).map(|face| {
+        let trees = &plan.decision.trees;
+        trees.depth(trees.root(face)) as usize
+    });
+    let levels = levels.max().unwrap_or(0);
+    let Emission { positions, normals, origins, triangles, twins, parents, junctions, .. } = emission;
+    let outgoing = outgoing_half_edges(&triangles, &twins, positions.len());
+    let topology = Topology::from_parts(triangles, twins, outgoing);
+    Ok(Exact {
+        mesh: Mesh::from_parts(topology, positions, tags, junctions),
+        normals,
+        sides,
+        origins,
+        parents,
+        error,
+        pixels: None,
+        open_cones: 0,
+        refused: 0,
+        worst: options.tolerance.map_or(0.0, |tolerance| (plan.worst() / tolerance).max(beyond)),
+        stop,
+        levels,
+    })
+}
+
+impl Plan {
+    /// The faces whose leaves have the greatest bounds first.
+    fn faces_by_bound(&self) -> Vec<(f64, u32)> {
+        let bound = |face: usize| {
+            let closing = self.closed[face].extent.as_ref().map_or(0.0, |extent| extent.bound);
+            let settled = self.settled[face].map_or(0.0, |(bound, _)| bound);
+            closing.max(settled).max(self.decision.bound(face as u32))
+        };
+        let mut order: Vec<(f64, u32)> =
+            (0..self.closed.len()).map(|face| (bound(face), face as u32)).collect();
+        order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        order
+    }
+
+    /// The greatest bound of what was judged.
+    fn worst(&self) -> f64 {
+        let closed = self.closed.iter().filter_map(|face| face.extent.as_ref());
+        self.decision.extents().chain(closed).map(|extent| extent.bound).fold(0.0, f64::max)
+    }
+}

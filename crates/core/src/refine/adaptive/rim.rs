@@ -1,0 +1,72 @@
+//! The edges of the leaves along the sides of a node, and which of them the neighbours have split.
+
+use super::walk::{Knot, Node};
+use crate::mesh::NONE;
+
+/// The knots along a node's sides.
+#[derive(Default)]
+pub(super) struct Rim {
+    /// By side, the numbers of the knots at the leaves' corners, from the side's start to its end.
+    corners: [Vec<u32>; 3],
+    /// By side and leaf, the number of the knot in the middle of its edge, or [`NONE`].
+    middles: [Vec<u32>; 3],
+}
+
+impl Rim {
+    /// Takes the sides of a node.
+    pub(super) fn set(&mut self, node: &Node<'_>, knots: &[Knot]) {
+        for (edge, side) in node.sides.iter().enumerate() {
+            let (corners, middles) = (&mut self.corners[edge], &mut self.middles[edge]);
+            corners.clear();
+            middles.clear();
+            let unit = (knots[side.last].at - knots[side.first].at) >> node.depth;
+            let mut at = 0;
+            corners.push(side.knot(0) as u32);
+            while at < side.segments() {
+                let (from, next) = (side.knot(at), side.knot(at + 1));
+                if knots[from].at.abs_diff(knots[next].at) == unit {
+                    middles.push(NONE);
+                    at += 1;
+                } else {
+                    middles.push(next as u32);
+                    at += 2;
+                }
+                corners.push(side.knot(at) as u32);
+            }
+        }
+    }
+
+    /// The knot at a corner of a leaf on a side.
+    #[inline]
+    pub(super) fn corner(&self, edge: usize, i: usize) -> usize {
+        self.corners[edge][i] as usize
+    }
+
+    /// The knots in the middles of the edges of the leaf at (i, j), of n a side.
+    #[inline]
+    pub(super) fn split(&self, n: usize, i: usize, j: usize) -> [Option<usize>; 3] {
+        let middle = |edge: usize, at: usize| {
+            let knot = self.middles[edge][at];
+            (knot != NONE).then_some(knot as usize)
+        };
+        [
+            if j == 0 { middle(0, i) } else { None },
+            if i + j + 1 == n { middle(1, j) } else { None },
+            if i == 0 { middle(2, n - 1 - j) } else { None },
+        ]
+    }
+
+    /// The leaves along the sides, row by row.
+    pub(super) fn leaves(n: usize) -> impl Iterator<Item = (usize, usize)> {
+        (0..n).flat_map(move |j| {
+            let last = n - 1 - j;
+            let step = if j == 0 || last == 0 { 1 } else { last };
+            (0..=last).step_by(step).map(move |i| (i, j))
+        })
+    }
+}
+
+/// Bits of the edges that are split.
+pub(super) fn bits(split: &[Option<usize>; 3]) -> u8 {
+    (0..3).fold(0, |bits, edge| bits | u8::from(split[edge].is_some()) << edge)
+}

@@ -1,0 +1,92 @@
+//! What of the emitted mesh lies along sharp and cut edges: normals by side, tags, copies.
+
+use super::chains::Chains;
+use super::decide::Control;
+use super::emit::Emission;
+use super::quadtree::Edges;
+use crate::mesh::{CreaseTag, Groups, INFINITELY_SHARP, Junctions, NONE, Tags};
+
+/// The normals of the corners of emitted triangles at vertices on sharp edges, by the half-edge that leaves the corner,
+/// ascending.
+pub(super) fn sides(control: &Control<'_>, emission: &Emission) -> Vec<(u32, [f64; 3])> {
+    let mut sides = Vec::new();
+    if control.lasting.is_empty() {
+        return sides;
+    }
+    let mut around = |from: u32, to: u32, normal: [f64; 3]| {
+        // Counter-clockwise from the half-edge that leaves the vertex to the one that comes in.
+        let mut h = from;
+        loop {
+            sides.push((h, normal));
+            let before = if h.is_multiple_of(3) { h + 2 } else { h - 1 };
+            if before == to {
+                break;
+            }
+            h = emission.twins[before as usize];
+            if h == NONE || h == from {
+                break;
+            }
+        }
+    };
+    for (h, normals) in &emission.sharp {
+        let along = emission.borders.along(*h);
+        for (ends, &normal) in along.windows(2).zip(normals) {
+            around(ends[1], ends[0], normal);
+        }
+    }
+    let topology = control.mesh.topology();
+    let mut is_tagged = vec![false; control.mesh.vertex_count()];
+    control.lasting.tagged_vertices().for_each(|vertex| is_tagged[vertex.index()] = true);
+    for h in (0..3 * control.mesh.face_count() as u32).map(crate::index::HalfEdgeId) {
+        if is_tagged[topology.origin(h).index()] {
+            let (own, before) = (emission.borders.along(h.0), emission.borders.along(h.previous().0));
+            if let (Some(&from), Some(&to)) = (own.first(), before.last()) {
+                around(from, to, control.sided.at(topology, h));
+            }
+        }
+    }
+    sides.sort_unstable_by_key(|&(h, _)| h);
+    sides
+}
+
+/// The tags of the emitted mesh: creases along those of the control mesh, and its corners.
+pub(super) fn tags(control: &Control<'_>, emission: &Emission) -> Tags {
+    let corners = control.mesh.tags().corners.iter().filter(|tag| tag.sharpness >= INFINITELY_SHARP);
+    let mut tags = Tags { corners: corners.copied().collect(), ..Tags::default() };
+    for (h, _) in &emission.sharp {
+        for &h in emission.borders.along(*h) {
+            // Each is met from both sides.
+            if h < emission.twins[h as usize] {
+                let triangle = emission.triangles[h as usize / 3];
+                let ends = [0, 1].map(|i| triangle[(h as usize + i) % 3]);
+                tags.creases.push(CreaseTag { vertices: ends, sharpness: INFINITELY_SHARP });
+            }
+        }
+    }
+    tags
+}
+
+/// The copies of vertices and edges of cut sheets.
+pub(super) fn junctions(
+    control: &Control<'_>,
+    edges: &Edges<'_>,
+    chains: &Chains,
+    emission: &Emission,
+) -> Junctions {
+    let mut junctions =
+        Junctions { vertices: control.mesh.junctions().vertices.clone(), edges: Groups::default() };
+    for group in 0..edges.group_count() {
+        let members = edges.members(group);
+        let places = members.first().map_or(0, |&(h, _)| chains.own(h).1.len());
+        let at = |turned: bool, count: usize, place: usize| if turned { count - 1 - place } else { place };
+        for place in 0..places {
+            let copy = |&(h, turned): &(u32, bool)| chains.own(h).0 + at(turned, places, place) as u32;
+            junctions.vertices.push(members.iter().map(copy));
+        }
+        for place in 0..=places {
+            let copy = |&(h, turned): &(u32, bool)| emission.borders.along(h)[at(turned, places + 1, place)];
+            junctions.edges.push(members.iter().map(copy));
+        }
+    }
+    junctions
+}

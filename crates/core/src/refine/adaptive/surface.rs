@@ -1,0 +1,235 @@
+//! The limit surface over a node, as far as a walk needs it: regular pieces stay what they are all the way down, others are
+//! refined on the way.
+
+use super::quadtree::Place;
+use crate::certificate::{Cell, QuarticJet};
+use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::{LimitPoint, Patch, Points, Quartic, Rules, refined_part};
+use crate::vector::DVec3;
+
+/// A regular piece as a polynomial.
+#[derive(Clone, Debug)]
+pub(super) struct Ground {
+    pub(super) piece: Quartic,
+    pub(super) jet: QuarticJet,
+    points: Points,
+    /// Its level below the control face.
+    level: u32,
+}
+
+impl Ground {
+    pub(super) fn of(points: &Points, level: u32) -> Self {
+        let piece = Quartic::of(&BezierTriangle::of(points), 0);
+        Self { jet: QuarticJet::of(&piece), piece, points: *points, level }
+    }
+
+    /// The patch of a node below.
+    pub(super) fn patch(&self, place: Place) -> Patch {
+        let levels = self.level..place.level;
+        Patch::Regular(levels.fold(self.points, |points, level| refined_part(&points, place.digit(level))))
+    }
+
+    /// The point at a place, and its unit normal.
+    pub(super) fn at(&self, [u, v]: [f64; 2]) -> LimitPoint {
+        let (mut position, mut normal) = ([[0.0; 3]], [[0.0; 3]]);
+        self.piece.points_and_normals_along(v, u, 0.0, &mut position, &mut normal);
+        LimitPoint { position: DVec3::from_array(position[0]), normal: DVec3::from_array(normal[0]) }
+    }
+}
+
+/// A node's place in the domain of a regular piece: its first corner, and its edges' length there, negative for nodes that
+/// stand on their heads.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    pub(super) u: f64,
+    pub(super) v: f64,
+    pub(super) size: f64,
+}
+
+impl Spot {
+    pub(super) const WHOLE: Self = Self { u: 0.0, v: 0.0, size: 1.0 };
+
+    /// A child's place.
+    #[inline]
+    pub(super) fn child(self, child: usize) -> Self {
+        let Self { u, v, size } = self;
+        let half = 0.5 * size;
+        match child {
+            0 => Self { u, v, size: half },
+            1 => Self { u: u + half, v, size: half },
+            2 => Self { u, v: v + half, size: half },
+            _ => Self { u: u + half, v: v + half, size: -half },
+        }
+    }
+
+    /// The leaf `depth` levels below whose first corner stands i edges along edge 0 and j along edge 2 from the first corner.
+    #[inline]
+    pub(super) fn leaf(self, depth: u32, i: usize, j: usize) -> Self {
+        let size = self.size / f64::from(1u32 << depth);
+        Self { u: self.u + size * i as f64, v: self.v + size * j as f64, size }
+    }
+
+    /// The node `depth` levels below in column i and row j, upright or on its head.
+    pub(super) fn row(self, depth: u32, i: usize, j: usize, is_headlong: bool) -> Self {
+        let Self { u, v, size } = self.leaf(depth, i, j);
+        if is_headlong { Self { u: u + size, v: v + size, size: -size } } else { Self { u, v, size } }
+    }
+
+    pub(super) fn corners(self) -> [[f64; 2]; 3] {
+        let Self { u, v, size } = self;
+        [[u, v], [u + size, v], [u, v + size]]
+    }
+
+    /// A place along an edge, `t` from its start to its end.
+    pub(super) fn along(self, edge: usize, t: f64) -> [f64; 2] {
+        let Self { u, v, size } = self;
+        let t = t * size;
+        match edge {
+            0 => [u + t, v],
+            1 => [u + (size - t), v + t],
+            _ => [u, v + (size - t)],
+        }
+    }
+
+    pub(super) fn cell(self) -> Cell {
+        Cell(self.corners())
+    }
+}
+
+/// The surface over a node.
+pub(super) enum Surface<'a> {
+    /// Nobody asks.
+    Unknown,
+    /// Part of a regular piece.
+    Regular(&'a Ground, Spot),
+    /// Any other, with its corners' limits.
+    General {
+        /// The piece.
+        patch: &'a Patch,
+        /// The limits of its corners, normals on this side.
+        corners: [LimitPoint; 3],
+        /// Its level below the control face.
+        level: u32,
+    },
+}
+
+/// The corners of a node's child.
+pub(super) fn child_corners<T: Copy>(corners: [T; 3], middles: [T; 3], child: usize) -> [T; 3] {
+    let mut own = [middles[1], middles[2], middles[0]];
+    if child < 3 {
+        own[child] = corners[child];
+        own[(child + 1) % 3] = middles[child];
+        own[(child + 2) % 3] = middles[(child + 2) % 3];
+    }
+    own
+}
+
+impl Surface<'_> {
+    /// Calls `run` with a function that hands out the surfaces over the children, by their numbers.
+    pub(super) fn with_parts(
+        &self,
+        rules: &Rules<'_>,
+        run: impl FnOnce(&mut dyn FnMut(usize, &mut dyn FnMut(&Surface<'_>))),
+    ) {
+        match self {
+            Surface::Unknown => run(&mut |_, take| take(&Surface::Unknown)),
+            Surface::Regular(ground, spot) => {
+                run(&mut |child, take| take(&Surface::Regular(ground, spot.child(child))));
+            }
+            Surface::General { patch, corners, level } => {
+                let refined = patch.refined(rules);
+                let middles = [0, 1, 2].map(|edge| refined.middle(edge));
+                run(&mut |child, take| {
+                    with_patch(
+                        &refined.part(child),
+                        child_corners(*corners, middles, child),
+                        *level + 1,
+                        take,
+                    );
+                });
+            }
+        }
+    }
+
+    /// The limits in the middles of the edges.
+    pub(super) fn middles(&self, rules: &Rules<'_>) -> [LimitPoint; 3] {
+        match self {
+            Surface::Unknown => [LimitPoint { position: DVec3::ZERO, normal: DVec3::ZERO }; 3],
+            Surface::Regular(ground, spot) => [0, 1, 2].map(|edge| ground.at(spot.along(edge, 0.5))),
+            Surface::General { patch, .. } => {
+                let refined = patch.refined(rules);
+                [0, 1, 2].map(|edge| refined.middle(edge))
+            }
+        }
+    }
+
+    /// Evaluates the points at the given places along an edge, from 0 to 1 and ascending.
+    pub(super) fn along(
+        &self,
+        rules: &Rules<'_>,
+        edge: usize,
+        places: &[f64],
+        found: &mut impl FnMut(usize, LimitPoint),
+    ) {
+        self.part_along(rules, edge, (0.0, 1.0), (0, places.len()), places, found);
+    }
+
+    fn part_along(
+        &self,
+        rules: &Rules<'_>,
+        edge: usize,
+        (from, length): (f64, f64),
+        (first, last): (usize, usize),
+        places: &[f64],
+        found: &mut impl FnMut(usize, LimitPoint),
+    ) {
+        if first == last {
+            return;
+        }
+        match self {
+            Surface::Unknown => {}
+            Surface::Regular(ground, spot) => {
+                for (at, place) in places.iter().enumerate().take(last).skip(first) {
+                    found(at, ground.at(spot.along(edge, (place - from) / length)));
+                }
+            }
+            Surface::General { patch, corners, level } => {
+                let refined = patch.refined(rules);
+                let middles = [0, 1, 2].map(|edge| refined.middle(edge));
+                let half = 0.5 * length;
+                let middle = first + places[first..last].partition_point(|&place| place < from + half);
+                let mut next = middle;
+                if middle < last && places[middle] == from + half {
+                    found(middle, middles[edge]);
+                    next += 1;
+                }
+                for (child, from, first, last) in
+                    [(edge, from, first, middle), ((edge + 1) % 3, from + half, next, last)]
+                {
+                    if first < last {
+                        let own = child_corners(*corners, middles, child);
+                        with_patch(&refined.part(child), own, *level + 1, &mut |surface| {
+                            surface.part_along(rules, edge, (from, half), (first, last), places, found);
+                        });
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Calls `take` with the surface of a patch, `level` levels below its control face.
+pub(super) fn with_patch(
+    patch: &Patch,
+    corners: [LimitPoint; 3],
+    level: u32,
+    take: &mut dyn FnMut(&Surface<'_>),
+) {
+    match patch {
+        Patch::Regular(points) => {
+            let ground = Ground::of(points, level);
+            take(&Surface::Regular(&ground, Spot::WHOLE));
+        }
+        _ => take(&Surface::General { patch, corners, level }),
+    }
+}

@@ -1,0 +1,247 @@
+//! A walk over the leaves of a control face, each with what its neighbours put on its edges.
+//!
+//! Along every edge of a node runs a chain of knots: its ends and the vertices that the nodes on either side have put
+//! between them. The chains of the control face's edges are given; those inside are the union of both sides' and are
+//! made on the way down, so vertices are numbered in the order of the walk. Each stretch between two knots also keeps the
+//! half-edge that was met there first, so that half-edges find their twins.
+
+use super::quadtree::{
+    CONDITIONAL, FULL, LEAF, Place, STRICT, Trees, UNJUDGED, along_edge, even_depth, is_split,
+};
+use super::surface::{Spot, Surface};
+use crate::mesh::NONE;
+use crate::patch::Rules;
+
+/// A vertex on a chain, and the half-edge that was met first between it and the next one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Knot {
+    /// Place along the chain, from 0 to [`FULL`].
+    pub(super) at: u32,
+    pub(super) vertex: u32,
+    pub(super) half_edge: u32,
+}
+
+impl Knot {
+    pub(super) fn new(at: u32, vertex: u32) -> Self {
+        Self { at, vertex, half_edge: NONE }
+    }
+}
+
+/// A stretch of a chain as an edge of a node: the numbers of its first and last knot, and whether the edge runs against
+/// the chain.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Side {
+    pub(super) first: usize,
+    pub(super) last: usize,
+    pub(super) reversed: bool,
+}
+
+impl Side {
+    /// Stretches between knots.
+    #[inline]
+    pub(super) fn segments(&self) -> usize {
+        self.last - self.first
+    }
+
+    /// Number of the `i`-th knot from the edge's start.
+    #[inline]
+    pub(super) fn knot(&self, i: usize) -> usize {
+        if self.reversed { self.last - i } else { self.first + i }
+    }
+
+    /// Number of the knot that keeps the `i`-th stretch from the edge's start.
+    #[inline]
+    pub(super) fn stretch(&self, i: usize) -> usize {
+        if self.reversed { self.last - 1 - i } else { self.first + i }
+    }
+
+    /// Both halves, given the number of the knot in the middle.
+    #[inline]
+    fn halves(&self, middle: usize) -> [Self; 2] {
+        let (lower, upper) = (Self { last: middle, ..*self }, Self { first: middle, ..*self });
+        if self.reversed { [upper, lower] } else { [lower, upper] }
+    }
+
+    /// The number of the knot in the middle of a side that is split.
+    #[inline]
+    pub(super) fn middle(&self, knots: &[Knot]) -> usize {
+        if self.last - self.first == 2 {
+            return self.first + 1;
+        }
+        let at = knots[self.first].at + (knots[self.last].at - knots[self.first].at) / 2;
+        self.first + knots[self.first..self.last].partition_point(|knot| knot.at < at)
+    }
+}
+
+/// What is done on the way.
+pub(super) trait Visitor {
+    /// A chain inside the face was made; `knots` runs from its first to its last, `edge` is the edge of the middle child
+    /// that it runs against, whose place in the face and surface are given.
+    fn chain(&mut self, knots: &[Knot], edge: usize, spot: Spot, middle: &Surface<'_>);
+
+    /// A node whose leaves lie `depth` levels below it. `interior` is the first of the numbers kept for the vertices inside, in
+    /// rows from edge 0 on. Surfaces that are not regular come with depth 0 only.
+    fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]);
+}
+
+/// A node whose leaves are equally deep.
+pub(super) struct Node<'a> {
+    pub(super) place: Place,
+    /// The place in the control face's domain.
+    pub(super) spot: Spot,
+    /// Levels from the node down to its leaves.
+    pub(super) depth: u32,
+    /// Whether it was not judged before the walk.
+    pub(super) is_unjudged: bool,
+    /// Whether it must pass without conditions.
+    pub(super) is_strict: bool,
+    /// Whether it passed on conditions.
+    pub(super) is_conditional: bool,
+    pub(super) sides: [Side; 3],
+    pub(super) interior: u32,
+    pub(super) surface: &'a Surface<'a>,
+}
+
+impl Node<'_> {
+    /// Whether no neighbour has split an edge of a leaf.
+    pub(super) fn is_plain(&self) -> bool {
+        self.sides.iter().all(|side| side.segments() == 1 << self.depth)
+    }
+
+    /// Triangles that its leaves are covered with.
+    pub(super) fn triangles(&self) -> usize {
+        let split: usize = self.sides.iter().map(|side| side.segments() - (1 << self.depth)).sum();
+        (1 << (2 * self.depth)) + split
+    }
+}
+
+/// A walk and what it keeps.
+pub(super) struct Walk<'a> {
+    pub(super) trees: &'a Trees,
+    pub(super) rules: &'a Rules<'a>,
+    pub(super) knots: Vec<Knot>,
+    /// The next vertex's number.
+    pub(super) next: u32,
+}
+
+impl Walk<'_> {
+    /// Walks over a node's leaves.
+    pub(super) fn node<V: Visitor>(
+        &mut self,
+        word: u32,
+        (place, spot): (Place, Spot),
+        sides: [Side; 3],
+        surface: &Surface<'_>,
+        visitor: &mut V,
+    ) {
+        if let Some(depth) = even_depth(word)
+            && (depth == 0 || !matches!(surface, Surface::General { .. }))
+        {
+            let interior = self.next;
+            let n = 1u32 << depth;
+            self.next += if n > 2 { (n - 1) * (n - 2) / 2 } else { 0 };
+            let has = |mark: u32| even_depth(word) == Some(0) && word & mark != 0;
+            let (is_unjudged, is_conditional, is_strict) = (has(UNJUDGED), has(CONDITIONAL), has(STRICT));
+            let node =
+                Node { place, spot, depth, is_unjudged, is_conditional, is_strict, sides, interior, surface };
+            visitor.leaves(&node, &mut self.knots);
+            return;
+        }
+        let children = [0, 1, 2, 3].map(|child| self.trees.child(word, child));
+        let middles = sides.map(|side| side.middle(&self.knots));
+        let floor = self.knots.len();
+        // Chain e runs from the middle of edge e + 2 to that of edge e + 1.
+        let chains = [0, 1, 2].map(|edge| {
+            let [from, to] = [2, 1].map(|i| self.knots[middles[(edge + i) % 3]].vertex);
+            let first = self.knots.len();
+            self.knots.push(Knot::new(0, from));
+            let pair = [(children[(edge + 2) % 3], false), (children[3], true)];
+            self.next = merge(self.trees, edge, &pair, self.next, &mut self.knots);
+            self.knots.push(Knot::new(FULL, to));
+            Side { first, last: self.knots.len() - 1, reversed: false }
+        });
+        let halves = [0, 1, 2].map(|edge| sides[edge].halves(middles[edge]));
+        surface.with_parts(self.rules, |part| {
+            // The middle one first: it knows the chains' points.
+            part(3, &mut |surface| {
+                for (edge, chain) in chains.iter().enumerate() {
+                    visitor.chain(&self.knots[chain.first..=chain.last], edge, spot.child(3), surface);
+                }
+            });
+            for child in 0..4 {
+                let own = if child == 3 {
+                    chains.map(|chain| Side { reversed: true, ..chain })
+                } else {
+                    let mut own = chains;
+                    own[child] = halves[child][0];
+                    own[(child + 2) % 3] = halves[(child + 2) % 3][1];
+                    own
+                };
+                part(child, &mut |surface| {
+                    let at = (place.child(child), spot.child(child));
+                    self.node(children[child], at, own, surface, visitor);
+                });
+            }
+        });
+        self.knots.truncate(floor);
+    }
+}
+
+/// Appends the knots strictly inside an edge: the union of what the nodes along it have split. Each node comes with whether
+/// the edge, which has this number in all of them, runs the other way there. Gives the next free vertex number.
+fn merge(trees: &Trees, edge: usize, pair: &[(u32, bool); 2], next: u32, knots: &mut Vec<Knot>) -> u32 {
+    let members = pair.map(|(word, turned)| (word, edge, turned));
+    let mut next = next;
+    merged(trees, &members, 0, FULL, &mut |at| {
+        knots.push(Knot::new(at, next));
+        next += 1;
+    });
+    next
+}
+
+/// Tells the places strictly inside a part of an edge that nodes along it have split, in order. A member is a node, the
+/// number of its edge, and whether that runs the other way.
+pub(super) fn merged<const N: usize>(
+    trees: &Trees,
+    members: &[(u32, usize, bool); N],
+    from: u32,
+    length: u32,
+    found: &mut impl FnMut(u32),
+) {
+    if members.iter().all(|&(word, ..)| !is_split(word)) {
+        return;
+    }
+    let half = |second: bool| {
+        members.map(|(word, edge, turned)| {
+            let below =
+                if is_split(word) { trees.child(word, along_edge(edge, second != turned)) } else { LEAF };
+            (below, edge, turned)
+        })
+    };
+    merged(trees, &half(false), from, length / 2, found);
+    found(from + length / 2);
+    merged(trees, &half(true), from + length / 2, length / 2, found);
+}
+
+/// The same for any number of members.
+pub(super) fn merged_all(
+    trees: &Trees,
+    members: &[(u32, usize, bool)],
+    from: u32,
+    length: u32,
+    found: &mut impl FnMut(u32),
+) {
+    let split: Vec<_> = members.iter().copied().filter(|&(word, ..)| is_split(word)).collect();
+    if split.is_empty() {
+        return;
+    }
+    let half = |second: bool| -> Vec<_> {
+        let below = |&(word, edge, turned): &(u32, usize, bool)| {
+            (trees.child(word, along_edge(edge, second != turned)), edge, turned)
+        };
+        split.iter().map(below).collect()
+    };
+    merged_all(trees, &half(false), from, length / 2, found);
+    found(from + length / 2);
+    merged_all(trees, &half(true), from + length / 2, length / 2, found);
+}
