@@ -181,8 +181,8 @@ impl Closer<'_> {
             Outcome::Passes => {}
             Outcome::Fails => self.closed.failing.push(place),
             Outcome::Depends { .. } if node.is_strict => self.closed.failing.push(place),
-            Outcome::Depends { deviation } => {
-                self.closed.conditions.push(Condition { place, deviation });
+            Outcome::Depends { deviation, tilt, slope } => {
+                self.closed.conditions.push(Condition { place, deviation, tilt, slope });
             }
         }
     }

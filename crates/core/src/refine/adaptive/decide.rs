@@ -162,24 +162,13 @@ impl Decision {
         (max_levels, most): (u32, usize),
         closing: impl Fn(u32) -> Option<&'c Extent> + Sync,
     ) -> Result<Option<Vec<u32>>, RefineError> {
-        let all = |face: u32| {
-            let mut extent = self.found[face as usize].extent;
-            if let Some(closing) = closing(face) {
-                extent.add(closing);
-            }
-            extent
-        };
         let faces = self.found.len() as u32;
         let mut wanting = Vec::new();
         for face in 0..faces {
-            let own = all(face);
-            let (mut tilt, mut slope) = (own.tilt, own.slope);
-            for other in beside(control, edges, face).map(all) {
-                (tilt, slope) = (tilt.max(other.tilt), slope.min(other.slope));
-            }
+            let (Allowance { tilt, slope }, counted) = self.around(control, edges, face, &closing);
             let allowance = &self.allowances[face as usize];
             // What counts on nothing needs nothing.
-            if *allowance != Allowance::NOTHING && !(tilt <= allowance.tilt && own.drift_slope <= slope) {
+            if *allowance != Allowance::NOTHING && !(tilt <= allowance.tilt && counted <= slope) {
                 wanting.push((face, tilt, slope));
             }
         }
@@ -212,6 +201,30 @@ impl Decision {
             self.found[face as usize] = found;
         }
         Ok(Some(wanting.into_iter().map(|(face, ..)| face).collect()))
+    }
+
+    /// What the triangles in a face and beside it come to, `closing` being what came about since in a face, and the greatest
+    /// slope that is counted on in the face.
+    pub(super) fn around<'c>(
+        &self,
+        control: &Control<'_>,
+        edges: &Edges<'_>,
+        face: u32,
+        closing: impl Fn(u32) -> Option<&'c Extent>,
+    ) -> (Allowance, f64) {
+        let all = |face: u32| {
+            let mut extent = self.found[face as usize].extent;
+            if let Some(closing) = closing(face) {
+                extent.add(closing);
+            }
+            extent
+        };
+        let own = all(face);
+        let mut around = Allowance { tilt: own.tilt, slope: own.slope };
+        for other in beside(control, edges, face).map(all) {
+            around = Allowance { tilt: around.tilt.max(other.tilt), slope: around.slope.min(other.slope) };
+        }
+        (around, own.drift_slope)
     }
 
     /// The leaves of a face that pass on conditions, in the order of the tree; those that were split since are among them.
@@ -531,8 +544,8 @@ impl<'a> Decider<'a> {
                 self.has_failed = true;
                 LEAF
             }
-            Outcome::Depends { deviation } => {
-                self.conditions.push(Condition { place, deviation });
+            Outcome::Depends { deviation, tilt, slope } => {
+                self.conditions.push(Condition { place, deviation, tilt, slope });
                 LEAF | CONDITIONAL
             }
         }

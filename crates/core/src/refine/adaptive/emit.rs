@@ -55,16 +55,26 @@ impl Borders {
 
 const NOWHERE: Origin = Origin { face: NONE, barycentric: [0.0; 3] };
 
+/// How much of a control face is emitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Extend {
+    /// Nothing.
+    Nothing,
+    /// The vertices on its edges that are its own.
+    Edges,
+    /// Everything.
+    All,
+}
+
 /// Emits all leaves, or those of some control faces only. `closed` is what the walks over the faces found.
 ///
-/// With some faces only the arrays are as long, since numbers stay the same, but nothing else of them is written or touched;
-/// that is enough to look at the triangles of faces that are two faces away from what is left out.
+/// With some faces only the arrays are as long, since numbers stay the same, but nothing else of them is written or touched.
 pub(super) fn emit(
     control: &Control<'_>,
     edges: &Edges<'_>,
     (decision, chains): (&Decision, &Chains),
     closed: &[Closed],
-    only: Option<&[bool]>,
+    only: Option<&[Extend]>,
 ) -> Result<Emission, MeshError> {
     let faces = control.mesh.face_count();
     let too_many = |what, count| MeshError::TooMany { what, count, limit: MAX_FACES };
@@ -91,8 +101,9 @@ pub(super) fn emit(
         conditions: Vec::new(),
     };
     corners(control, &mut emission);
-    let is_wanted = |face: u32| only.is_none_or(|only| only[face as usize]);
-    let jobs = jobs(control, edges, chains, (closed, &is_wanted), &mut emission);
+    let extend = |face: u32| only.map_or(Extend::All, |only| only[face as usize]);
+    let is_wanted = |face: u32| extend(face) == Extend::All;
+    let jobs = jobs(control, edges, chains, (closed, &extend), &mut emission);
     let conditions =
         parallel::for_each_job(jobs, |job| write(control, edges, (decision, chains), closed, job));
     emission.conditions = conditions.concat();
@@ -161,6 +172,8 @@ fn split_off<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
 
 /// Consecutive control faces, and the parts of the arrays that are theirs.
 struct Job<'a> {
+    /// Whether more than the vertices on edges is written.
+    has_inside: bool,
     faces: core::ops::Range<u32>,
     on_edges: Vertices<'a>,
     inside: Vertices<'a>,
@@ -175,7 +188,7 @@ fn jobs<'a>(
     control: &Control<'_>,
     edges: &Edges<'_>,
     chains: &Chains,
-    (closed, is_wanted): (&[Closed], &impl Fn(u32) -> bool),
+    (closed, extend): (&[Closed], &impl Fn(u32) -> Extend),
     emission: &'a mut Emission,
 ) -> Vec<Job<'a>> {
     let count = control.mesh.vertex_count();
@@ -197,9 +210,10 @@ fn jobs<'a>(
             own += chains.own(h).1.len();
             segments += chains.along(edges, h) + 1;
         }
-        let is_last = face + 1 == faces || is_wanted(face) != is_wanted(face + 1);
+        let is_last = face + 1 == faces || extend(face) != extend(face + 1);
         if triangles >= JOB || is_last {
             let job = Job {
+                has_inside: extend(face) == Extend::All,
                 faces: from..face + 1,
                 on_edges: on_edges.take(own),
                 inside: inside.take(vertices),
@@ -209,7 +223,7 @@ fn jobs<'a>(
                 parents: split_off(&mut rest.2, triangles as usize),
                 borders: split_off(&mut rest.3, segments),
             };
-            if is_wanted(face) {
+            if extend(face) != Extend::Nothing {
                 jobs.push(job);
             }
             first_triangle += triangles;
@@ -229,6 +243,12 @@ fn write(
     mut job: Job<'_>,
 ) -> Vec<(Condition, u32, u32)> {
     let trees = &decision.trees;
+    if !job.has_inside {
+        for face in job.faces.clone() {
+            own_edges(control, chains, face, &mut job.on_edges);
+        }
+        return Vec::new();
+    }
     job.twins.fill(NONE);
     let mut walk = Walk { trees, rules: control.rules, knots: Vec::new(), next: job.inside.first };
     let mut writer = Writer {
@@ -277,6 +297,21 @@ fn write(
         }
     }
     writer.found
+}
+
+/// Writes the vertices on the edges of a face that are its own.
+fn own_edges(control: &Control<'_>, chains: &Chains, face: u32, vertices: &mut Vertices<'_>) {
+    let own = [0, 1, 2].map(|edge| chains.own(3 * face + edge));
+    if own.iter().all(|(_, places)| places.is_empty()) {
+        return;
+    }
+    with_patch(&control.patch(face), control.corners(face), 0, &mut |surface| {
+        for (edge, (number, places)) in own.into_iter().enumerate() {
+            on_edge(control, face, edge, places, surface, |i, point, origin| {
+                vertices.set(number + i as u32, point, origin);
+            });
+        }
+    });
 }
 
 /// Evaluates the vertices at the given places along an edge of a control face.

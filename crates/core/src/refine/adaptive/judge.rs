@@ -20,7 +20,7 @@ const DIVISIONS: u32 = 2;
 
 /// Drifts are counted on up to this part of what a triangle's own angles allow: those of the triangles beside it may be more acute,
 /// closing triangles above all.
-const DRIFT_SHARE: f64 = 0.3;
+const DRIFT_SHARE: f64 = 0.48;
 
 /// Unit vectors are off by no more than this.
 const ROUNDING: f64 = 1e-12;
@@ -127,6 +127,10 @@ pub(super) enum Outcome {
     Depends {
         /// How far the triangle is from its part of the surface.
         deviation: Deviation,
+        /// Its tilt.
+        tilt: f64,
+        /// The tangent of its least angle.
+        slope: f64,
     },
 }
 
@@ -135,6 +139,16 @@ pub(super) enum Outcome {
 pub(super) struct Condition {
     pub(super) place: Place,
     pub(super) deviation: Deviation,
+    pub(super) tilt: f64,
+    pub(super) slope: f64,
+}
+
+impl Condition {
+    /// What it comes to beside triangles of these tilts and angles at most.
+    pub(super) fn bound(&self, around: &Allowance) -> f64 {
+        let slope = (DRIFT_SHARE * self.slope).min(around.slope);
+        self.deviation.bound(self.tilt + around.tilt, slope)
+    }
 }
 
 /// What becomes of a triangle, and what it comes to.
@@ -159,9 +173,14 @@ impl Verdict {
             (Outcome::Fails, _) | (_, Outcome::Fails) => Outcome::Fails,
             (Outcome::Passes, other) => other,
             (own, Outcome::Passes) => own,
-            (Outcome::Depends { deviation }, Outcome::Depends { deviation: second }) => {
-                Outcome::Depends { deviation: deviation.max(second) }
-            }
+            (
+                Outcome::Depends { deviation, tilt, slope },
+                Outcome::Depends { deviation: second, tilt: other, slope: least },
+            ) => Outcome::Depends {
+                deviation: deviation.max(second),
+                tilt: tilt.max(other),
+                slope: slope.min(least),
+            },
         };
         self
     }
@@ -247,7 +266,8 @@ impl Judge<'_> {
         let bound = deviation.bound(chord, slope);
         if self.is_lenient || bound <= self.distance {
             // What it comes to is known when its neighbours are.
-            return verdict(Outcome::Depends { deviation }, 0.0, 0.0);
+            let Extent { tilt, slope, .. } = seen.extent();
+            return verdict(Outcome::Depends { deviation, tilt, slope }, 0.0, 0.0);
         }
         verdict(Outcome::Fails, bound, 0.0)
     }

@@ -41,7 +41,7 @@ use balance::{Pending, balance};
 use chains::Chains;
 use close::{Closed, Verdicts, close};
 use decide::{Control, Decision, decide};
-use emit::Emission;
+use emit::{Emission, Extend};
 use judge::Goal;
 use quadtree::{Edges, MOST_NODES, Place, Trees};
 
@@ -191,6 +191,7 @@ impl Engine<'_> {
     fn emit(&self, plan: &mut Plan, most: usize, is_budget: bool) -> Result<Option<Emission>, RefineError> {
         let mut rounds = 0;
         loop {
+            self.settle_by_allowances(plan);
             let only = self.conditional(plan);
             let chains = (&plan.decision, &plan.chains);
             let emission = match &only {
@@ -252,23 +253,49 @@ impl Engine<'_> {
         Ok(emission)
     }
 
-    /// The faces with leaves that pass on conditions which were not looked at, and two rings around them, if they are few.
-    fn conditional(&self, plan: &Plan) -> Option<Vec<bool>> {
+    /// Settles the faces whose conditions hold whatever is beside, by what triangles there came to after all.
+    fn settle_by_allowances(&self, plan: &mut Plan) {
+        for face in 0..plan.closed.len() {
+            let lists = [plan.decision.conditions(face as u32), &plan.closed[face].conditions];
+            if plan.settled[face].is_some() || lists.iter().all(|list| list.is_empty()) {
+                continue;
+            }
+            let closing = |face: u32| plan.closed[face as usize].extent.as_ref();
+            let (around, _) = plan.decision.around(self.control, &self.edges, face as u32, closing);
+            let bounds =
+                lists.into_iter().flatten().map(|condition| (condition.bound(&around), condition.place));
+            let worst = bounds.max_by(|a, b| a.0.total_cmp(&b.0));
+            plan.settled[face] = worst.filter(|&(bound, _)| bound <= plan.goal.allowed(face as u32));
+        }
+    }
+
+    /// What must be emitted to look at the conditions that nobody has looked at: their faces and those around, and the
+    /// edges of the faces around these. `None` if that is most of all.
+    fn conditional(&self, plan: &Plan) -> Option<Vec<Extend>> {
         let has = |face: usize| {
             let conditions = [plan.decision.conditions(face as u32), &plan.closed[face].conditions];
             plan.settled[face].is_none() && conditions.iter().any(|list| !list.is_empty())
         };
-        let mut marked: Vec<bool> = (0..plan.closed.len()).map(has).collect();
-        for _ in 0..2 {
-            let mut wider = marked.clone();
+        let wider = |marked: &[bool]| {
+            let mut wider = marked.to_vec();
             (0..marked.len())
                 .filter(|&face| marked[face])
                 .for_each(|face| self.mark(face as u32, &mut wider));
-            marked = wider;
-        }
-        let triangles = plan.closed.iter().zip(&marked).filter(|&(_, &is_marked)| is_marked);
+            wider
+        };
+        let whole = wider(&(0..plan.closed.len()).map(has).collect::<Vec<bool>>());
+        let triangles = plan.closed.iter().zip(&whole).filter(|&(_, &is_whole)| is_whole);
         let triangles: usize = triangles.map(|(face, _)| face.triangles as usize).sum();
-        (2 * triangles < plan.triangles).then_some(marked)
+        if 2 * triangles >= plan.triangles {
+            return None;
+        }
+        let edges = wider(&whole);
+        let extend = |(is_whole, is_edge): (bool, bool)| match (is_whole, is_edge) {
+            (true, _) => Extend::All,
+            (false, true) => Extend::Edges,
+            (false, false) => Extend::Nothing,
+        };
+        Some(whole.into_iter().zip(edges).map(extend).collect())
     }
 
     fn split(&self, trees: &mut Trees, place: Place, fresh: impl FnMut(Place)) -> Result<(), RefineError> {
