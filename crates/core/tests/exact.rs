@@ -275,3 +275,19 @@ fn cut_sheets_stay_together() {
     assert!(edges.len() >= 4, "the edge was divided {} times", edges.len());
     assert!(edges.iter().all(|copies| copies.len() == 3));
 }
+
+/// Levels beyond what places can be told apart by, and tolerances that nothing meets.
+#[test]
+fn depths_have_limits() {
+    let control = model("tetrahedron");
+    for levels in [31, 66, 254, usize::MAX] {
+        let options = ExactOptions::default().tolerance(0.01).max_levels(levels);
+        let error = exact(&control, &Loop, &options).unwrap_err().to_string();
+        assert!(error.contains("levels") && error.contains("30"), "{error}");
+    }
+    let options = ExactOptions::default().tolerance(1e-300).max_levels(30).max_triangles(Some(3_000));
+    let result = exact(&control, &Loop, &options).unwrap();
+    result.mesh.validate().unwrap();
+    assert!(result.stop != ExactStop::Met && result.mesh.face_count() <= 3_000);
+    assert!(ExactOptions::default().max_triangles.is_some());
+}

@@ -8,6 +8,7 @@
 
 use crate::index::HalfEdgeId;
 use crate::mesh::{Mesh, Topology};
+use crate::refine::exact;
 
 /// Marks the word of a node below which all leaves are equally deep; the lowest bits are their depth below it.
 pub(super) const LEAF: u32 = 1 << 31;
@@ -29,7 +30,7 @@ pub(super) const MOST_NODES: usize = STRICT as usize;
 
 /// Levels at most below a control face: paths take two bits a level, and places along an edge are counted in units of the
 /// deepest level's edges.
-pub(super) const MOST_LEVELS: u32 = 30;
+pub(super) const MOST_LEVELS: u32 = exact::MOST_LEVELS as u32;
 
 /// Places along the edge of a control face run from 0 to this.
 pub(super) const FULL: u32 = 1 << MOST_LEVELS;

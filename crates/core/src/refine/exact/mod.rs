@@ -23,6 +23,7 @@ mod settle;
 mod sides;
 
 pub use estimate::exact_estimate;
+pub(in crate::refine) use options::MOST_LEVELS;
 pub use options::{
     ErrorBounds, Estimate, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin,
 };

@@ -38,9 +38,10 @@ pub struct ExactOptions<'a> {
     /// Collapses edges of a finer mesh as long as the goals allow ([`mod@crate::simplify`]): slower, and fewer triangles for
     /// the same distance. For a tolerance, a number of triangles, or both; not with [`Self::balance`]. Default: no.
     pub optimize: bool,
-    /// Levels at most below the control faces. Default: 24.
+    /// Levels at most below the control faces: up to 30. Default: 24.
     pub max_levels: usize,
-    /// Triangles at most, as a cap rather than a goal: reaching it is a failure to meet the others. Default: none.
+    /// Triangles at most, as a cap rather than a goal: reaching it is a failure to meet the others. Default: 50
+    /// million, so that tolerances that nothing meets come to an end.
     pub max_triangles: Option<usize>,
     /// Bytes that the refinement and its result may take, about. Default: no limit.
     pub max_memory: Option<usize>,
@@ -50,6 +51,12 @@ pub struct ExactOptions<'a> {
 
 /// Levels that are tried where none are given: edges are divided by more than ten million then.
 const USUAL_LEVELS: usize = 24;
+
+/// Levels at most: places along the edge of a control face are told apart by 32 bits.
+pub(in crate::refine) const MOST_LEVELS: usize = 30;
+
+/// Triangles at most where no cap is given.
+const USUAL_TRIANGLES: usize = 50_000_000;
 
 /// Memory for a triangle and what belongs to it while the mesh grows, the result included: measured, with a margin.
 pub(super) const BYTES_PER_TRIANGLE: usize = 320;
@@ -66,7 +73,7 @@ impl Default for ExactOptions<'_> {
             balance: false,
             optimize: false,
             max_levels: USUAL_LEVELS,
-            max_triangles: None,
+            max_triangles: Some(USUAL_TRIANGLES),
             max_memory: None,
             observer: None,
         }
@@ -183,6 +190,9 @@ impl<'a> ExactOptions<'a> {
             && !(pixels > 0.0 && pixels.is_finite())
         {
             return bad("distance in pixels", pixels, "a number above 0");
+        }
+        if self.max_levels > MOST_LEVELS {
+            return bad("number of levels", self.max_levels as f64, "at most 30");
         }
         if self.pixels.is_some() && self.cameras.is_empty() {
             return bad("number of cameras", 0.0, "at least one, for a distance in pixels");
