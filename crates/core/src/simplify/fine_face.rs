@@ -146,6 +146,13 @@ impl Candidates {
                 self.used |= 1 << place;
                 return Some(corners.iter().map(|c| self.distance(c, place)).fold(0.0, f64::max));
             }
+            // Around a vertex, small pieces may be cut over and over, each corner known to be near to two triangles only.
+            if self.cuts <= MOST_CUTS / 2 && !corners.iter().all(|corner| corner.complete) {
+                for corner in &mut corners {
+                    self.complete(corner);
+                }
+                continue;
+            }
             self.cuts = self.cuts.checked_sub(1)?;
             let (i, apart) = self.side_to_cut(&corners);
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
