@@ -28,7 +28,7 @@ mod surface;
 mod walk;
 
 use super::RefineError;
-use super::exact::{Exact, ExactOptions, ExactStop};
+use super::exact::{Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop};
 use super::junctions::join_copies;
 use crate::certificate::exceeds;
 use crate::criterion::Distance;
@@ -36,6 +36,7 @@ use crate::limit::LimitTable;
 use crate::mesh::{Mesh, MeshError, Sharpness, Topology, check_finite, outgoing_half_edges};
 use crate::parallel;
 use crate::patch::Rules;
+use crate::progress::Cancelled;
 use crate::scheme::Scheme;
 use balance::{Pending, balance};
 use chains::Chains;
@@ -121,7 +122,12 @@ fn with_engine<T>(
     let lasting = sharpness.lasting();
     let control = Control { mesh, sharpness: &sharpness, lasting: &lasting, positions, sided, rules: &rules };
     let rounding = probe::rounding(mesh, options.max_levels);
-    let engine = Engine { control: &control, edges: Edges::of(mesh), max_levels: options.max_levels as u32 };
+    let engine = Engine {
+        control: &control,
+        edges: Edges::of(mesh),
+        max_levels: options.max_levels as u32,
+        observer: options.observer,
+    };
     run(&engine, rounding)
 }
 
@@ -130,6 +136,7 @@ pub(super) struct Engine<'a> {
     control: &'a Control<'a>,
     edges: Edges<'a>,
     max_levels: u32,
+    observer: Option<ExactObserver<'a>>,
 }
 
 /// Trees whose closed leaves pass, and what emitting them takes.
@@ -360,6 +367,7 @@ impl Engine<'_> {
             }
             plan.chains = chains;
             plan.triangles = plan.closed.iter().map(|face| face.triangles as usize).sum();
+            self.tell(plan.triangles)?;
             if plan.triangles > most {
                 return Ok(false);
             }
@@ -382,6 +390,15 @@ impl Engine<'_> {
             }
             self.balance(&mut plan.decision.trees, pending, |place| self.mark(place.face, &mut is_dirty))?;
             dirty = marked(&is_dirty);
+        }
+    }
+
+    /// Tells the observer how many triangles there would be.
+    fn tell(&self, triangles: usize) -> Result<(), RefineError> {
+        let progress = ExactProgress { round: 1, triangles, worst: 0.0 };
+        match self.observer {
+            Some(observer) if observer(&progress).is_break() => Err(Cancelled.into()),
+            _ => Ok(()),
         }
     }
 
