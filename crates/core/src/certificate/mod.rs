@@ -8,6 +8,7 @@
 mod bounds;
 mod cell_rows;
 mod deviation;
+mod dihedral;
 mod quartic_cell;
 mod sampled;
 mod sub_triangle;
@@ -16,6 +17,7 @@ mod triangle_frame;
 pub(crate) use bounds::{Effort, Pieces};
 pub(crate) use cell_rows::{CellRows, MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, RowTarget};
 pub(crate) use deviation::Deviation;
+pub(crate) use dihedral::{STEEP, around};
 pub(crate) use quartic_cell::{Cell, QuarticJet};
 pub(crate) use sampled::Samples;
 pub(crate) use sub_triangle::SubTriangle;

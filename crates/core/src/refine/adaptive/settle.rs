@@ -8,16 +8,10 @@ use std::collections::HashSet;
 use super::emit::Emission;
 use super::judge::{Condition, Goal};
 use super::quadtree::Place;
+use crate::certificate::{STEEP, around};
 use crate::mesh::NONE;
 use crate::parallel;
-use crate::vector::{DVec3, vector};
-
-/// A slope beyond all that can be met.
-const STEEP: f64 = f64::MAX;
-
-/// The squared chord and the slope next to a triangle without a plane: they leave only the bound that needs no
-/// neighbours.
-const UNSETTLED: (f64, f64) = (4.0, 0.0);
+use crate::vector::vector;
 
 /// Leaves that one call takes together.
 const BLOCK: usize = 1024;
@@ -73,39 +67,4 @@ fn beside(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -> (f64, f64
         (!is_open).then(|| at(emission.triangles[twin as usize / 3][(twin as usize + 2) % 3]))
     });
     around(emission.triangles[triangle as usize].map(at), &opposite)
-}
-
-/// The greatest squared chord of the angles between the planes of a triangle and its neighbours, given by their corners
-/// opposite, and the greatest slope at which points may drift over them.
-fn around(own: [DVec3; 3], opposite: &[Option<DVec3>; 3]) -> (f64, f64) {
-    let edges = [own[1] - own[0], own[2] - own[1], own[0] - own[2]];
-    let Some((normal, area)) = plane(edges[0], edges[1]) else { return UNSETTLED };
-    let lengths = edges.map(DVec3::length);
-    // Half of what the angle at a corner leaves of π, at most π/2: its tangent is the cotangent of half the angle.
-    let free = [0, 1, 2].map(|corner| {
-        let before = (corner + 2) % 3;
-        (lengths[corner] * lengths[before] - edges[corner].dot(edges[before])) / area
-    });
-    let (mut squared, mut slope) = (0.0f64, STEEP);
-    for edge in 0..3 {
-        let Some(opposite) = opposite[edge] else { continue };
-        let out = opposite - own[edge];
-        // The neighbour runs along the edge the other way.
-        let Some((other, area)) = plane(out, edges[edge]) else { return UNSETTLED };
-        squared = squared.max(normal.distance_squared(other));
-        // Tangents of the neighbour's angles at both ends: the lesser is that of the greater product.
-        let at_start = out.dot(edges[edge]);
-        let product = at_start.max(lengths[edge] * lengths[edge] - at_start);
-        slope = slope.min(free[edge]).min(free[(edge + 1) % 3]).min(area / product);
-    }
-    (squared, slope)
-}
-
-/// The unit vector at right angles to two edges, and the area of their parallelogram; `None` if that is nothing, or
-/// so small or great that rounding decides it.
-fn plane(a: DVec3, b: DVec3) -> Option<(DVec3, f64)> {
-    let across = a.cross(b);
-    let squared = across.length_squared();
-    let area = squared.sqrt();
-    (1e-290..1e290).contains(&squared).then(|| (across / area, area))
 }
