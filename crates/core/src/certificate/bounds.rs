@@ -35,13 +35,16 @@
 //! in place of S the above holds as it stands, but for gaps of Ŝ where two pieces meet: at S(x) one ends at a(x), the
 //! other at b(x), both within R of S(x). So does the segment from a to b, being in the ball; it is no higher than its
 //! ends, and filling the gaps with such segments closes what is covered again. Each point of Ŝ and of the fills has S
-//! within R: heights and own bounds grow by R, drifts and slopes do not. Two such Ŝ are taken.
+//! within R: heights and own bounds grow by R, drifts and slopes do not. Three such Ŝ are taken.
 //!
 //! Inside the surface, at a vertex of valence k with the characteristic map χ ([`crate::patch::characteristic`]), the control
 //! points are Pᵢ = p + t₁χᵢ₁ + t₂χᵢ₂ + rᵢ, p being the limit position and t₁, t₂ = (2/k) Σ cos(2πj/k) rⱼ, (2/k) Σ
 //! sin(2πj/k) rⱼ the tangents. Weights of control points are at least 0 and their sum is 1, so Ŝ = p + t₁χ₁ + t₂χ₂ and
 //! R = max |rᵢ|, which falls by about four from level to level. Ŝ is an affine image, its hull points those of χ: a
 //! cone at the vertex, so that slopes stay bounded there. (Any p and t would do.)
+//!
+//! Beside sharp edges that fade, Ŝ is the piece where they last, and R how far that is away (`lasting_twin` in [`crate::patch`]). As its
+//! corners may be R from those of T, T counts as one whose corners were moved ([`Deviation::off`]).
 //!
 //! Elsewhere Ŝ is the point of T nearest to S, and for curves the nearest of the edge: then R is the own bound, nothing
 //! drifts, and there is no slope. That holds for any piece, and helps where slopes are too great. The own bound is then
@@ -67,6 +70,10 @@ const DEEPEST: usize = 40;
 /// Pieces that reach this many times as far as the target will not pass; bounds of others stay tight, so that they are
 /// told apart even if they may not be split.
 const HOPELESS: f64 = 1.5;
+
+/// Where the lasting twin of a piece is farther away than the target by this many times what lies between the two, the piece is
+/// taken to be too far as well.
+const CERTAIN: f64 = 3.0;
 
 /// The whole piece stands for the triangle.
 const ALL: Borders = [0, 1, 2];
@@ -215,8 +222,34 @@ impl Search<'_> {
         }
     }
 
+    /// Takes the lasting twin of a semi-sharp piece in its place if that is enough, or if it is clear that nothing will be; says
+    /// whether it did.
+    fn by_twin(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) -> bool {
+        let Patch::SemiSharp(piece) = patch else { return false };
+        let aim = self.aim();
+        let Some((near, rest)) = piece.lasting_twin(self.rules).filter(|&(_, rest)| rest <= aim) else {
+            return false;
+        };
+        // At corners of the triangle the twin is off by up to the rest: no division gets below that.
+        let effort = Effort { target: (aim - 2.0 * rest).max(1.5 * rest), ..self.effort };
+        let mut twin = Search { effort, found: Deviation::default(), ..*self };
+        twin.part(&near, part, borders, depth);
+        let found = twin.found.off(rest, rest);
+        let Deviation { own, height, across, .. } = found;
+        let found = Deviation { own: own + rest, height: height + rest, across: across + rest, ..found };
+        let fails = exceeds(self.value(&twin.found) - CERTAIN * rest, aim);
+        if fails || self.value(&found) <= aim {
+            self.add(found);
+            return true;
+        }
+        false
+    }
+
     /// A piece at an irregular vertex: as it is if that is enough, else refined.
     fn irregular(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) {
+        if self.by_twin(patch, part, borders, depth) {
+            return;
+        }
         if let Some(deviation) = self.held(patch, part, borders, depth)
             && (depth >= DEEPEST || self.value(&deviation) <= self.aim())
         {

@@ -6,8 +6,10 @@
 //! vertices have six edges, of which two may stay sharp for a while. As soon as nothing at a part's corners fades any
 //! more, it takes the form of other pieces.
 
+mod lasting_twin;
 mod regular;
 
+use lasting_twin::Gaps;
 use regular::{RefinedRegular, RegularSemiSharp};
 
 use super::Patch;
@@ -171,6 +173,15 @@ impl SemiSharpPatch {
         }
     }
 
+    /// The piece that this would be if nothing faded, and how far that is from it at most, over the same parameter. `None`
+    /// where that is not known.
+    pub(crate) fn lasting_twin(&self, rules: &Rules<'_>) -> Option<(Patch, f64)> {
+        match self {
+            Self::Regular(regular) => regular.lasting_twin(rules),
+            Self::Rings(corners) => rings_twin(corners, rules),
+        }
+    }
+
     /// The points after one refinement.
     pub(crate) fn refined<'a>(&'a self, rules: &'a Rules<'a>) -> RefinedSemiSharp<'a> {
         match self {
@@ -182,6 +193,16 @@ impl SemiSharpPatch {
             }),
         }
     }
+}
+
+/// [`SemiSharpPatch::lasting_twin`] of the face with those corners.
+fn rings_twin(corners: &[SemiSharpVertex; 3], rules: &Rules<'_>) -> Option<(Patch, f64)> {
+    let fades = corners.iter().map(|corner| corner.sharp.fades_first()).fold(INFINITELY_SHARP, f64::min);
+    let mut gaps = Gaps::new(fades);
+    for corner in corners.iter().filter(|corner| corner.fades()) {
+        gaps.add(corner, rules)?;
+    }
+    Some((Patch::of(SectorPatch(corners.each_ref().map(SemiSharpVertex::sector))), gaps.apart()))
 }
 
 /// The points around the four parts of a semi-sharp face.

@@ -101,6 +101,12 @@ impl SharpRing {
         all.copied().filter(|&s| s < INFINITELY_SHARP).fold(0.0, f64::max)
     }
 
+    /// The least sharpness that fades; [`INFINITELY_SHARP`] where nothing does.
+    pub(crate) fn fades_first(&self) -> f64 {
+        let all = self.spokes.iter().chain([&self.vertex]).copied();
+        all.filter(|&s| s > 0.0).fold(INFINITELY_SHARP, f64::min)
+    }
+
     /// How much of the next refinement follows the rules of the ring as sharp as it is now; the rest follows those
     /// of the ring after it. Less than 1 where something is about to fade: the mean sharpness of all that is.
     pub fn present_weight(&self) -> f64 {

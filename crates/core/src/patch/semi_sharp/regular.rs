@@ -4,12 +4,13 @@
 
 use core::array::from_fn;
 
-use super::{SemiSharpPatch, SemiSharpVertex};
+use super::lasting_twin::Gaps;
+use super::{SemiSharpPatch, SemiSharpVertex, rings_twin};
 use crate::patch::box_spline::{
     CORNERS, EDGE_POINTS, MIDDLES, PARTS, Points, REFINED_CORNERS, RINGS, Refined, assemble,
 };
 use crate::patch::{LimitPoint, Patch, Rules};
-use crate::ring::{SharpRing, VertexRule, faded, present_weight, rule};
+use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule, faded, present_weight, rule};
 use crate::vector::DVec3;
 
 /// No edge.
@@ -123,6 +124,27 @@ impl RegularSemiSharp {
         })
     }
 
+    /// The piece that this would be if nothing faded, and how far that is from it at most, over the same parameter.
+    pub(super) fn lasting_twin(&self, rules: &Rules<'_>) -> Option<(Patch, f64)> {
+        let mut rings = RINGS.map(|ring| ring.map(|at| self.points[at as usize]));
+        let is_regular =
+            |corner: usize| mirror(self.points[CORNERS[corner]], &mut rings[corner], &self.spokes(corner));
+        if !(0..3).all(is_regular) {
+            return rings_twin(&self.corners(), rules);
+        }
+        let fading = self.edges.iter().copied().filter(|&sharpness| faded(sharpness) != sharpness);
+        let mut gaps = Gaps::new(fading.fold(INFINITELY_SHARP, f64::min));
+        let mut kink = 0.0f64;
+        for (&(_, [v, w], [a, b]), _) in
+            EDGE_POINTS.iter().zip(&self.edges).filter(|(_, sharpness)| **sharpness > 0.0)
+        {
+            let [v, w, a, b] = [v, w, a, b].map(|at| self.points[at as usize]);
+            kink = kink.max(((v - a) + (w - b)).length_squared());
+        }
+        gaps.add_kink(kink.sqrt());
+        Some((Patch::Regular(assemble(CORNERS.map(|at| self.points[at]), &rings)), gaps.apart()))
+    }
+
     /// The simplest form of the piece.
     fn settled(self) -> Patch {
         if self.edges == [0.0; 15] {
@@ -169,6 +191,22 @@ impl RegularSemiSharp {
         }
         RefinedRegular { points: Refined(points), edges: self.edges.map(faded) }
     }
+}
+
+/// Replaces the neighbours beyond the crease through a vertex, seen from the face between neighbours 0 and 1, by their mirror
+/// images, with which the ring is smooth; says whether sharp edges are opposite, or none.
+fn mirror(at: DVec3, ring: &mut [DVec3; 6], spokes: &[f64; 6]) -> bool {
+    let first = match spokes.map(|sharpness| sharpness > 0.0) {
+        [false, false, false, false, false, false] => return true,
+        [true, false, false, true, false, false] => 0,
+        [false, true, false, false, true, false] => 4,
+        [false, false, true, false, false, true] => 5,
+        _ => return false,
+    };
+    let [a, b, c, d] = from_fn(|slot| ring[(first + slot) % 6]);
+    ring[(first + 4) % 6] = at + d - c;
+    ring[(first + 5) % 6] = at + a - b;
+    true
 }
 
 /// The points around the four parts of such a face.

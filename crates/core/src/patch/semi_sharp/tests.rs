@@ -104,3 +104,56 @@ fn pieces_follow_uniform_refinement() {
         }
     }
 }
+
+/// Limit positions of the vertices over each control face, some levels down.
+fn limits(mesh: &Mesh, scheme: &dyn Scheme, levels: usize) -> Vec<Vec<DVec3>> {
+    let fine = uniform(mesh, scheme, &UniformOptions::default().levels(levels)).unwrap().mesh;
+    let table = LimitTable::new(scheme);
+    let positions = table.positions(&fine).unwrap();
+    let of_face = |triangles: &[[u32; 3]]| -> Vec<DVec3> {
+        triangles.as_flattened().iter().map(|&v| vector(positions[v as usize])).collect()
+    };
+    fine.triangles().chunks_exact(1 << (2 * levels)).map(of_face).collect()
+}
+
+/// The surface with sharp edges that fade, and the one where they last, are no farther apart than is said, at any of their
+/// points; and not much nearer either.
+#[test]
+fn lasting_twins_are_near() {
+    let step = |mesh: &Mesh| uniform(mesh, &Loop, &UniformOptions::default().levels(1)).unwrap().mesh;
+    let (mut seen, mut tightest) = (0, 0.0f64);
+    for (seed, name) in ["cube", "tetrahedron", "spike", "sheet", "head"].into_iter().enumerate() {
+        for fades in [0.4, 1.0, 1.7, 3.0] {
+            // Whole creases, corners where they meet and boundaries; with tags here and there, and everywhere.
+            let plain = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0;
+            let mut folded = plain.with_creases_above(0.6).unwrap();
+            let mut tags = folded.tags().clone();
+            tags.creases.iter_mut().for_each(|tag| tag.sharpness = fades + 1.0);
+            folded = step(&folded.with_tags(tags).unwrap());
+            for mesh in [folded, tagged(name, 17 + seed as u64)] {
+                let mut lasting = mesh.tags().clone();
+                lasting.creases.iter_mut().for_each(|tag| tag.sharpness = f64::INFINITY);
+                lasting.corners.iter_mut().for_each(|tag| tag.sharpness = f64::INFINITY);
+                let other = mesh.clone().with_tags(lasting).unwrap();
+                for scheme in [&Loop as &dyn Scheme, &LoopWarren] {
+                    let (own, twins) = (limits(&mesh, scheme, 4), limits(&other, scheme, 4));
+                    let (rules, sharpness) = (Rules::of(scheme), Sharpness::of(&mesh));
+                    for face in mesh.topology().faces().step_by(mesh.face_count().div_ceil(300)) {
+                        let patch = root_patch(&mesh, &sharpness, face, &rules);
+                        let Patch::SemiSharp(piece) = patch else { continue };
+                        let Some((_, apart)) = piece.lasting_twin(&rules) else { continue };
+                        let distances = own[face.index()].iter().zip(&twins[face.index()]);
+                        let farthest = distances.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+                        assert!(
+                            farthest <= apart + 1e-13 * mesh.diagonal(),
+                            "{name} {fades} {face}: {farthest} {apart}"
+                        );
+                        seen += 1;
+                        tightest = tightest.max(farthest / apart);
+                    }
+                }
+            }
+        }
+    }
+    assert!(seen > 1000 && tightest > 0.5, "{seen} pieces, at most {tightest} of the bound");
+}
