@@ -164,7 +164,7 @@ impl RefinedExtraordinary {
 mod tests {
     use super::*;
     use crate::patch::Rules;
-    use crate::patch::sector::{Centre, SectorPatch, VertexSector};
+    use crate::patch::sector::{Centre, Far, SectorPatch, VertexSector};
     use crate::scheme::Loop;
 
     fn arbitrary(count: usize, seed: f64) -> Vec<DVec3> {
@@ -185,8 +185,13 @@ mod tests {
             outer: [before, past_first, between, past_second, after],
         } = *patch;
         let k = ring.len();
-        let smooth =
-            |at, neighbours| VertexSector { at, neighbours, centre: Centre::Smooth { sharp: None }, slot: 0 };
+        let smooth = |at, neighbours| VertexSector {
+            at,
+            neighbours,
+            centre: Centre::Smooth { sharp: None },
+            slot: 0,
+            far: Far::Kept,
+        };
         let mut sectors = [
             smooth(at, ring.clone()),
             smooth(ring[0], vec![ring[1], at, ring[k - 1], before, past_first, between]),

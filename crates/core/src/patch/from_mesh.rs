@@ -1,9 +1,10 @@
 //! The patch of a control face.
 
 use super::Patch;
+use super::large_rings::LargeRings;
 use super::mesh_patch::MeshPatch;
 use super::rules::Rules;
-use super::sector::{Centre, SectorPatch, VertexSector};
+use super::sector::{Centre, Far, SectorPatch, VertexSector};
 use super::semi_sharp::{SemiSharpPatch, SemiSharpVertex};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sector, Sharpness, Topology};
@@ -11,14 +12,22 @@ use crate::ring::RingShape;
 use crate::vector::{DVec3, vector};
 
 /// The limit surface over a control face.
-pub(crate) fn root_patch(mesh: &Mesh, sharpness: &Sharpness<'_>, face: FaceId, rules: &Rules<'_>) -> Patch {
+///
+/// `large` are the mesh's large rings.
+pub(crate) fn root_patch(
+    mesh: &Mesh,
+    sharpness: &Sharpness<'_>,
+    large: &LargeRings,
+    face: FaceId,
+    rules: &Rules<'_>,
+) -> Patch {
     let corners = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
     if !rules.is_certified() {
         return Patch::Mesh(MeshPatch::of(mesh, sharpness, face));
     }
     match fades(mesh, sharpness, corners) {
         true => SemiSharpPatch::of(corners.map(|h| SemiSharpVertex::of(mesh, sharpness, h))),
-        false => patch_of(mesh, sharpness, corners),
+        false => patch_of(mesh, sharpness, large, corners),
     }
 }
 
@@ -29,8 +38,14 @@ fn fades(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> bo
 }
 
 /// The surface over a face, given its corners, for a scheme of the Loop family. No tag may fade there.
-fn patch_of(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> Patch {
-    Patch::of(SectorPatch(corners.map(|corner| sector(mesh, sharpness, corner))))
+fn patch_of(mesh: &Mesh, sharpness: &Sharpness<'_>, large: &LargeRings, corners: [HalfEdgeId; 3]) -> Patch {
+    let near = |h: HalfEdgeId| {
+        let is_tagged = sharpness.is_tagged(mesh.topology().origin(h));
+        if is_tagged { None } else { large.sector(mesh, h) }
+    };
+    Patch::of(SectorPatch(
+        corners.map(|corner| near(corner).unwrap_or_else(|| sector(mesh, sharpness, corner))),
+    ))
 }
 
 /// The sector of the origin of `h`, on the side of the face of `h`.
@@ -40,7 +55,13 @@ fn sector(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> VertexSector
     let sector = sector_of(topology, sharpness, h);
     let neighbours: Vec<DVec3> = sector.neighbours(topology).map(at).collect();
     let slot = sector.outgoing(topology).position(|other| other == h).unwrap_or(0);
-    VertexSector { at: at(topology.origin(h)), neighbours, centre: Centre::of(sector.shape), slot }
+    VertexSector {
+        at: at(topology.origin(h)),
+        neighbours,
+        centre: Centre::of(sector.shape),
+        slot,
+        far: Far::Kept,
+    }
 }
 
 /// The sector of the ring of the origin of `h` that the face of `h` is in.

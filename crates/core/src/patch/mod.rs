@@ -10,6 +10,7 @@ mod box_spline;
 pub(crate) mod characteristic;
 pub(crate) mod extraordinary;
 mod from_mesh;
+pub(crate) mod large_rings;
 pub(crate) mod mesh_patch;
 mod pole;
 // Nobody asks for second derivatives yet.
@@ -30,7 +31,7 @@ use extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use mesh_patch::{MeshPatch, RefinedMeshPatch};
 use pole::{LARGEST_RING, PolePatch, RefinedPole};
 pub(crate) use quartic::Quartic;
-use sector::{RefinedSectors, SectorPatch};
+use sector::{Far, RefinedSectors, SectorPatch};
 use semi_sharp::{RefinedSemiSharp, SemiSharpPatch};
 
 /// The limit surface over one face.
@@ -101,8 +102,11 @@ impl Patch {
             return Self::Regular(points);
         }
         match sectors.extraordinary() {
-            Some(patch) if patch.ring.len() > LARGEST_RING => Self::Pole(Box::new(PolePatch::of(patch))),
-            Some(patch) => Self::Extraordinary(Box::new(patch)),
+            Some((patch, Far::Mean { valence, mean })) => {
+                Self::Pole(Box::new(PolePatch::near(patch, valence, mean)))
+            }
+            Some((patch, _)) if patch.ring.len() > LARGEST_RING => Self::Pole(Box::new(PolePatch::of(patch))),
+            Some((patch, _)) => Self::Extraordinary(Box::new(patch)),
             None => Self::Sectors(Box::new(sectors)),
         }
     }

@@ -38,6 +38,11 @@ impl PolePatch {
         Self { near: whole, valence, mean }
     }
 
+    /// The piece of which only as much of the ring is there as is kept, given the number of all neighbours and their mean.
+    pub(super) fn near(near: ExtraordinaryPatch, valence: usize, mean: DVec3) -> Self {
+        Self { near, valence, mean }
+    }
+
     pub(crate) fn valence(&self) -> usize {
         self.valence
     }

@@ -3,6 +3,9 @@
 //! A vertex's sector (Biermann, Levin and Zorin 2000) is the part of its ring that decides the surface on the face's
 //! side: the whole ring of a smooth vertex or a dart, the part between two sharp edges (or boundary edges) of a crease
 //! vertex or a corner. One refinement gives the sectors of the four parts; all but the corner's own are regular then.
+//!
+//! Of very many neighbours only those near the face and what else the rules ask for are kept ([`Far`]), so that a piece takes no
+//! more than any other; see [`super::pole`] for how long that lasts.
 
 use super::box_spline::{self, Points};
 use super::extraordinary::ExtraordinaryPatch;
@@ -33,14 +36,33 @@ impl Centre {
     }
 }
 
+/// What is known of a sector's neighbours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Far {
+    /// All are there.
+    Kept,
+    /// In a closed ring without sharp edges, those far from the face are left out: after half of those that are there, and one more.
+    /// There is the mean of all of them in their place.
+    Mean {
+        /// The number of all neighbours.
+        valence: usize,
+        mean: DVec3,
+    },
+    /// In an open sector those after the first are left out, or those before the last, or both: the ends are all that
+    /// counts of what is far.
+    Ends { after_first: bool, before_last: bool },
+}
+
 /// A vertex with its neighbours, counter-clockwise, on the side of one of its faces.
 #[derive(Clone, Debug)]
 pub(crate) struct VertexSector {
     pub(crate) at: DVec3,
     pub(crate) neighbours: Vec<DVec3>,
     pub(crate) centre: Centre,
-    /// The neighbour that is the face's next corner; the one after it is the corner after that.
+    /// The neighbour that is the face's next corner; the one after it is the corner after that. 0 where a mean stands for the others.
     pub(crate) slot: usize,
+    /// What is left out.
+    pub(crate) far: Far,
 }
 
 impl VertexSector {
@@ -70,11 +92,38 @@ impl VertexSector {
                 0.75 * self.at + 0.125 * (self.neighbours[0] + self.neighbours[self.neighbours.len() - 1])
             }
             Centre::Smooth { .. } => {
-                let valence = self.neighbours.len();
+                let (valence, sum) = match self.far {
+                    Far::Mean { valence, mean } => (valence, valence as f64 * mean),
+                    _ => (self.neighbours.len(), self.neighbours.iter().sum::<DVec3>()),
+                };
                 let beta = rules.beta(valence);
-                (1.0 - valence as f64 * beta) * self.at + beta * self.neighbours.iter().sum::<DVec3>()
+                (1.0 - valence as f64 * beta) * self.at + beta * sum
             }
         }
+    }
+
+    /// Leaves out the neighbours that a refinement has made from some that had been left out, as long as the face does not need
+    /// them: by then it makes no difference what stands for them.
+    fn without_unknown(mut self) -> Self {
+        let count = self.neighbours.len();
+        match self.far {
+            Far::Kept => {}
+            Far::Mean { .. } => {
+                if count > 4 {
+                    self.neighbours.drain(count / 2..count / 2 + 2);
+                }
+            }
+            Far::Ends { after_first, before_last } => {
+                if before_last && count > self.slot + 4 {
+                    self.neighbours.remove(count - 2);
+                }
+                if after_first && self.slot > 2 {
+                    self.neighbours.remove(1);
+                    self.slot -= 1;
+                }
+            }
+        }
+        self
     }
 
     /// The new vertices on the edges to the neighbours.
@@ -96,6 +145,9 @@ impl VertexSector {
     /// The six neighbours, the face's next corner first, of a regular sector; on an open one those beyond the curve are
     /// mirrored, which gives the same surface.
     pub(super) fn regular_ring(&self) -> Option<[DVec3; 6]> {
+        if self.far != Far::Kept {
+            return None;
+        }
         let ring: [DVec3; 6] = match (self.centre, &self.neighbours[..]) {
             (Centre::Smooth { sharp: None }, &[a, b, c, d, e, f]) => [a, b, c, d, e, f],
             (Centre::Crease, &[a, b, c, d]) => [a, b, c, d, self.at + d - c, self.at + a - b],
@@ -118,7 +170,7 @@ impl SectorPatch {
     }
 
     /// The face as that of one irregular vertex inside the surface, if the other two corners are regular.
-    pub(crate) fn extraordinary(&self) -> Option<ExtraordinaryPatch> {
+    pub(crate) fn extraordinary(&self) -> Option<(ExtraordinaryPatch, Far)> {
         let corner = self.0.iter().position(|sector| sector.regular_ring().is_none())?;
         let [sector, first, second] = [0, 1, 2].map(|i| &self.0[(corner + i) % 3]);
         if sector.centre != (Centre::Smooth { sharp: None }) || sector.neighbours.len() < 3 {
@@ -128,17 +180,19 @@ impl SectorPatch {
         let [_, _, _, past_second, after, _] = second.regular_ring()?;
         let mut ring = sector.neighbours.clone();
         ring.rotate_left(sector.slot);
-        Some(ExtraordinaryPatch {
-            corner,
-            at: sector.at,
-            ring,
-            outer: [before, past_first, between, past_second, after],
-        })
+        let outer = [before, past_first, between, past_second, after];
+        Some((ExtraordinaryPatch { corner, at: sector.at, ring, outer }, sector.far))
     }
 
     /// All points, corners first; some more than once.
     pub(crate) fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
-        self.0.iter().flat_map(|sector| core::iter::once(sector.at).chain(sector.neighbours.iter().copied()))
+        self.0.iter().flat_map(|sector| {
+            let mean = match sector.far {
+                Far::Mean { mean, .. } => Some(mean),
+                _ => None,
+            };
+            core::iter::once(sector.at).chain(sector.neighbours.iter().copied()).chain(mean)
+        })
     }
 
     /// The points after one refinement.
@@ -180,7 +234,7 @@ impl RefinedSectors<'_> {
     /// The sector of the new point on the edge from corner `edge`, with the face that starts at neighbour `slot`.
     fn middle_sector(&self, edge: usize, slot: usize) -> VertexSector {
         let (neighbours, centre) = self.around_middle(edge);
-        VertexSector { at: self.middle(edge), neighbours, centre, slot }
+        VertexSector { at: self.middle(edge), neighbours, centre, slot, far: Far::Kept }
     }
 
     /// The new point on the edge from corner `edge` and its six neighbours: new points are always regular.
@@ -207,7 +261,12 @@ impl RefinedSectors<'_> {
             neighbours: self.edge_points[part].clone(),
             centre: old.centre,
             slot: old.slot,
-        };
+            far: match old.far {
+                Far::Mean { valence, mean } => Far::Mean { valence, mean: 0.375 * old.at + 0.625 * mean },
+                far => far,
+            },
+        }
+        .without_unknown();
         let (on_next, on_last) = (self.middle_sector(part, 2), self.middle_sector((part + 2) % 3, 0));
         let mut sectors = [own, on_next, on_last];
         sectors.rotate_right(part);

@@ -13,7 +13,7 @@ use lasting_twin::Gaps;
 use regular::{RefinedRegular, RegularSemiSharp};
 
 use super::Patch;
-use super::sector::{Centre, SectorPatch, VertexSector};
+use super::sector::{Centre, Far, SectorPatch, VertexSector};
 use super::{LimitPoint, Rules};
 use crate::index::HalfEdgeId;
 use crate::mesh::{Mesh, Sharpness};
@@ -118,6 +118,7 @@ impl SemiSharpVertex {
                 neighbours: self.neighbours.clone(),
                 centre,
                 slot: self.slot,
+                far: Far::Kept,
             };
         };
         let around = (0..own.shape.valence as usize).map(|i| self.neighbours[(own.first + i) % count]);
@@ -126,6 +127,7 @@ impl SemiSharpVertex {
             neighbours: around.collect(),
             centre: Centre::of(own.shape),
             slot: place(own.first),
+            far: Far::Kept,
         }
     }
 

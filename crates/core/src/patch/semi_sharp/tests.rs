@@ -5,6 +5,7 @@ use crate::index::FaceId;
 use crate::limit::LimitTable;
 use crate::mesh::{CornerTag, CreaseTag, Tags};
 use crate::models;
+use crate::patch::large_rings::LargeRings;
 use crate::patch::root_patch;
 use crate::refine::{UniformOptions, uniform};
 use crate::scheme::{Loop, LoopWarren, Scheme};
@@ -96,7 +97,7 @@ fn pieces_follow_uniform_refinement() {
             let sharpness = Sharpness::of(&levels[0]);
             let mut semi_sharp = 0;
             for face in levels[0].topology().faces().step_by(levels[0].face_count().div_ceil(40)) {
-                let patch = root_patch(&levels[0], &sharpness, face, &rules);
+                let patch = root_patch(&levels[0], &sharpness, &LargeRings::default(), face, &rules);
                 semi_sharp += usize::from(matches!(patch, Patch::SemiSharp(_)));
                 check.visit(&patch, HalfEdgeId::of(face, 0), 0);
             }
@@ -139,7 +140,7 @@ fn lasting_twins_are_near() {
                     let (own, twins) = (limits(&mesh, scheme, 4), limits(&other, scheme, 4));
                     let (rules, sharpness) = (Rules::of(scheme), Sharpness::of(&mesh));
                     for face in mesh.topology().faces().step_by(mesh.face_count().div_ceil(300)) {
-                        let patch = root_patch(&mesh, &sharpness, face, &rules);
+                        let patch = root_patch(&mesh, &sharpness, &LargeRings::default(), face, &rules);
                         let Patch::SemiSharp(piece) = patch else { continue };
                         let Some((_, apart)) = piece.lasting_twin(&rules) else { continue };
                         let distances = own[face.index()].iter().zip(&twins[face.index()]);

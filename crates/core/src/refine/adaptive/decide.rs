@@ -14,6 +14,7 @@ use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::SidedNormals;
 use crate::mesh::{Mesh, MeshError, Sharpness};
 use crate::parallel;
+use crate::patch::large_rings::LargeRings;
 use crate::patch::{LimitPoint, Patch, RefinedPatch, Rules, root_patch};
 use crate::refine::RefineError;
 use crate::vector::vector;
@@ -49,6 +50,7 @@ const MOST_ROUNDS: usize = 6;
 pub(super) struct Control<'a> {
     pub(super) mesh: &'a Mesh,
     pub(super) sharpness: &'a Sharpness<'a>,
+    pub(super) large: LargeRings,
     /// What is sharp in the limit.
     pub(super) lasting: &'a Sharpness<'a>,
     pub(super) positions: Vec<[f64; 3]>,
@@ -59,7 +61,7 @@ pub(super) struct Control<'a> {
 
 impl Control<'_> {
     pub(super) fn patch(&self, face: u32) -> Patch {
-        root_patch(self.mesh, self.sharpness, FaceId(face), self.rules)
+        root_patch(self.mesh, self.sharpness, &self.large, FaceId(face), self.rules)
     }
 
     /// The limits of a face's corners, normals on its side.

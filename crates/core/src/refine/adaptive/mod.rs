@@ -36,6 +36,7 @@ use crate::limit::LimitTable;
 use crate::mesh::{Mesh, MeshError, Sharpness, Topology, check_finite, outgoing_half_edges};
 use crate::parallel;
 use crate::patch::Rules;
+use crate::patch::large_rings::LargeRings;
 use crate::progress::Cancelled;
 use crate::scheme::Scheme;
 use balance::{Pending, balance};
@@ -120,7 +121,9 @@ fn with_engine<T>(
     join_copies(&mut positions, &mesh.junctions().vertices);
     let sharpness = Sharpness::of(mesh);
     let lasting = sharpness.lasting();
-    let control = Control { mesh, sharpness: &sharpness, lasting: &lasting, positions, sided, rules: &rules };
+    let large = LargeRings::of(mesh);
+    let control =
+        Control { mesh, sharpness: &sharpness, large, lasting: &lasting, positions, sided, rules: &rules };
     let rounding = probe::rounding(mesh, options.max_levels);
     let engine = Engine {
         control: &control,

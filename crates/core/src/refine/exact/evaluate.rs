@@ -11,6 +11,7 @@ use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::SidedNormals;
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
+use crate::patch::large_rings::LargeRings;
 use crate::patch::{LimitPoint, Patch, Rules, root_patch};
 use crate::vector::{DVec3, vector};
 
@@ -83,7 +84,13 @@ impl Evaluation<'_> {
         parallel::pieces_of(roots.len(), BLOCK, |block| {
             let mut found = Found::default();
             for &root in &roots[block] {
-                let patch = root_patch(self.control, self.sharpness, FaceId(root), self.rules);
+                let patch = root_patch(
+                    self.control,
+                    self.sharpness,
+                    &LargeRings::default(),
+                    FaceId(root),
+                    self.rules,
+                );
                 let corners = [0, 1, 2].map(|corner| {
                     let h = HalfEdgeId::of(FaceId(root), corner);
                     let normal = vector(self.sided.at(self.control.topology(), h));
@@ -253,7 +260,8 @@ impl Evaluation<'_> {
             path.push(place);
             node = parent;
         }
-        let mut patch = root_patch(self.control, self.sharpness, FaceId(node), self.rules);
+        let mut patch =
+            root_patch(self.control, self.sharpness, &LargeRings::default(), FaceId(node), self.rules);
         for place in path.into_iter().rev() {
             patch = patch.refined(self.rules).part(place);
         }

@@ -7,6 +7,7 @@ use super::emit::Emission;
 use super::grow::Growth;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::parallel;
+use crate::patch::large_rings::LargeRings;
 use crate::patch::{Patch, root_patch};
 use crate::vector::{DVec3, vector};
 
@@ -43,7 +44,8 @@ impl Growth<'_> {
             let mut found = Vec::new();
             for root in block.filter(|&root| walk.above[root]) {
                 let face = FaceId(root as u32);
-                let patch = root_patch(self.control, &self.sharpness, face, self.rules);
+                let patch =
+                    root_patch(self.control, &self.sharpness, &LargeRings::default(), face, self.rules);
                 let normal = |corner| self.sided.at(self.control.topology(), HalfEdgeId::of(face, corner));
                 walk.visit(root as u32, &patch, [0, 1, 2].map(|corner| vector(normal(corner))), &mut found);
             }

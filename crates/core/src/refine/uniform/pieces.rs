@@ -12,6 +12,7 @@ use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::extraordinary::ExtraordinaryPatch;
+use crate::patch::large_rings::LargeRings;
 use crate::patch::quartic::Quartic;
 use crate::patch::{Patch, Rules, root_patch};
 use crate::vector::{DVec3, vector};
@@ -84,6 +85,7 @@ struct Weights(Vec<f64>);
 pub(super) struct Pieces<'a> {
     mesh: &'a Mesh,
     sharpness: &'a Sharpness<'a>,
+    large: LargeRings,
     rules: &'a Rules<'a>,
     segments: usize,
     pub(super) slots: Slots,
@@ -118,6 +120,7 @@ impl<'a> Pieces<'a> {
         Self {
             mesh,
             sharpness,
+            large: LargeRings::of(mesh),
             rules,
             segments: grid.segments,
             slots: Slots::new(grid),
@@ -153,7 +156,7 @@ impl<'a> Pieces<'a> {
                 return turn;
             }
         }
-        let patch = root_patch(self.mesh, self.sharpness, FaceId(face as u32), self.rules);
+        let patch = root_patch(self.mesh, self.sharpness, &self.large, FaceId(face as u32), self.rules);
         self.evaluate_patch(&patch, values);
         0
     }
