@@ -115,6 +115,18 @@ impl<'a> Pieces<'a> {
         self.refined.get_or_insert_with(|| self.patch.refined(rules))
     }
 
+    /// The limits of the vertices down to so many levels below the patch, its corners left out.
+    pub(crate) fn points(&mut self, levels: usize, rules: &'a Rules<'a>) -> Vec<DVec3> {
+        let mut points = Vec::new();
+        let refined = self.refined(rules);
+        points.extend((0..3).map(|edge| refined.middle(edge).position));
+        if levels > 1 {
+            let parts = (0..4).map(|child| refined.part(child));
+            points.extend(parts.flat_map(|part| Pieces::of(&part).points(levels - 1, rules)));
+        }
+        points
+    }
+
     /// The deviation of `frame` and the part of the surface that it stands for: the frame's corner `i` belongs to the
     /// part's. Estimated from samples for schemes outside Loop's family.
     pub(crate) fn deviation(
@@ -336,9 +348,7 @@ impl Search<'_> {
         let is_inside = starts == INSIDE && ends == INSIDE;
         let vertex = is_inside.then_some(DVec3::ZERO);
         let inner = sector.hull.iter().copied().chain(vertex).map(image);
-        let deviation = self.bound.points(inner, &curves[..count]);
-        let Deviation { own, height, across, .. } = deviation;
-        Some(Deviation { own: own + rest, height: height + rest, across: across + rest, ..deviation })
+        Some(self.bound.points(inner, &curves[..count]).grown(rest))
     }
 
     /// The greatest distance of the control points from the triangle, and from the edges in `borders`; `None` as soon as

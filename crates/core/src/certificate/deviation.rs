@@ -64,6 +64,17 @@ impl Deviation {
         Self { own: greater(self.own, moved), height, drift: self.drift + aside, across, ..self }
     }
 
+    /// That of a piece each of whose points is within `distance` of one of the piece that this is for, and the other way round.
+    ///
+    /// So pieces at irregular vertices are bounded ([`super::bounds`]), and triangles whose corners were moved off the surface:
+    /// let the piece be moved within the triangle's plane so that each corner stands over that of the triangle, points between as
+    /// barycentric coordinates say. Its curves stand to the triangle's edges as those of the surface stand to its own chords, its
+    /// heights over the plane are what they were; and no point was moved farther than a corner.
+    pub(crate) fn grown(self, distance: f64) -> Self {
+        let Self { own, height, across, .. } = self;
+        Self { own: own + distance, height: height + distance, across: across + distance, ..self }
+    }
+
     /// The bound where the neighbours' planes are turned by angles with this chord (2 sin(θ/2)) at most, and `slope`
     /// is the greatest that is allowed.
     #[inline]

@@ -19,7 +19,6 @@ pub(crate) use cell_rows::{CellRows, MOST_DIVISIONS, Mark, Marks, RowBlock, RowE
 pub(crate) use deviation::Deviation;
 pub(crate) use dihedral::{STEEP, around};
 pub(crate) use quartic_cell::{Cell, QuarticJet};
-pub(crate) use sampled::Samples;
 pub(crate) use sub_triangle::SubTriangle;
 pub(crate) use triangle_frame::TriangleFrame;
 

@@ -217,6 +217,12 @@ impl BesideEdges {
             }
         }
     }
+
+    /// The same for a triangle whose corners were moved off the surface by up to `moved`, up to `aside` of that within its
+    /// plane, over which the surface is so high ([`Deviation::grown`]).
+    pub(crate) fn deviation_off(&self, height: f64, moved: f64, aside: f64) -> Deviation {
+        self.deviation(height).grown(if self.loose.is_some() { moved } else { aside })
+    }
 }
 
 /// Whether a map that differs from the triangle's own by derivatives of at most `difference` along edges takes no two points
@@ -314,7 +320,35 @@ impl Heights {
 
     /// A bound for the greatest height by Bernstein coefficients over the parts that `levels` divisions into four give.
     pub(crate) fn refined(&self, levels: u32) -> f64 {
-        divided(&self.bernstein(), levels)
+        self.lifted([0.0; 3], levels)
+    }
+
+    /// The least and the greatest height in a few places, where the surface's corners stand at the given ones over the plane.
+    pub(crate) fn sampled(&self, [first, second, third]: [f64; 3]) -> (f64, f64) {
+        let Self { ss, sr, rr, sss, ssr, srr, rrr, ssss, sssr, ssrr, srrr, rrrr } = *self;
+        let (by_s, by_r) = (ss + sss + ssss, rr + rrr + rrrr);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (j, k) in (0..=4).flat_map(|k| (0..=4 - k).map(move |j| (j, k))) {
+            let (s, r) = (0.25 * f64::from(j), 0.25 * f64::from(k));
+            let along = (((ssss * s + sss) * s + ss) * s - by_s) * s;
+            let across = (((rrrr * r + rrr) * r + rr) * r - by_r) * r;
+            let mixed = (sr + (ssr + sssr * s) * s + (srr + srrr * r) * r + ssrr * s * r) * s * r;
+            let height = along + across + mixed + first + (second - first) * s + (third - first) * r;
+            (low, high) = (low.min(height), high.max(height));
+        }
+        (low, high)
+    }
+
+    /// The same where the surface's corners stand at these heights over the plane.
+    pub(crate) fn lifted(&self, [first, second, third]: [f64; 3], levels: u32) -> f64 {
+        let mut coefficients = self.bernstein();
+        let (along, across) = (0.25 * (second - first), 0.25 * (third - first));
+        for (k, row) in ROWS.iter().enumerate() {
+            for j in 0..5 - k {
+                coefficients[row + j] += first + along * j as f64 + across * k as f64;
+            }
+        }
+        divided(&coefficients, levels)
     }
 
     /// The coefficients in Bernstein's basis, in rows of constant power of r.

@@ -53,11 +53,6 @@ impl Samples {
         Self { unit, points }
     }
 
-    /// The points alone.
-    pub(crate) fn points(self) -> Vec<DVec3> {
-        self.points.into_iter().map(|(_, point)| point).collect()
-    }
-
     /// What the points over a part show of the deviation of the triangle that stands for it.
     pub(crate) fn deviation(&self, part: SubTriangle, bound: &DeviationBound<'_>) -> Deviation {
         let corners = places_of(part, self.unit);

@@ -48,9 +48,14 @@ impl Criteria {
         self.distance.is_some() || self.cone.is_some() || self.pixels.is_some()
     }
 
-    /// Whether the limit normals on a triangle's own side matter.
-    pub(crate) fn needs_normals(&self) -> bool {
-        self.cone.is_some() || self.pixels.is_some()
+    /// Whether distances matter.
+    pub(crate) fn has_distances(&self) -> bool {
+        self.distance.is_some() || self.pixels.is_some() || !self.is_some()
+    }
+
+    /// Whether angles matter.
+    pub(crate) fn has_cones(&self) -> bool {
+        self.cone.is_some()
     }
 
     /// Levels below the control faces at which what fails by the cone alone is given up.

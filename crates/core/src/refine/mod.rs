@@ -5,6 +5,8 @@
 mod adaptive;
 mod driver;
 mod exact;
+mod exact_options;
+mod exact_result;
 mod junctions;
 mod simplified;
 mod split;
@@ -13,10 +15,9 @@ mod stepwise;
 mod tags;
 mod uniform;
 
-pub use exact::{
-    ErrorBounds, Estimate, Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop, Origin, exact,
-    exact_estimate, is_certified,
-};
+pub use exact::{exact, exact_estimate, is_certified};
+pub use exact_options::{ExactObserver, ExactOptions, ExactProgress};
+pub use exact_result::{ErrorBounds, Estimate, Exact, ExactStop, Origin};
 pub use stepwise::{SeamRule, StepwiseOptions, stepwise, stepwise_observed};
 pub use uniform::{UniformOptions, uniform, uniform_observed};
 

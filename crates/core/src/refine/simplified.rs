@@ -5,7 +5,8 @@
 
 use core::ops::ControlFlow;
 
-use super::{ErrorBounds, Exact, ExactOptions, ExactProgress, ExactStop, RefineError, exact};
+use super::adaptive::adaptive;
+use super::{ErrorBounds, Exact, ExactOptions, ExactProgress, ExactStop, RefineError};
 use crate::measure::distances_to;
 use crate::mesh::{Mesh, MeshError};
 use crate::progress::Progress;
@@ -42,7 +43,7 @@ pub(super) fn simplified(
             .map(|cap| cap.saturating_mul(FINE_TIMES).min(AFFORDABLE).max(cap)),
         ..options.clone()
     };
-    let fine = exact(control, scheme, &fine_options)?;
+    let fine = adaptive(control, scheme, &fine_options)?;
     let allowance =
         options.tolerance.map(|tolerance| tolerance - fine.error.upper).filter(|&left| left > 0.0);
     let fewest = [options.triangles, options.max_triangles].into_iter().flatten().min();
@@ -61,7 +62,7 @@ pub(super) fn simplified(
     let is_met = options.tolerance.is_some_and(|tolerance| error.upper <= tolerance);
     if options.tolerance.is_some() && (!is_met || collapsed.mesh.face_count() > fine.mesh.face_count() / FEW)
     {
-        let plain = exact(control, scheme, &ExactOptions { optimize: false, ..options.clone() })?;
+        let plain = adaptive(control, scheme, &ExactOptions { optimize: false, ..options.clone() })?;
         if plain.stop == ExactStop::Met && (!is_met || plain.mesh.face_count() <= collapsed.mesh.face_count())
         {
             return Ok(plain);

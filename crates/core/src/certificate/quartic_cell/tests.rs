@@ -101,6 +101,49 @@ fn dense_samples_lie_within_the_bounds() {
     assert!(counted > 2500 && tight * 10 > counted * 9, "{tight} of {counted}");
 }
 
+/// Triangles whose corners were moved off the surface: heights over their planes, and how far the surface is from them, against
+/// points of the surface.
+#[test]
+fn triangles_off_the_surface_are_bounded() {
+    let mut numbers = Numbers(8);
+    let (mut tight, mut counted) = (0, 0);
+    for round in 0..2000 {
+        let piece = numbers.piece([0.002, 0.02, 0.1][round % 3]);
+        let (jet, cell) = (QuarticJet::of(&piece), numbers.cell());
+        let feet = cell.0.map(|[u, v]| piece.point(u, v));
+        let size = 0.1 * feet[0].distance(feet[1]);
+        let steps = feet.map(|_| DVec3::new(numbers.next(), numbers.next(), numbers.next()) * size);
+        let frame = TriangleFrame::new([0, 1, 2].map(|i| feet[i] + steps[i]));
+        if frame.is_flat() {
+            continue;
+        }
+        let heights = jet.heights(&cell, frame.normal());
+        let lifts = steps.map(|step| -frame.normal().dot(step));
+        let bound = heights.lifted(lifts, 2);
+        let aside = steps.map(|step| (step - frame.normal().dot(step) * frame.normal()).length());
+        let aside = aside.into_iter().fold(0.0, f64::max);
+        let moved = steps.map(DVec3::length).into_iter().fold(0.0, f64::max);
+        let deviation = jet.beside(&cell, &frame, [false; 3]).deviation_off(bound, moved, aside);
+        let (sampled, mut highest, mut farthest) = (heights.sampled(lifts), 0.0f64, 0.0f64);
+        for weights in grid(GRID) {
+            let [u, v] = place(&cell, weights);
+            let point = piece.point(u, v);
+            highest = highest.max(frame.height(point).abs());
+            farthest = farthest.max(frame.squared(point).sqrt());
+        }
+        for weights in grid(4) {
+            let [u, v] = place(&cell, weights);
+            let height = frame.height(piece.point(u, v));
+            assert!(height <= sampled.1 + 1e-12 && height >= sampled.0 - 1e-12, "round {round}: {sampled:?}");
+        }
+        assert!(highest <= bound + 1e-12, "round {round}: {highest} {bound}");
+        assert!(farthest <= deviation.own + 1e-12, "round {round}: {farthest} {deviation:?}");
+        counted += 1;
+        tight += usize::from(bound <= 1.06 * highest);
+    }
+    assert!(counted > 1700 && tight * 10 > counted * 9, "{tight} of {counted}");
+}
+
 /// The cubic part's constant: the sum is Lipschitz in each coordinate with constant 2, so a grid misses little.
 #[test]
 fn the_cubic_constant_holds() {

@@ -6,9 +6,9 @@
 
 use super::judge::Goal;
 use super::{Engine, Plan};
-use crate::progress::Cancelled;
+use crate::mesh::MeshError;
 use crate::refine::RefineError;
-use crate::refine::exact::ExactStop;
+use crate::refine::exact_result::ExactStop;
 
 /// From one plan to the next the triangles grow by this much at most while none has passed the budget.
 const STEP: f64 = 6.0;
@@ -21,6 +21,9 @@ const LEFT_AT_LEAST: usize = 12;
 
 /// Distances nearer to each other than this tell nothing any more.
 const NEAR: f64 = 1e-3;
+
+/// What fails so many times over is as bad as any.
+const COARSEST: f64 = 1e12;
 
 /// Budgets below this are spent to the last face.
 const EXACT: usize = 20_000;
@@ -37,11 +40,14 @@ pub(super) fn search(
     {
         return Ok((plan, ExactStop::Met));
     }
-    // Everything passes.
-    let Some(mut best) = engine.plan(Goal::Within(f64::INFINITY), usize::MAX)? else {
-        return Err(Cancelled.into());
-    };
-    let (mut high, mut low) = (best.worst(), floor);
+    let everything = engine.plan(Goal::Within(f64::INFINITY), usize::MAX)?;
+    let mut best = everything.ok_or_else(|| MeshError::Broken {
+        place: format!("{} control faces", engine.control.mesh.face_count()),
+        what: "undivided faces fit any budget",
+    })?;
+    // Criteria may have no answer to undivided faces but that they are as bad as can be.
+    let most_value = if engine.control.criteria.is_some() { COARSEST } else { f64::INFINITY };
+    let (mut high, mut low) = (best.worst().min(most_value), floor);
     let mut power = 1.0f64;
     let enough = most - (most / LEFT).max(LEFT_AT_LEAST).min(most);
     let mut bisects = false;

@@ -6,12 +6,12 @@ use std::collections::HashMap;
 use super::chains::Chains;
 use super::decide::Control;
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
+use super::leaf::leaf_triangles;
 use super::quadtree::{Edges, Place, Trees};
 use super::rim::{Rim, bits};
 use super::surface::{Spot, Surface, with_patch};
 use super::walk::{Knot, Node, Visitor, Walk};
 use crate::certificate::{Cell, Pieces, SubTriangle};
-use crate::refine::exact::leaf::leaf_triangles;
 
 /// What the walk over a control face found.
 #[derive(Clone, Debug, Default)]
@@ -69,7 +69,7 @@ pub(super) fn close(
     let mut closed = Closed { vertices: walk.next, triangles: counter.triangles as u32, ..Closed::default() };
     if counter.has_more {
         let mut closer = Closer {
-            judge: goal.judge(control.rules, face),
+            judge: goal.judge(control, face),
             allowance,
             known,
             is_kept,
@@ -120,7 +120,7 @@ impl Visitor for Closer<'_> {
 }
 
 /// Whether an edge of a node lies along an edge of its control face.
-fn lies_along(place: Place, edge: usize) -> bool {
+pub(super) fn lies_along(place: Place, edge: usize) -> bool {
     (0..place.level).all(|level| {
         let child = place.digit(level);
         child == edge || child == (edge + 1) % 3
@@ -163,6 +163,7 @@ impl Closer<'_> {
                 let [d, e, f] = [0, 1, 2].map(|edge| refined.middle(edge));
                 let points = [a, b, c, d, e, f];
                 best(middles, open, |part, labels, open| {
+                    let part = (place.level, part);
                     judge.general(&mut pieces, part, &labels.map(|label| points[label]), open, &allowance)
                 })
             }

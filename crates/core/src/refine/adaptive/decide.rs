@@ -7,12 +7,13 @@
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
-use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, MOST_NODES, Piece, Place, Trees, UNJUDGED};
+use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, Piece, Place, Trees, UNJUDGED};
 use super::surface::{Ground, Spot, child_corners};
 use crate::certificate::{CellRows, MOST_DIVISIONS, Mark, Marks, Pieces, RowBlock, RowExtent, SubTriangle};
+use crate::criterion::Criteria;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::SidedNormals;
-use crate::mesh::{Mesh, MeshError, Sharpness};
+use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
 use crate::patch::large_rings::LargeRings;
 use crate::patch::{LimitPoint, Patch, RefinedPatch, Rules, root_patch};
@@ -21,12 +22,6 @@ use crate::vector::vector;
 
 /// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
 const BLOCK: usize = 64;
-
-/// The least tilt that neighbours are allowed: it costs next to nothing.
-const LEAST_TILT: f64 = 0.01;
-
-/// What a guess leaves for triangles that bend more than their control face does on the whole.
-const GENEROUS: f64 = 1.6;
 
 /// What is added to an allowance that was too little.
 const WIDER: f64 = 1.1;
@@ -57,6 +52,8 @@ pub(super) struct Control<'a> {
     /// Limit normals by side.
     pub(super) sided: SidedNormals,
     pub(super) rules: &'a Rules<'a>,
+    /// What is asked; `None` where nothing but distances and numbers of triangles count.
+    pub(super) criteria: Option<Criteria>,
 }
 
 impl Control<'_> {
@@ -134,7 +131,7 @@ pub(super) fn decide(
         found.append(&mut list);
     }
     let mut decision = Decision {
-        trees: Trees::of(&pieces).ok_or_else(too_many)?,
+        trees: Trees::of(&pieces)?,
         allowances: found.iter().map(|found| found.allowance).collect(),
         found,
         rounds: 0,
@@ -147,10 +144,6 @@ pub(super) fn decide(
             None => return Ok(None),
         }
     }
-}
-
-fn too_many() -> MeshError {
-    MeshError::TooMany { what: "nodes", count: MOST_NODES, limit: MOST_NODES }
 }
 
 impl Decision {
@@ -198,7 +191,7 @@ impl Decision {
         }
         for (face, piece, found) in again.into_iter().flatten() {
             if !self.trees.replace(face, &piece) {
-                return Err(too_many().into());
+                return Err(self.trees.too_many(piece.words.len()).into());
             }
             self.found[face as usize] = found;
         }
@@ -295,7 +288,7 @@ impl<'a> Decider<'a> {
         Self {
             control,
             goal,
-            judge: goal.judge(control.rules, 0),
+            judge: goal.judge(control, 0),
             max_levels: max_levels.min(MOST_LEVELS),
             piece: Piece::default(),
             allowance: Allowance::NOTHING,
@@ -316,7 +309,7 @@ impl<'a> Decider<'a> {
             let (extent, allowance) = (Extent::NONE, Allowance::NOTHING);
             return Found { extent, allowance, has_failed: false, conditions: Vec::new() };
         }
-        self.judge = self.goal.judge(self.control.rules, face);
+        self.judge = self.goal.judge(self.control, face);
         let patch = self.control.patch(face);
         let corners = self.control.corners(face);
         (self.extent, self.has_failed) = (Extent::NONE, false);
@@ -324,12 +317,12 @@ impl<'a> Decider<'a> {
         let word = if let Patch::Regular(points) = &patch {
             let ground = Ground::of(points, 0);
             let middles = [0, 1, 2].map(|edge| ground.at(Spot::WHOLE.along(edge, 0.5)));
-            self.allowance = allowance.unwrap_or_else(|| self.guess(&corners, &middles));
-            self.part(&ground, Spot::WHOLE, corners, open, (place, true))
+            self.allowance = allowance.unwrap_or_else(|| self.judge.guess(&corners, &middles));
+            self.part(&ground, Spot::WHOLE, corners, open, (place, self.judge.has_rows()))
         } else {
             let refined = patch.refined(self.control.rules);
             let middles = [0, 1, 2].map(|edge| refined.middle(edge));
-            self.allowance = allowance.unwrap_or_else(|| self.guess(&corners, &middles));
+            self.allowance = allowance.unwrap_or_else(|| self.judge.guess(&corners, &middles));
             self.general(&patch, (&refined, middles), corners, open, place)
         };
         self.piece.roots.push(word);
@@ -356,17 +349,10 @@ impl<'a> Decider<'a> {
         self.count.leaves.fetch_add(core::mem::take(&mut self.leaves), Ordering::Relaxed);
     }
 
-    /// The tilt that triangles of a face will have: angles shrink with the size of triangles, heights with its square.
-    fn guess(&self, corners: &[LimitPoint; 3], middles: &[LimitPoint; 3]) -> Allowance {
-        let (height, tilt) = self.judge.bend(corners, middles);
-        let levels = if height > self.judge.distance { (self.judge.distance / height).sqrt() } else { 1.0 };
-        Allowance { tilt: (GENEROUS * tilt * levels).max(LEAST_TILT), slope: f64::INFINITY }
-    }
-
     fn node(&mut self, patch: &Patch, corners: [LimitPoint; 3], open: [bool; 3], place: Place) -> u32 {
         if let Patch::Regular(points) = patch {
             let ground = Ground::of(points, place.level);
-            return self.part(&ground, Spot::WHOLE, corners, open, (place, true));
+            return self.part(&ground, Spot::WHOLE, corners, open, (place, self.judge.has_rows()));
         }
         let refined = patch.refined(self.control.rules);
         let middles = [0, 1, 2].map(|edge| refined.middle(edge));
@@ -386,9 +372,10 @@ impl<'a> Decider<'a> {
             return LEAF;
         }
         let judge = self.judge;
-        if place.level >= self.max_levels || judge.bend(&corners, &middles).0 <= judge.distance {
+        if place.level >= self.max_levels || judge.may_pass(&corners, &middles, place.level) {
             let mut pieces = Pieces::of(patch);
-            let verdict = judge.general(&mut pieces, SubTriangle::Whole, &corners, open, &self.allowance);
+            let part = (place.level, SubTriangle::Whole);
+            let verdict = judge.general(&mut pieces, part, &corners, open, &self.allowance);
             if !verdict.fails() || place.level >= self.max_levels {
                 return self.leaf(place, &verdict);
             }

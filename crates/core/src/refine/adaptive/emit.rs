@@ -16,7 +16,7 @@ use crate::emit::{Diagonal, closure};
 use crate::mesh::{Junctions, MAX_FACES, MeshError, NONE};
 use crate::parallel;
 use crate::patch::LimitPoint;
-use crate::refine::exact::Origin;
+use crate::refine::exact_result::Origin;
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// Triangles that one call writes, about.
@@ -30,6 +30,10 @@ pub(super) struct Emission {
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) twins: Vec<u32>,
     pub(super) parents: Vec<u32>,
+    /// By control face, its first triangle; one more than there are faces.
+    pub(super) starts: Vec<u32>,
+    /// How far each vertex was moved along its normal; empty where none was.
+    pub(super) offsets: Vec<f64>,
     /// The half-edges along each control half-edge, from its start.
     pub(super) borders: Borders,
     /// By control half-edge along a sharp edge, the normals on its side of the vertices inside it.
@@ -38,6 +42,28 @@ pub(super) struct Emission {
     pub(super) junctions: Junctions,
     /// Leaves that pass on conditions, with their first triangles, and one past the last.
     pub(super) conditions: Vec<(Condition, u32, u32)>,
+}
+
+impl Emission {
+    /// The numbers of a control face's triangles.
+    pub(super) fn triangles_of(&self, face: u32) -> core::ops::Range<usize> {
+        self.starts[face as usize] as usize..self.starts[face as usize + 1] as usize
+    }
+
+    /// Moves the vertices along their normals.
+    pub(super) fn shift(&mut self, offsets: Vec<f64>) {
+        self.offsets = offsets;
+        for vertex in 0..self.positions.len() {
+            let moved = vector(self.positions[vertex]) + self.step(vertex as u32);
+            self.positions[vertex] = moved.to_array();
+        }
+    }
+
+    /// How far a vertex was moved, and in which direction.
+    pub(super) fn step(&self, vertex: u32) -> DVec3 {
+        let offset = self.offsets.get(vertex as usize).copied().unwrap_or(0.0);
+        offset * vector(self.normals[vertex as usize])
+    }
 }
 
 /// The emitted half-edges along the edges of control faces.
@@ -88,6 +114,12 @@ pub(super) fn emit(
     for h in 0..3 * faces {
         starts[h + 1] = starts[h] + chains.along(edges, h as u32) as u32 + 1;
     }
+    let mut next = 0;
+    let first_triangles = closed.iter().map(|face| {
+        next += face.triangles;
+        next - face.triangles
+    });
+    let first_triangles = first_triangles.chain([total as u32]).collect();
     let mut emission = Emission {
         positions: vec![[0.0; 3]; on_edges + inside],
         normals: vec![[0.0; 3]; on_edges + inside],
@@ -95,6 +127,8 @@ pub(super) fn emit(
         triangles: vec![[0; 3]; total],
         twins: vec![0; 3 * total],
         parents: vec![0; total],
+        starts: first_triangles,
+        offsets: Vec::new(),
         borders: Borders { half_edges: vec![0; starts[3 * faces] as usize], starts },
         sharp: Vec::new(),
         junctions: Junctions::default(),

@@ -6,21 +6,30 @@
 //! [`Allowance`]: how far the triangles in it and beside it may be tilted, and how acute they may be. What is let pass is checked
 //! against it face by face, so no triangle has to look at its neighbours.
 
+use super::decide::Control;
 use super::quadtree::Place;
 use super::surface::Ground;
+use super::trial::Trial;
 use crate::certificate::{Cell, Deviation, Effort, Pieces, RowTarget, SubTriangle, TriangleFrame, exceeds};
+use crate::criterion::Criteria;
 use crate::patch::{LimitPoint, Rules};
 use crate::vector::DVec3;
 
 /// Halvings of a net before a triangle is given up: the bound is within some per cent of the truth then.
-const HALVINGS: usize = 2;
+pub(super) const HALVINGS: usize = 2;
 
 /// Divisions into four of the heights over a plane, to the same end.
-const DIVISIONS: u32 = 2;
+pub(super) const DIVISIONS: u32 = 2;
 
 /// Drifts are counted on up to this part of what a triangle's own angles allow: those of the triangles beside it may be more acute,
 /// closing triangles above all.
 const DRIFT_SHARE: f64 = 0.48;
+
+/// The least tilt that neighbours are allowed: it costs next to nothing.
+const LEAST_TILT: f64 = 0.01;
+
+/// What a guess leaves for triangles that bend more than their control face does on the whole.
+const GENEROUS: f64 = 1.6;
 
 /// Unit vectors are off by no more than this.
 const ROUNDING: f64 = 1e-12;
@@ -51,7 +60,7 @@ pub(super) struct Extent {
     pub(super) slope: f64,
     /// The greatest slope of a drift that was counted on.
     pub(super) drift_slope: f64,
-    /// The greatest bound of a distance.
+    /// The greatest bound of a distance, or value by the criteria where more than distances count.
     pub(super) bound: f64,
     /// The leaf that has it.
     pub(super) worst: Option<Place>,
@@ -71,10 +80,11 @@ impl Extent {
     }
 }
 
-/// What is asked of the triangles of each control face.
+/// What is asked of the triangles of each control face. Values are distances between a triangle and its part of the surface
+/// where nothing else counts ([`super::decide::Control::criteria`]), else how many times over the criteria fail.
 #[derive(Clone, Debug)]
 pub(super) enum Goal {
-    /// Greatest distance between a triangle and its part of the surface.
+    /// Greatest value of a triangle.
     Within(f64),
     /// The same, and a lesser one for marked faces.
     Partly(f64, f64, Vec<bool>),
@@ -84,7 +94,7 @@ pub(super) enum Goal {
 
 impl Goal {
     /// The judge of a face's triangles.
-    pub(super) fn judge<'a>(&self, rules: &'a Rules<'a>, face: u32) -> Judge<'a> {
+    pub(super) fn judge<'a>(&self, control: &'a Control<'_>, face: u32) -> Judge<'a> {
         let (distance, is_lenient) = match self {
             Self::Within(distance) => (*distance, false),
             Self::Partly(_, less, is_finer) if is_finer[face as usize] => (*less, false),
@@ -92,7 +102,7 @@ impl Goal {
             // Bounds as tight as they get.
             Self::Even(..) => (0.0, true),
         };
-        Judge { rules, distance, is_lenient }
+        Judge { rules: control.rules, criteria: control.criteria.as_ref(), limit: distance, is_lenient }
     }
 
     /// What bounds may come to once the neighbours are known.
@@ -110,8 +120,10 @@ impl Goal {
 #[derive(Clone, Copy)]
 pub(super) struct Judge<'a> {
     pub(super) rules: &'a Rules<'a>,
-    /// Greatest distance between a triangle and its part of the surface.
-    pub(super) distance: f64,
+    /// What is asked beside distances.
+    criteria: Option<&'a Criteria>,
+    /// Greatest value: a distance where nothing else counts.
+    limit: f64,
     /// Everything passes, and all that counts is how far it is off among its neighbours.
     is_lenient: bool,
 }
@@ -198,12 +210,16 @@ impl Judge<'_> {
         allowance: &Allowance,
     ) -> Verdict {
         let seen = Seen::of(corners);
+        if let Some(criteria) = self.criteria {
+            let test = Trial::of(criteria, self.limit, &seen, corners, place.level);
+            return test.regular(ground, (place, part), cell, open, self.rules);
+        }
         if self.is_lenient {
             return self.by_pieces(&seen, &mut Pieces::of(&ground.patch(place)), part, open, allowance);
         }
         let heights = ground.jet.heights(cell, seen.frame.normal());
         let (low, high) = heights.range();
-        if exceeds(low, self.distance) {
+        if exceeds(low, self.limit) {
             return Verdict { outcome: Outcome::Fails, extent: Extent { bound: low, ..seen.extent() } };
         }
         let beside = ground.jet.beside(cell, &seen.frame, open);
@@ -222,16 +238,20 @@ impl Judge<'_> {
         self.by_pieces(&seen, &mut Pieces::of(&patch), part, open, allowance)
     }
 
-    /// A triangle over a part of any piece.
+    /// A triangle over a part of any piece, so many levels below its control face.
     pub(super) fn general<'p>(
         &'p self,
         pieces: &mut Pieces<'p>,
-        part: SubTriangle,
+        (level, part): (u32, SubTriangle),
         corners: &[LimitPoint; 3],
         open: [bool; 3],
         allowance: &Allowance,
     ) -> Verdict {
         let seen = Seen::of(corners);
+        if let Some(criteria) = self.criteria {
+            return Trial::of(criteria, self.limit, &seen, corners, level)
+                .general(pieces, part, open, self.rules);
+        }
         self.by_pieces(&seen, pieces, part, open, allowance)
     }
 
@@ -244,7 +264,7 @@ impl Judge<'_> {
         allowance: &Allowance,
     ) -> Verdict {
         let (chord, slope) = seen.expected();
-        let effort = Effort { target: self.distance, halvings: HALVINGS, open, chord, slope };
+        let effort = Effort { target: self.limit, halvings: HALVINGS, open, chord, slope };
         let deviation = pieces.deviation(part, &seen.frame, self.rules, effort);
         self.decided(seen, deviation, allowance)
     }
@@ -257,14 +277,14 @@ impl Judge<'_> {
             outcome,
             extent: Extent { bound, drift_slope, ..seen.extent() },
         };
-        if bound <= self.distance {
+        if bound <= self.limit {
             // Drifts that are too steep are not counted on.
             let counted = if deviation.slope <= slope { deviation.slope } else { 0.0 };
             return verdict(Outcome::Passes, bound, counted);
         }
         let (chord, slope) = seen.expected();
         let bound = deviation.bound(chord, slope);
-        if self.is_lenient || bound <= self.distance {
+        if self.is_lenient || bound <= self.limit {
             // What it comes to is known when its neighbours are.
             let Extent { tilt, slope, .. } = seen.extent();
             return verdict(Outcome::Depends { deviation, tilt, slope }, 0.0, 0.0);
@@ -275,25 +295,46 @@ impl Judge<'_> {
     /// The same for rows of triangles.
     pub(super) fn row_target(&self, allowance: &Allowance) -> RowTarget {
         let Allowance { tilt, slope } = *allowance;
-        RowTarget { distance: self.distance, tilt, slope, drift_share: DRIFT_SHARE }
+        RowTarget { distance: self.limit, tilt, slope, drift_share: DRIFT_SHARE }
     }
 
-    /// How high the given points of a piece stand over its triangle, and the triangle's tilt.
-    pub(super) fn bend(&self, corners: &[LimitPoint; 3], points: &[LimitPoint]) -> (f64, f64) {
+    /// What a triangle counts on of those beside it at first, by the heights of points of its piece over it and its tilt: angles
+    /// shrink with the size of triangles, heights with its square. Where more than distances count, triangles are looked at
+    /// among their neighbours as they are emitted, and count on nothing.
+    pub(super) fn guess(&self, corners: &[LimitPoint; 3], points: &[LimitPoint]) -> Allowance {
+        if self.criteria.is_some() {
+            return Allowance::NOTHING;
+        }
         let seen = Seen::of(corners);
-        let heights = points.iter().map(|point| seen.frame.height(point.position).abs());
-        (heights.fold(0.0, f64::max), seen.tilt)
+        let height = seen.highest(points);
+        let levels = if height > self.limit { (self.limit / height).sqrt() } else { 1.0 };
+        Allowance { tilt: (GENEROUS * seen.tilt * levels).max(LEAST_TILT), slope: f64::INFINITY }
+    }
+
+    /// Whether a triangle may pass, as far as some points of its piece tell.
+    pub(super) fn may_pass(&self, corners: &[LimitPoint; 3], points: &[LimitPoint], level: u32) -> bool {
+        let seen = Seen::of(corners);
+        let height = seen.highest(points);
+        match self.criteria {
+            None => height <= self.limit,
+            Some(criteria) => !Trial::of(criteria, self.limit, &seen, corners, level).is_lost(height),
+        }
+    }
+
+    /// Whether whole rows of triangles can be tested at once.
+    pub(super) fn has_rows(&self) -> bool {
+        self.criteria.is_none()
     }
 }
 
 /// A triangle as its neighbours see it.
-struct Seen {
-    frame: TriangleFrame,
-    tilt: f64,
+pub(super) struct Seen {
+    pub(super) frame: TriangleFrame,
+    pub(super) tilt: f64,
 }
 
 impl Seen {
-    fn of(corners: &[LimitPoint; 3]) -> Self {
+    pub(super) fn of(corners: &[LimitPoint; 3]) -> Self {
         let frame = TriangleFrame::new(corners.map(|corner| corner.position));
         // Of the two corners that neighbours share one must have a normal.
         let known = corners.iter().filter(|corner| corner.normal != DVec3::ZERO);
@@ -306,7 +347,12 @@ impl Seen {
         Self { frame, tilt }
     }
 
-    fn extent(&self) -> Extent {
+    /// How high the highest of some points stands over the triangle.
+    fn highest(&self, points: &[LimitPoint]) -> f64 {
+        points.iter().map(|point| self.frame.height(point.position).abs()).fold(0.0, f64::max)
+    }
+
+    pub(super) fn extent(&self) -> Extent {
         let slope = if self.frame.is_flat() { 0.0 } else { self.frame.least_slope() };
         Extent { tilt: self.tilt, slope, ..Extent::NONE }
     }
@@ -318,7 +364,7 @@ impl Seen {
     }
 
     /// The same as they are expected: neighbours are alike, on the other side of the limit normals.
-    fn expected(&self) -> (f64, f64) {
+    pub(super) fn expected(&self) -> (f64, f64) {
         (2.0 * self.tilt, self.frame.least_slope())
     }
 }

@@ -9,31 +9,39 @@
 //! 2. [`balance`]: neighbouring leaves at most one level apart;
 //! 3. [`chains`] and [`close`]: the vertices on edges, the closing triangles, judged and counted; what fails is split, and
 //!    2 and 3 are done again there;
-//! 4. [`emit`]: vertices, triangles and their connections, written at once;
-//! 5. [`probe`]: the certified interval.
+//! 4. [`emit`]: vertices, triangles and their connections, written at once; [`offsets`] moves vertices where asked;
+//! 5. [`settle`] and [`measure`]: the triangles among their neighbours; what fails is split, and 2 to 4 are done again;
+//! 6. [`probe`]: the certified interval.
 
+mod among;
 mod balance;
 mod budget;
 mod chains;
 mod close;
 mod decide;
 mod emit;
+mod emitted;
 mod judge;
+mod leaf;
+mod measure;
+mod offsets;
 mod probe;
 mod quadtree;
+mod result;
 mod rim;
 mod settle;
 mod sides;
 mod surface;
+mod trial;
 mod walk;
 
 use super::RefineError;
-use super::exact::{Exact, ExactObserver, ExactOptions, ExactProgress, ExactStop};
+use super::exact_options::{ExactObserver, ExactOptions, ExactProgress};
+use super::exact_result::{Exact, ExactStop};
 use super::junctions::join_copies;
-use crate::certificate::exceeds;
-use crate::criterion::Distance;
+use crate::criterion::{Criteria, Distance, LimitNormal, Pixels};
 use crate::limit::LimitTable;
-use crate::mesh::{Mesh, MeshError, Sharpness, Topology, check_finite, outgoing_half_edges};
+use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
 use crate::patch::Rules;
 use crate::patch::large_rings::LargeRings;
@@ -45,7 +53,8 @@ use close::{Closed, Verdicts, close};
 use decide::{Control, Decision, decide};
 use emit::{Emission, Extend};
 use judge::Goal;
-use quadtree::{Edges, MOST_NODES, Place, Trees};
+use quadtree::{Edges, Place, Trees};
+use result::Outcome;
 
 /// Control faces that one call takes together.
 const BLOCK: usize = 256;
@@ -65,46 +74,38 @@ pub(super) fn adaptive(
     scheme: &dyn Scheme,
     options: &ExactOptions<'_>,
 ) -> Result<Exact, RefineError> {
-    with_engine(mesh, scheme, options, |engine, rounding| {
-        let floor = options.tolerance.map_or(0.0, |tolerance| Distance::new(tolerance, rounding).allowed());
+    with_engine(mesh, scheme, options, |engine| {
+        let floor = engine.floor(options.tolerance);
         let (most, cap) = options.budget();
         let most = most.max(mesh.face_count());
-        let (mut room, mut reserve) = (most, most / RESERVE + 1);
-        loop {
-            let (mut plan, stop) = budget::search(engine, floor, room, cap)?;
-            match engine.emit(&mut plan, most, stop != ExactStop::Met)? {
-                Some(emission) => {
-                    let worst_first = finish(engine, &plan, emission, stop, rounding, options)?;
-                    if stop == ExactStop::Met || options.tolerance.is_some() {
-                        return Ok(worst_first);
-                    }
-                    // Evenly curved models are best divided evenly, though drifts may allow to prove less of that. Lower
-                    // bounds are found distances, within some per cent of the truth.
-                    let Some((even, emission)) = engine.even(most)? else { return Ok(worst_first) };
-                    let even = finish(engine, &even, emission, stop, rounding, options)?;
-                    let is_better = even.error.lower < worst_first.error.lower;
-                    return Ok(if is_better { even } else { worst_first });
-                }
-                // Conditions that did not hold took more triangles than there were left.
-                None => {
-                    room -= reserve.min(room);
-                    reserve *= 2;
-                }
-            }
+        if !options.balance {
+            return engine.finest(floor, (most, cap), options);
         }
+        if floor > 0.0
+            && let Some(outcome) = engine.balanced(floor, most)?
+        {
+            return outcome.finish(engine, ExactStop::Met, options);
+        }
+        let plain = Engine { is_balanced: false, ..engine.clone() }.finest(floor, (most, cap), options)?;
+        engine.least_balanced(plain, floor, (most, cap), options)
     })
 }
 
-/// The triangles that a tolerance takes, but for those of leaves whose conditions turn out not to hold.
+/// The triangles that goals so many times as coarse take, but for those of leaves that turn out to fail among their neighbours.
 pub(super) fn count(
     mesh: &Mesh,
     scheme: &dyn Scheme,
-    tolerance: f64,
-    max_levels: usize,
+    options: &ExactOptions<'_>,
+    times: f64,
 ) -> Result<usize, RefineError> {
-    let options = ExactOptions::default().tolerance(tolerance).max_levels(max_levels);
-    with_engine(mesh, scheme, &options, |engine, rounding| {
-        let plan = engine.plan(Goal::Within(Distance::new(tolerance, rounding).allowed()), usize::MAX)?;
+    with_engine(mesh, scheme, options, |engine| {
+        let limit = engine.floor(options.tolerance.map(|tolerance| times * tolerance));
+        let limit = if engine.control.criteria.is_some() { times } else { limit };
+        let plan = if engine.is_balanced {
+            engine.balanced(limit, usize::MAX)?.map(|outcome| outcome.plan)
+        } else {
+            engine.plan(Goal::Within(limit), usize::MAX)?
+        };
         Ok(plan.map_or(0, |plan| plan.triangles))
     })
 }
@@ -113,7 +114,7 @@ fn with_engine<T>(
     mesh: &Mesh,
     scheme: &dyn Scheme,
     options: &ExactOptions<'_>,
-    run: impl FnOnce(&Engine<'_>, f64) -> Result<T, RefineError>,
+    run: impl FnOnce(&Engine<'_>) -> Result<T, RefineError>,
 ) -> Result<T, RefineError> {
     let rules = Rules::of(scheme);
     let table = LimitTable::new(scheme);
@@ -121,25 +122,52 @@ fn with_engine<T>(
     join_copies(&mut positions, &mesh.junctions().vertices);
     let sharpness = Sharpness::of(mesh);
     let lasting = sharpness.lasting();
-    let large = LargeRings::of(mesh);
-    let control =
-        Control { mesh, sharpness: &sharpness, large, lasting: &lasting, positions, sided, rules: &rules };
     let rounding = probe::rounding(mesh, options.max_levels);
+    let criteria = criteria(mesh, options, rounding)?;
+    let control = Control {
+        mesh,
+        sharpness: &sharpness,
+        large: LargeRings::of(mesh),
+        lasting: &lasting,
+        positions,
+        sided,
+        rules: &rules,
+        criteria,
+    };
     let engine = Engine {
         control: &control,
         edges: Edges::of(mesh),
         max_levels: options.max_levels as u32,
         observer: options.observer,
+        is_balanced: options.balance,
+        rounding,
     };
-    run(&engine, rounding)
+    run(&engine)
 }
 
-/// What stays the same whatever is asked.
+/// What the options ask for; `None` where that is nothing but distances and numbers of triangles.
+fn criteria(mesh: &Mesh, options: &ExactOptions<'_>, rounding: f64) -> Result<Option<Criteria>, RefineError> {
+    if options.angle.is_none() && options.pixels.is_none() {
+        return Ok(None);
+    }
+    let distance = options.tolerance.map(|tolerance| Distance::new(tolerance, rounding));
+    let cone = options.angle.map(|angle| LimitNormal { view: options.view, ..LimitNormal::new(angle) });
+    let is_closed = mesh.topology().boundary_edge_count() == 0;
+    let pixels = options.pixels.map(|limit| Pixels::new(limit, &options.cameras, is_closed)).transpose()?;
+    Ok(Some(Criteria::new(distance, cone, pixels, rounding)?))
+}
+
+/// What stays the same all the way.
+#[derive(Clone)]
 pub(super) struct Engine<'a> {
     control: &'a Control<'a>,
     edges: Edges<'a>,
     max_levels: u32,
     observer: Option<ExactObserver<'a>>,
+    /// Vertices are moved off the surface.
+    is_balanced: bool,
+    /// What rounding may do to a distance.
+    rounding: f64,
 }
 
 /// Trees whose closed leaves pass, and what emitting them takes.
@@ -153,9 +181,49 @@ pub(super) struct Plan {
     has_failed: bool,
     /// By control face whose leaves that pass on conditions do so, the greatest bound of one, and the leaf.
     settled: Vec<Option<(f64, Place)>>,
+    /// Control faces that were walked over since somebody last looked at what is emitted.
+    is_touched: Vec<bool>,
 }
 
 impl Engine<'_> {
+    /// The value that is good enough for all triangles: a distance where nothing else counts, else 1; 0 where nothing is.
+    fn floor(&self, tolerance: Option<f64>) -> f64 {
+        match (&self.control.criteria, tolerance) {
+            (Some(_), _) => 1.0,
+            (None, Some(tolerance)) => Distance::new(tolerance, self.rounding).allowed(),
+            (None, None) => 0.0,
+        }
+    }
+
+    /// The finest mesh within a value down to `floor` that has no more triangles than there may be.
+    fn finest(
+        &self,
+        floor: f64,
+        (most, cap): (usize, ExactStop),
+        options: &ExactOptions<'_>,
+    ) -> Result<Exact, RefineError> {
+        let (mut room, mut reserve) = (most, most / RESERVE + 1);
+        loop {
+            let (plan, stop) = budget::search(self, floor, room, cap)?;
+            let Some(outcome) = self.emit(plan, most, stop != ExactStop::Met)? else {
+                // What failed among its neighbours took more triangles than there were left.
+                room -= reserve.min(room);
+                reserve *= 2;
+                continue;
+            };
+            let worst_first = outcome.finish(self, stop, options)?;
+            if stop == ExactStop::Met || floor > 0.0 {
+                return Ok(worst_first);
+            }
+            // Evenly curved models are best divided evenly, though drifts may allow to prove less of that. Lower
+            // bounds are found distances, within some per cent of the truth.
+            let Some(even) = self.even(most)? else { return Ok(worst_first) };
+            let even = even.finish(self, stop, options)?;
+            let is_better = even.error.lower < worst_first.error.lower;
+            return Ok(if is_better { even } else { worst_first });
+        }
+    }
+
     /// Divides as asked; `None` if that takes more than `most` triangles.
     fn plan(&self, goal: Goal, most: usize) -> Result<Option<Plan>, RefineError> {
         let Some(decision) = decide(self.control, &goal, &self.edges, self.max_levels, most)? else {
@@ -171,6 +239,7 @@ impl Engine<'_> {
             triangles: 0,
             has_failed: false,
             settled: vec![None; faces],
+            is_touched: vec![true; faces],
         };
         Ok(self.carry_out(&mut plan, vec![true; faces], most)?.then_some(plan))
     }
@@ -197,8 +266,24 @@ impl Engine<'_> {
         }
     }
 
+    /// Emits a plan, dividing what fails among its neighbours; `None` if there are too many triangles.
+    fn emit(&self, plan: Plan, most: usize, is_budget: bool) -> Result<Option<Outcome>, RefineError> {
+        if self.control.criteria.is_some() {
+            let goal = plan.goal.clone();
+            return self.emit_among(plan, &goal, (most, is_budget));
+        }
+        let mut plan = plan;
+        let emission = self.emit_settled(&mut plan, most, is_budget)?;
+        Ok(emission.map(|emission| Outcome { plan, emission, measured: None }))
+    }
+
     /// Emits a plan, dividing where conditions do not hold; `None` if there are too many triangles.
-    fn emit(&self, plan: &mut Plan, most: usize, is_budget: bool) -> Result<Option<Emission>, RefineError> {
+    fn emit_settled(
+        &self,
+        plan: &mut Plan,
+        most: usize,
+        is_budget: bool,
+    ) -> Result<Option<Emission>, RefineError> {
         let mut rounds = 0;
         loop {
             self.settle_by_allowances(plan);
@@ -244,13 +329,10 @@ impl Engine<'_> {
     }
 
     /// The even division that fits, what is left spent on its worst faces.
-    fn even(&self, most: usize) -> Result<Option<(Plan, Emission)>, RefineError> {
-        let Some(mut even) = budget::even(self, most)? else { return Ok(None) };
-        if self.emit(&mut even, most, true)?.is_none() {
-            return Ok(None);
-        }
-        let mut filled = budget::fill_even(self, even, most)?;
-        Ok(self.emit(&mut filled, most, true)?.map(|emission| (filled, emission)))
+    fn even(&self, most: usize) -> Result<Option<Outcome>, RefineError> {
+        let Some(even) = budget::even(self, most)? else { return Ok(None) };
+        let Some(even) = self.emit(even, most, true)? else { return Ok(None) };
+        self.emit(budget::fill_even(self, even.plan, most)?, most, true)
     }
 
     /// Emits all of a plan.
@@ -309,9 +391,7 @@ impl Engine<'_> {
     }
 
     fn split(&self, trees: &mut Trees, place: Place, fresh: impl FnMut(Place)) -> Result<(), RefineError> {
-        let limit = MOST_NODES;
-        let fits = trees.split(place, fresh);
-        fits.then_some(()).ok_or(MeshError::TooMany { what: "nodes", count: limit, limit }.into())
+        trees.split(place, fresh).then_some(()).ok_or_else(|| trees.too_many(4).into())
     }
 
     /// Neighbouring leaves are at most one level apart; marks what changes. Only marked faces may have more leaves than before.
@@ -333,9 +413,7 @@ impl Engine<'_> {
         pending: Pending,
         split: impl FnMut(Place),
     ) -> Result<(), RefineError> {
-        let fits = balance(trees, &self.edges, pending, split);
-        let limit = MOST_NODES;
-        fits.then_some(()).ok_or(MeshError::TooMany { what: "nodes", count: limit, limit }.into())
+        balance(trees, &self.edges, pending, split).then_some(()).ok_or_else(|| trees.too_many(4).into())
     }
 
     /// Walks over the given faces, splitting what fails, until nothing does; `false` if there are too many triangles.
@@ -367,6 +445,7 @@ impl Engine<'_> {
             for (&face, found) in dirty.iter().zip(found.into_iter().flatten()) {
                 plan.closed[face as usize] = found;
                 plan.settled[face as usize] = None;
+                plan.is_touched[face as usize] = true;
             }
             plan.chains = chains;
             plan.triangles = plan.closed.iter().map(|face| face.triangles as usize).sum();
@@ -420,50 +499,6 @@ impl Engine<'_> {
 
 fn marked(is_marked: &[bool]) -> Vec<u32> {
     (0..).zip(is_marked).filter(|&(_, &is_marked)| is_marked).map(|(face, _)| face).collect()
-}
-
-/// Measures what was emitted.
-fn finish(
-    engine: &Engine<'_>,
-    plan: &Plan,
-    emission: Emission,
-    stop: ExactStop,
-    rounding: f64,
-    options: &ExactOptions<'_>,
-) -> Result<Exact, RefineError> {
-    let control = engine.control;
-    let stop = if stop == ExactStop::Met && plan.has_failed { ExactStop::LevelCap } else { stop };
-    check_finite(&emission.positions)?;
-    if let Some(why) = control.rules.failure() {
-        return Err(why.clone().into());
-    }
-    let error = probe::probe(engine, plan, &emission, rounding);
-    let failed = options.tolerance.filter(|&tolerance| exceeds(error.upper, tolerance));
-    let stop = if stop == ExactStop::Met && failed.is_some() { ExactStop::Rounding } else { stop };
-    let beyond = failed.map_or(0.0, |tolerance| error.upper / tolerance);
-    let (tags, sides) = (sides::tags(control, &emission), sides::sides(control, &emission));
-    let levels = (0..control.mesh.face_count() as u32).map(|face| {
-        let trees = &plan.decision.trees;
-        trees.depth(trees.root(face)) as usize
-    });
-    let levels = levels.max().unwrap_or(0);
-    let Emission { positions, normals, origins, triangles, twins, parents, junctions, .. } = emission;
-    let outgoing = outgoing_half_edges(&triangles, &twins, positions.len());
-    let topology = Topology::from_parts(triangles, twins, outgoing);
-    Ok(Exact {
-        mesh: Mesh::from_parts(topology, positions, tags, junctions),
-        normals,
-        sides,
-        origins,
-        parents,
-        error,
-        pixels: None,
-        open_cones: 0,
-        refused: 0,
-        worst: options.tolerance.map_or(0.0, |tolerance| (plan.worst() / tolerance).max(beyond)),
-        stop,
-        levels,
-    })
 }
 
 impl Plan {

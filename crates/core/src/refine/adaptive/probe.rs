@@ -3,7 +3,11 @@
 //! Above stand the bounds of what was let pass. Below stand distances that were found: from points of the surface over the
 //! worst leaves to the nearest triangle of the mesh, which is looked for in all control faces whose points come near.
 
+use std::collections::HashSet;
+
 use super::emit::Emission;
+use super::judge::Goal;
+use super::measure::{Measured, measure};
 use super::quadtree::Place;
 use super::surface::{Surface, child_corners, with_patch};
 use super::{Engine, Plan};
@@ -12,7 +16,7 @@ use crate::geometry::closest_to_origin;
 use crate::index::VertexId;
 use crate::mesh::Mesh;
 use crate::patch::LimitPoint;
-use crate::refine::exact::ErrorBounds;
+use crate::refine::exact_result::ErrorBounds;
 use crate::vector::{DVec3, vector};
 
 /// Leaves with the greatest bounds that are looked at for a lower bound.
@@ -33,41 +37,120 @@ const MOST_SAMPLED_LEVELS: usize = 6;
 /// A lower bound beyond this part of the upper one is good enough.
 const NARROW: f64 = 0.99;
 
-/// The certified interval.
-pub(super) fn probe(engine: &Engine<'_>, plan: &Plan, emission: &Emission, rounding: f64) -> ErrorBounds {
-    let mut worst: Vec<(f64, Place)> = plan.worst_leaves().collect();
-    worst.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then((a.1.face, a.1.path).cmp(&(b.1.face, b.1.path))));
-    let upper = worst.first().map_or(0.0, |&(bound, _)| bound);
+/// Upper bounds so many times the lower one are taken again.
+const WIDE: f64 = 1.1;
+
+/// Control faces that are looked at together for tighter bounds at first, then twice as many each time.
+const TIGHTENED: usize = 64;
+
+/// How often that is done.
+const MOST_TIGHTENINGS: usize = 6;
+
+/// The certified interval; `measured` by control face where all triangles were looked at among their neighbours.
+pub(super) fn probe(
+    engine: &Engine<'_>,
+    plan: &Plan,
+    emission: &Emission,
+    measured: Option<&[Measured]>,
+) -> ErrorBounds {
+    let mut worst = match measured {
+        Some(measured) => measured.iter().map(|face| face.worst).collect(),
+        None => plan.worst_by_face(),
+    };
     let mut best =
-        ErrorBounds { lower: 0.0, upper, at: [0.0; 3], certified: engine.control.rules.is_certified() };
+        ErrorBounds { lower: 0.0, upper: 0.0, at: [0.0; 3], certified: engine.control.rules.is_certified() };
     let mesh = Nearest::of(engine, emission);
-    for &(bound, place) in worst.iter().take(PROBED) {
-        if bound <= best.lower || best.lower > NARROW * upper {
+    // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
+    let mut highest: Vec<(f64, Place)> =
+        measured.iter().flat_map(|all| all.iter().map(|face| face.highest)).collect();
+    sort(&mut highest);
+    let mut probed = HashSet::new();
+    lower(engine, emission, &mesh, (&highest, &mut probed), &mut best);
+    // By control face, the lower bound for which it was looked at.
+    let mut tightened = vec![0.0; worst.len()];
+    let again = |length: f64, faces: &[u32], worst: &mut Vec<(f64, Place)>| {
+        let found = measure(&engine.sources(plan, emission), &Goal::Within(f64::INFINITY), length, faces);
+        for (&face, found) in faces.iter().zip(found) {
+            let known = &mut worst[face as usize];
+            if found.worst.0 < known.0 {
+                *known = found.worst;
+            }
+        }
+    };
+    // What failed for sure has no bound yet.
+    let unbounded = worst.iter().filter(|(bound, _)| bound.is_infinite()).map(|(_, place)| place.face);
+    again(f64::MAX, &unbounded.collect::<Vec<u32>>(), &mut worst);
+    for round in 0.. {
+        let mut order: Vec<(f64, Place)> = worst.clone();
+        sort(&mut order);
+        best.upper = order.first().map_or(0.0, |&(bound, _)| bound);
+        lower(engine, emission, &mesh, (&order, &mut probed), &mut best);
+        if !best.certified || best.upper <= WIDE * best.lower || round >= MOST_TIGHTENINGS {
             break;
         }
-        let Some(point) = highest(engine, place) else { continue };
-        let distance = mesh.distance(point, place.face);
-        if distance > best.lower {
-            (best.lower, best.at) = (distance, point.to_array());
+        // Bounds that are good enough for the goals need not be tight.
+        let loose = order.iter().take_while(|&&(bound, _)| bound > best.lower).map(|(_, place)| place.face);
+        let loose: Vec<u32> = loose
+            .filter(|&face| WIDE * tightened[face as usize] < best.lower)
+            .take(TIGHTENED << round)
+            .collect();
+        if loose.is_empty() {
+            break;
         }
+        again(NARROW * best.lower, &loose, &mut worst);
+        loose.iter().for_each(|&face| tightened[face as usize] = best.lower);
     }
     if !best.certified {
-        best.upper = estimated(engine, plan, &mesh, &mut best);
+        best.upper = estimated(engine, plan, &worst, &mesh, &mut best);
     }
-    best.upper = best.upper.max(best.lower) + rounding;
-    best.lower = (best.lower - rounding).max(0.0);
+    best.upper = best.upper.max(best.lower) + engine.rounding;
+    best.lower = (best.lower - engine.rounding).max(0.0);
     best
+}
+
+/// The greatest first.
+fn sort(order: &mut [(f64, Place)]) {
+    let by_place = |a: &Place, b: &Place| (a.face, a.path).cmp(&(b.face, b.path));
+    order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(by_place(&a.1, &b.1)));
+}
+
+/// Raises the lower bound by points over the first leaves of a list that promise more, but for those that were looked at.
+fn lower(
+    engine: &Engine<'_>,
+    emission: &Emission,
+    mesh: &Nearest<'_>,
+    (order, probed): (&[(f64, Place)], &mut HashSet<Place>),
+    best: &mut ErrorBounds,
+) {
+    let most = order.first().map_or(0.0, |&(promise, _)| promise);
+    for &(promise, place) in order.iter().take(PROBED) {
+        if promise <= best.lower || best.lower > NARROW * most {
+            break;
+        }
+        if !probed.insert(place) {
+            continue;
+        }
+        for point in highest(engine, emission, place) {
+            let distance = mesh.distance(point, place.face);
+            if distance > best.lower {
+                (best.lower, best.at) = (distance, point.to_array());
+            }
+        }
+    }
 }
 
 /// Where nothing is certain: the greatest distance of samples over the faces that may be worse than what was found; after
 /// many of them the next estimate.
-fn estimated(engine: &Engine<'_>, plan: &Plan, mesh: &Nearest<'_>, best: &mut ErrorBounds) -> f64 {
+fn estimated(
+    engine: &Engine<'_>,
+    plan: &Plan,
+    worst: &[(f64, Place)],
+    mesh: &Nearest<'_>,
+    best: &mut ErrorBounds,
+) -> f64 {
     let control = engine.control;
-    let mut bounds = vec![0.0f64; plan.closed.len()];
-    for (bound, place) in plan.worst_leaves() {
-        bounds[place.face as usize] = bounds[place.face as usize].max(bound);
-    }
-    let mut order: Vec<(f64, u32)> = bounds.into_iter().zip(0..).collect();
+    let bounds = worst.iter().map(|&(bound, _)| bound);
+    let mut order: Vec<(f64, u32)> = bounds.zip(0..).collect();
     order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     for (count, &(bound, face)) in order.iter().enumerate() {
         if bound <= best.lower || count >= MOST_MEASURED {
@@ -91,34 +174,45 @@ fn estimated(engine: &Engine<'_>, plan: &Plan, mesh: &Nearest<'_>, best: &mut Er
 
 impl Plan {
     /// The worst leaves of the control faces, with their bounds.
-    pub(super) fn worst_leaves(&self) -> impl Iterator<Item = (f64, Place)> + '_ {
+    fn worst_by_face(&self) -> Vec<(f64, Place)> {
+        let mut worst: Vec<(f64, Place)> =
+            (0..self.closed.len() as u32).map(|face| (0.0, Place::root(face))).collect();
         let closed = self.closed.iter().filter_map(|face| face.extent.as_ref());
-        self.decision
-            .extents()
-            .chain(closed)
-            .filter_map(|extent| Some((extent.bound, extent.worst?)))
-            .chain(self.settled.iter().flatten().copied())
+        let extents = self.decision.extents().chain(closed);
+        let judged = extents.filter_map(|extent| Some((extent.bound, extent.worst?)));
+        for (bound, place) in judged.chain(self.settled.iter().flatten().copied()) {
+            let known = &mut worst[place.face as usize];
+            if bound > known.0 {
+                *known = (bound, place);
+            }
+        }
+        worst
     }
 }
 
-/// The point of the surface over a node that stands highest over its triangle.
-fn highest(engine: &Engine<'_>, place: Place) -> Option<DVec3> {
+/// The point of the surface over a node that stands highest over its triangle; where vertices were moved, those that stand
+/// highest and lowest, and the corners.
+fn highest(engine: &Engine<'_>, emission: &Emission, place: Place) -> Vec<DVec3> {
     let control = engine.control;
-    let mut found: Option<(f64, DVec3)> = None;
+    let mut found = Vec::new();
     with_patch(&control.patch(place.face), control.corners(place.face), 0, &mut |surface| {
         descend(engine, surface, control.corners(place.face), place, 0, &mut |surface, corners| {
             let frame = TriangleFrame::new(corners.map(|corner| corner.position));
             let mut points = Vec::new();
             sample(engine, surface, SAMPLED_LEVELS, &mut points);
-            for point in points {
-                let height = frame.height(point).abs();
-                if found.is_none_or(|(known, _)| height > known) {
-                    found = Some((height, point));
-                }
+            let height = |point: &DVec3| frame.height(*point);
+            let by_height = |a: &&DVec3, b: &&DVec3| height(a).total_cmp(&height(b));
+            let by_distance = |a: &&DVec3, b: &&DVec3| height(a).abs().total_cmp(&height(b).abs());
+            if emission.offsets.is_empty() {
+                found.extend(points.iter().max_by(by_distance));
+            } else {
+                found.extend(points.iter().max_by(by_height));
+                found.extend(points.iter().min_by(by_height));
+                found.extend(corners.map(|corner| corner.position));
             }
         });
     });
-    found.map(|(_, point)| point)
+    found
 }
 
 /// Goes down to a place.
@@ -156,23 +250,17 @@ struct Nearest<'a> {
     emission: &'a Emission,
     /// Boxes that hold the surface over each control face, and so the corners of its triangles.
     boxes: Vec<(DVec3, DVec3)>,
-    /// By control face, its first triangle.
-    starts: Vec<u32>,
 }
 
 impl<'a> Nearest<'a> {
     fn of(engine: &Engine<'_>, emission: &'a Emission) -> Self {
-        let mesh = engine.control.mesh;
-        let mut starts = vec![0u32; mesh.face_count() + 1];
-        emission.parents.iter().for_each(|&face| starts[face as usize + 1] += 1);
-        (0..mesh.face_count()).for_each(|face| starts[face + 1] += starts[face]);
-        let boxes = (0..mesh.face_count()).map(|face| {
-            let own = &emission.triangles[starts[face] as usize..starts[face + 1] as usize];
+        let boxes = (0..engine.control.mesh.face_count() as u32).map(|face| {
+            let own = &emission.triangles[emission.triangles_of(face)];
             let corners =
                 own.as_flattened().iter().map(|&vertex| vector(emission.positions[vertex as usize]));
             corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
         });
-        Self { emission, boxes: boxes.collect(), starts }
+        Self { emission, boxes: boxes.collect() }
     }
 
     /// The distance of a point to the mesh; `face` is likely to be nearest.
@@ -189,8 +277,7 @@ impl<'a> Nearest<'a> {
     }
 
     fn within(&self, face: u32, point: DVec3, least: &mut f64) {
-        let own = self.starts[face as usize] as usize..self.starts[face as usize + 1] as usize;
-        for triangle in &self.emission.triangles[own] {
+        for triangle in &self.emission.triangles[self.emission.triangles_of(face)] {
             let [a, b, c] = triangle.map(|vertex| vector(self.emission.positions[vertex as usize]) - point);
             let (low, high) = (a.min(b).min(c), a.max(b).max(c));
             if low.max(-high).max(DVec3::ZERO).length_squared() < *least {

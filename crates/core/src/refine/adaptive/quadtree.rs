@@ -7,8 +7,8 @@
 //! same number runs the other way.
 
 use crate::index::HalfEdgeId;
-use crate::mesh::{Mesh, Topology};
-use crate::refine::exact;
+use crate::mesh::{Mesh, MeshError, Topology};
+use crate::refine::exact_options;
 
 /// Marks the word of a node below which all leaves are equally deep; the lowest bits are their depth below it.
 pub(super) const LEAF: u32 = 1 << 31;
@@ -30,7 +30,7 @@ pub(super) const MOST_NODES: usize = STRICT as usize;
 
 /// Levels at most below a control face: paths take two bits a level, and places along an edge are counted in units of the
 /// deepest level's edges.
-pub(super) const MOST_LEVELS: u32 = exact::MOST_LEVELS as u32;
+pub(super) const MOST_LEVELS: u32 = exact_options::MOST_LEVELS as u32;
 
 /// Places along the edge of a control face run from 0 to this.
 pub(super) const FULL: u32 = 1 << MOST_LEVELS;
@@ -165,12 +165,16 @@ pub(super) fn even_depth(word: u32) -> Option<u32> {
 
 impl Trees {
     /// Trees from pieces: for consecutive runs of control faces their roots, and words whose children count from the
-    /// piece's own first. `None` if there are too many.
-    pub(super) fn of(pieces: &[Piece]) -> Option<Self> {
+    /// piece's own first.
+    ///
+    /// # Errors
+    /// There are too many.
+    pub(super) fn of(pieces: &[Piece]) -> Result<Self, MeshError> {
         let faces: usize = pieces.iter().map(|piece| piece.roots.len()).sum();
         let words: usize = pieces.iter().map(|piece| piece.words.len()).sum();
-        if faces + words >= MOST_NODES {
-            return None;
+        let count = faces + words;
+        if count >= MOST_NODES {
+            return Err(MeshError::TooMany { what: "nodes", count, limit: MOST_NODES });
         }
         let mut all = Vec::with_capacity(faces + words + words / 8);
         let mut base = faces as u32;
@@ -183,7 +187,7 @@ impl Trees {
             all.extend(piece.words.iter().map(|&word| rebased(word, base)));
             base += piece.words.len() as u32;
         }
-        Some(Self { words: all })
+        Ok(Self { words: all })
     }
 
     /// The word of a control face.
@@ -196,6 +200,11 @@ impl Trees {
     #[inline]
     pub(super) fn child(&self, word: u32, child: usize) -> u32 {
         if word & LEAF != 0 { word - 1 } else { self.words[word as usize + child] }
+    }
+
+    /// What refuses `more` words than there are.
+    pub(super) fn too_many(&self, more: usize) -> MeshError {
+        MeshError::TooMany { what: "nodes", count: self.words.len() + more, limit: MOST_NODES }
     }
 
     /// The deepest level of a leaf below a node.

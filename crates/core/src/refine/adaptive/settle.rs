@@ -23,10 +23,7 @@ pub(super) fn settle(
     goal: &Goal,
     settled: &mut [Option<(f64, Place)>],
 ) -> Vec<(Place, f64)> {
-    let mut sharp = HashSet::new();
-    for (h, _) in &emission.sharp {
-        sharp.extend(emission.borders.along(*h).iter().copied());
-    }
+    let sharp = sharp_edges(emission);
     let conditions =
         emission.conditions.iter().filter(|(condition, ..)| settled[condition.place.face as usize].is_none());
     let conditions: Vec<&(Condition, u32, u32)> = conditions.collect();
@@ -57,8 +54,13 @@ pub(super) fn settle(
     failing
 }
 
+/// The half-edges along sharp edges.
+pub(super) fn sharp_edges(emission: &Emission) -> HashSet<u32> {
+    emission.sharp.iter().flat_map(|(h, _)| emission.borders.along(*h).iter().copied()).collect()
+}
+
 /// [`around`] of an emitted triangle. Sharp edges have nobody beyond.
-fn beside(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -> (f64, f64) {
+pub(super) fn beside(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -> (f64, f64) {
     let at = |vertex: u32| vector(emission.positions[vertex as usize]);
     let opposite = [0, 1, 2].map(|edge| {
         let h = 3 * triangle + edge;

@@ -1,10 +1,9 @@
 //! Predicts what an exact refinement would give, from how a coarser one grows.
 
-use super::grow::Growth;
-use super::options::{BYTES_PER_TRIANGLE, Estimate, ExactOptions, ExactStop};
 use super::scale;
 use crate::mesh::Mesh;
-use crate::patch::Rules;
+use crate::refine::exact_options::{BYTES_PER_TRIANGLE, ExactOptions};
+use crate::refine::exact_result::Estimate;
 use crate::refine::{RefineError, adaptive};
 use crate::scheme::Scheme;
 
@@ -33,7 +32,6 @@ pub fn exact_estimate(
     if let Some(factor) = scale::factor(control) {
         return exact_estimate(&scale::mesh(control, factor)?, scheme, &scale::options(options, factor));
     }
-    let rules = Rules::of(scheme);
     let of = |triangles: usize, is_counted| {
         let triangles = triangles.min(options.budget().0).max(control.face_count());
         Estimate { triangles, memory_bytes: triangles.saturating_mul(BYTES_PER_TRIANGLE), is_counted }
@@ -42,30 +40,19 @@ pub fn exact_estimate(
     if !quality {
         return Ok(of(options.budget().0, false));
     }
-    if let Some(tolerance) = options.tolerance.filter(|_| options.is_of_distance()) {
-        return approached(control.face_count(), of, |times| {
-            let triangles = adaptive::count(control, scheme, times * tolerance, options.max_levels)?;
-            Ok((triangles, true))
-        });
-    }
-    let mut growth = Growth::new(control, &rules, options)?;
-    approached(control.face_count(), of, |times| {
-        let stop = growth.grow(times)?;
-        Ok((growth.forest.triangle_count(), stop == ExactStop::Met))
-    })
+    approached(control.face_count(), of, |times| adaptive::count(control, scheme, options, times))
 }
 
-/// Counts triangles for goals that are so many times too coarse, given with whether the goals were met, until they are many or
-/// the goals the right ones.
+/// Counts triangles for goals that are so many times too coarse until they are many or the goals the right ones.
 fn approached(
     faces: usize,
     of: impl Fn(usize, bool) -> Estimate,
-    mut count: impl FnMut(f64) -> Result<(usize, bool), RefineError>,
+    mut count: impl FnMut(f64) -> Result<usize, RefineError>,
 ) -> Result<Estimate, RefineError> {
     let (mut times, mut before) = (COARSEST, faces);
     loop {
-        let (triangles, is_met) = count(times)?;
-        if !is_met || times == 1.0 {
+        let triangles = count(times)?;
+        if times == 1.0 {
             return Ok(of(triangles, true));
         }
         if triangles > COUNTED && triangles > before {

@@ -2,10 +2,11 @@
 //!
 //! Distances are found by squares and products of squares; beyond coordinates of 1e±40 or so these overflow or vanish.
 
-use super::options::{ErrorBounds, Exact, ExactOptions};
 use crate::criterion::{Camera, View, Viewpoint};
 use crate::mesh::Mesh;
 use crate::refine::RefineError;
+use crate::refine::exact_options::ExactOptions;
+use crate::refine::exact_result::{ErrorBounds, Exact};
 
 /// Sizes with binary exponents up to this are left as they are: their eighth powers are finite.
 const MIDDLING: i32 = 100;

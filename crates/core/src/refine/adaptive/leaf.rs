@@ -6,17 +6,17 @@ use crate::certificate::SubTriangle;
 /// A triangle of a leaf. Corners of the part and of the triangle stand in the same order, which may be another than that
 /// of the emitted triangle.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::refine) struct LeafTriangle<P> {
+pub(super) struct LeafTriangle<P> {
     /// The part of the leaf's patch that it stands for.
-    pub(in crate::refine) part: SubTriangle,
-    pub(in crate::refine) corners: [P; 3],
+    pub(super) part: SubTriangle,
+    pub(super) corners: [P; 3],
     /// For each edge, from the corner of its number, the leaf's edge that it is part of.
-    pub(in crate::refine) borders: [Option<usize>; 3],
+    pub(super) borders: [Option<usize>; 3],
 }
 
 /// The triangles of a leaf, given its corners and the vertices on its split edges. Of two split edges, the
 /// quadrilateral is cut by the diagonal from the start of the unsplit edge or from its end.
-pub(in crate::refine) fn leaf_triangles<P: Copy>(
+pub(super) fn leaf_triangles<P: Copy>(
     corners: [P; 3],
     middles: [Option<P>; 3],
     diagonal_from_end: bool,

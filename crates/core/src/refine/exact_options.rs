@@ -1,11 +1,11 @@
-//! Goals, caps and results of exact refinement.
+//! Goals and caps of exact refinement.
 
 use core::ops::ControlFlow;
 
+use super::RefineError;
+use super::exact_result::ExactStop;
 use crate::criterion::{Camera, View};
-use crate::index::HalfEdgeId;
-use crate::mesh::{Mesh, MeshError};
-use crate::refine::RefineError;
+use crate::mesh::MeshError;
 
 /// What exact refinement is to reach, and what it must not exceed.
 ///
@@ -53,7 +53,7 @@ pub struct ExactOptions<'a> {
 const USUAL_LEVELS: usize = 24;
 
 /// Levels at most: places along the edge of a control face are told apart by 32 bits.
-pub(in crate::refine) const MOST_LEVELS: usize = 30;
+pub(super) const MOST_LEVELS: usize = 30;
 
 /// Triangles at most where no cap is given.
 const USUAL_TRIANGLES: usize = 50_000_000;
@@ -147,13 +147,8 @@ impl<'a> ExactOptions<'a> {
         self
     }
 
-    /// Whether nothing but distances and numbers of triangles count, with vertices on the limit surface.
-    pub(in crate::refine) fn is_of_distance(&self) -> bool {
-        self.angle.is_none() && self.pixels.is_none() && !self.balance
-    }
-
     /// Triangles that must not be exceeded, and why.
-    pub(in crate::refine) fn budget(&self) -> (usize, ExactStop) {
+    pub(super) fn budget(&self) -> (usize, ExactStop) {
         let by_memory = self.max_memory.map(|bytes| bytes / BYTES_PER_TRIANGLE);
         let limits = [
             (self.triangles, ExactStop::Triangles),
@@ -162,15 +157,6 @@ impl<'a> ExactOptions<'a> {
         ];
         let given = limits.into_iter().filter_map(|(limit, stop)| Some((limit?, stop)));
         given.min_by_key(|&(limit, _)| limit).unwrap_or((usize::MAX, ExactStop::TriangleCap))
-    }
-
-    /// Levels by which all of a control mesh can be divided where only the number of triangles counts.
-    pub(super) fn uniform_levels(&self, control_faces: usize) -> usize {
-        if self.tolerance.is_some() || self.angle.is_some() || self.pixels.is_some() {
-            return 0;
-        }
-        let fits = |&levels: &usize| control_faces.saturating_mul(1 << (2 * levels)) <= self.budget().0;
-        (1..=self.max_levels.min(20)).take_while(fits).last().unwrap_or(0)
     }
 
     /// Refuses goals that are no positive numbers, and having none.
@@ -226,104 +212,3 @@ pub struct ExactProgress {
 
 /// Called after each round; may cancel.
 pub type ExactObserver<'a> = &'a (dyn Fn(&ExactProgress) -> ControlFlow<()> + Sync);
-
-/// Why an exact refinement ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum ExactStop {
-    /// Every goal on quality is met.
-    Met,
-    /// The number of triangles asked for is used up.
-    Triangles,
-    /// The next split would have passed the cap on triangles.
-    TriangleCap,
-    /// The next split would have taken more memory than allowed.
-    MemoryCap,
-    /// What still fails has been divided as often as allowed.
-    LevelCap,
-    /// The tolerance is below what rounding leaves certain.
-    Rounding,
-    /// Every goal is met, but for [`Exact::open_cones`]: triangles outside their cones where no division brings their
-    /// normals nearer to the limit normals, such as at cusps and where the surface is not regular.
-    Cones,
-}
-
-/// An interval for the symmetric Hausdorff distance between a mesh and the limit surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct ErrorBounds {
-    /// A distance that was found.
-    pub lower: f64,
-    /// A distance that is not exceeded where [`Self::certified`] holds. Otherwise an estimate, the greatest distance of
-    /// the surface's points three levels below the triangles, which the true one may exceed by some per cent.
-    pub upper: f64,
-    /// Whether `upper` is proven: so it is for the Loop family ([`crate::scheme::LoopFamily`]), whose masks are convex
-    /// combinations.
-    pub certified: bool,
-    /// A point of the limit surface at the distance `lower` from the mesh.
-    pub at: [f64; 3],
-}
-
-/// A point of the control mesh: where a vertex came from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Origin {
-    /// The control face, the first of those that share the point.
-    pub face: u32,
-    /// Barycentric coordinates there, multiples of a power of 1/2.
-    pub barycentric: [f64; 3],
-}
-
-/// A mesh within known bounds of a limit surface.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Exact {
-    /// The mesh; all vertices lie on the limit surface. Control vertices keep their numbers.
-    pub mesh: Mesh,
-    /// Unit limit normals of the vertices; zero where the surface has none, an average of the sides at sharp edges.
-    pub normals: Vec<[f64; 3]>,
-    /// The limit normals of triangles' corners at sharp edges, each of its own side, by the half-edge that leaves the corner,
-    /// ascending; see [`Self::corner_normal`]. Empty without sharp edges, and after optimisation.
-    pub sides: Vec<(u32, [f64; 3])>,
-    /// Where each vertex came from.
-    pub origins: Vec<Origin>,
-    /// The control face of each triangle; empty after optimisation, whose triangles reach over several.
-    pub parents: Vec<u32>,
-    /// How far mesh and limit surface can be from each other.
-    pub error: ErrorBounds,
-    /// The greatest distance between mesh and limit surface as the cameras see it, in pixels at most: each point of one
-    /// that is in a picture has a point of the other that near. `None` without cameras; infinite where it is not bounded.
-    pub pixels: Option<f64>,
-    /// Triangles whose normals leave the cone of [`ExactOptions::angle`]; 0 without that goal, or where it is met.
-    pub open_cones: usize,
-    /// How many times over the worst triangle fails the goals on quality: at most 1 where all are met; 0 without any.
-    pub worst: f64,
-    /// Why the refinement ended.
-    pub stop: ExactStop,
-    /// Levels of the deepest part of the hierarchy.
-    pub levels: usize,
-    /// After optimisation, how many vertices stayed only because the proof failed where they are: around them the fine
-    /// triangles were not collapsed any further.
-    pub refused: usize,
-}
-
-impl Exact {
-    /// The unit limit normal at the corner that a half-edge leaves, on the side of its triangle.
-    pub fn corner_normal(&self, corner: HalfEdgeId) -> [f64; 3] {
-        match self.sides.binary_search_by_key(&corner.0, |&(h, _)| h) {
-            Ok(place) => self.sides[place].1,
-            Err(_) => self.normals[self.mesh.topology().origin(corner).index()],
-        }
-    }
-}
-
-/// What an exact refinement would give.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Estimate {
-    /// Triangles, exactly where there are few, extrapolated where there are many.
-    pub triangles: usize,
-    /// Bytes that the refinement and its result would take at most, about.
-    pub memory_bytes: usize,
-    /// Whether the triangles were counted rather than extrapolated.
-    pub is_counted: bool,
-}

@@ -1,0 +1,147 @@
+//! Emission where triangles are looked at among their neighbours, all of them: for goals beside distances, and for vertices
+//! that are moved off the surface.
+
+use super::emit::Emission;
+use super::emitted::Sources;
+use super::judge::Goal;
+use super::measure::{Measured, measure};
+use super::offsets::Bulges;
+use super::result::Outcome;
+use super::{ADDED, Engine, Plan, marked};
+use crate::refine::RefineError;
+use crate::refine::exact_options::ExactOptions;
+use crate::refine::exact_result::{Exact, ExactStop};
+
+/// How far triangles may miss the surface before their corners are moved: by half that much afterwards at best.
+const UNBALANCED: f64 = 1.8;
+
+/// What balancing leaves of a plain mesh's distance at best, at equal triangles.
+const BALANCED: f64 = 0.35;
+
+/// Values that are tried under a budget: it is spent but for some per cent then.
+const MOST_TRIES: usize = 6;
+
+impl Engine<'_> {
+    /// Emits a plan whose triangles come to `goal` at most among their neighbours, dividing what fails; `None` if there are too
+    /// many triangles. Where a budget is all that ends the division, what does not fit any more counts as it is.
+    pub(super) fn emit_among(
+        &self,
+        mut plan: Plan,
+        goal: &Goal,
+        (most, is_budget): (usize, bool),
+    ) -> Result<Option<Outcome>, RefineError> {
+        let mut bulges = Bulges::default();
+        let mut measured: Vec<Measured> = Vec::new();
+        loop {
+            let mut emission = self.emit_all(&plan)?;
+            let count = plan.closed.len();
+            let touched = core::mem::replace(&mut plan.is_touched, vec![false; count]);
+            if self.is_balanced {
+                bulges.look(&self.sources(&plan, &emission), &marked(&touched));
+                let offsets = bulges.offsets(self.control, &emission);
+                emission.shift(offsets);
+            }
+            let around = marked(&self.around(touched));
+            let found = measure(&self.sources(&plan, &emission), goal, f64::INFINITY, &around);
+            if measured.is_empty() {
+                measured = found;
+            } else {
+                around.iter().zip(found).for_each(|(&face, found)| measured[face as usize] = found);
+            }
+            let Some(is_dirty) = self.divide(&mut plan, &measured, (most, is_budget))? else {
+                return Ok(Some(Outcome { plan, emission, measured: Some(measured) }));
+            };
+            drop(emission);
+            if !self.carry_out(&mut plan, is_dirty, most)? {
+                return Ok(None);
+            }
+        }
+    }
+
+    /// The faces whose triangles may come to something else after changes in some: moved vertices depend on the triangles around
+    /// them, triangles on those beside them.
+    fn around(&self, is_touched: Vec<bool>) -> Vec<bool> {
+        let triangles = self.control.mesh.triangles();
+        let mut is_met = vec![false; self.control.mesh.vertex_count()];
+        for (triangle, _) in triangles.iter().zip(&is_touched).filter(|&(_, &is_touched)| is_touched) {
+            triangle.iter().for_each(|&vertex| is_met[vertex as usize] = true);
+        }
+        let mut is_around = is_touched;
+        for (face, triangle) in (0..).zip(triangles) {
+            if triangle.iter().any(|&vertex| is_met[vertex as usize]) {
+                self.mark(face, &mut is_around);
+            }
+        }
+        is_around
+    }
+
+    /// Divides the leaves that fail, and marks the faces that this changes; `None` if there are none that may be.
+    fn divide(
+        &self,
+        plan: &mut Plan,
+        measured: &[Measured],
+        (most, is_budget): (usize, bool),
+    ) -> Result<Option<Vec<bool>>, RefineError> {
+        let failing: usize = measured.iter().map(|face| face.failing.len()).sum();
+        if failing == 0 || is_budget && plan.triangles + ADDED * failing > most {
+            return Ok(None);
+        }
+        let mut is_dirty = vec![false; plan.closed.len()];
+        let mut is_split = false;
+        for &(place, _) in measured.iter().flat_map(|face| &face.failing) {
+            if place.level >= self.max_levels {
+                plan.has_failed = true;
+                continue;
+            }
+            is_split = true;
+            self.mark(place.face, &mut is_dirty);
+            self.split(&mut plan.decision.trees, place, |place| self.mark(place.face, &mut is_dirty))?;
+        }
+        Ok(is_split.then_some(is_dirty))
+    }
+
+    /// The finest mesh with balanced triangles within a value; `None` if that takes more triangles than there may be.
+    pub(super) fn balanced(&self, limit: f64, most: usize) -> Result<Option<Outcome>, RefineError> {
+        let Some(plan) = self.plan(Goal::Within(UNBALANCED * limit), most)? else { return Ok(None) };
+        self.emit_among(plan, &Goal::Within(limit), (most, false))
+    }
+
+    /// The balanced mesh within the least value that has no more triangles than there may be; the plain one where that does
+    /// no worse.
+    pub(super) fn least_balanced(
+        &self,
+        plain: Exact,
+        floor: f64,
+        (most, stop): (usize, ExactStop),
+        options: &ExactOptions<'_>,
+    ) -> Result<Exact, RefineError> {
+        let mut high = if self.control.criteria.is_some() { plain.worst } else { plain.error.upper };
+        let mut low = floor.max(BALANCED * high);
+        let mut best = None;
+        for _ in 0..MOST_TRIES {
+            let middle = (low * high).sqrt();
+            if !(low < middle && middle < high) {
+                break;
+            }
+            match self.balanced(middle, most)? {
+                Some(outcome) => (best, high) = (Some(outcome), middle),
+                None => low = middle,
+            }
+        }
+        let Some(outcome) = best else { return Ok(plain) };
+        let balanced = outcome.finish(self, stop, options)?;
+        Ok(if balanced.error.upper < plain.error.upper { balanced } else { plain })
+    }
+
+    pub(super) fn sources<'a>(&'a self, plan: &'a Plan, emission: &'a Emission) -> Sources<'a> {
+        let Plan { decision, chains, closed, .. } = plan;
+        Sources {
+            control: self.control,
+            edges: &self.edges,
+            trees: &decision.trees,
+            chains,
+            closed,
+            emission,
+        }
+    }
+}

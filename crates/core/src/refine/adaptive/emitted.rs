@@ -1,0 +1,182 @@
+//! The emitted triangles, each with its vertices and the part of the surface that it stands for.
+
+use super::chains::Chains;
+use super::close::{Closed, lies_along};
+use super::decide::Control;
+use super::emit::Emission;
+use super::leaf::leaf_triangles;
+use super::quadtree::{Edges, Place, Trees};
+use super::rim::{Rim, bits};
+use super::surface::{Ground, Spot, Surface, with_patch};
+use super::walk::{Knot, Node, Visitor, Walk};
+use crate::certificate::{Cell, Pieces, SubTriangle};
+use crate::emit::{Diagonal, closure};
+use crate::patch::{LimitPoint, Rules};
+
+/// An emitted triangle.
+pub(super) struct Emitted {
+    /// Its number.
+    pub(super) number: u32,
+    /// Its vertices, in the order of the part's corners, which may begin elsewhere.
+    pub(super) vertices: [u32; 3],
+    /// The leaf that it covers, or a part of which.
+    pub(super) place: Place,
+    /// That part.
+    pub(super) part: SubTriangle,
+    /// Which of its edges have no neighbour that counts.
+    pub(super) open: [bool; 3],
+}
+
+/// The surface over an emitted triangle.
+pub(super) enum Over<'e, 'p> {
+    /// A part of a regular piece.
+    Regular(&'e Ground, Cell),
+    /// Any other, with the limits at the triangle's corners.
+    General(&'e mut Pieces<'p>, [LimitPoint; 3]),
+}
+
+/// Who looks at the triangles.
+pub(super) trait Beholder {
+    /// Looks at one.
+    fn triangle<'p>(&mut self, emitted: &Emitted, over: Over<'_, 'p>, rules: &'p Rules<'p>);
+}
+
+/// What the triangles came about from.
+#[derive(Clone, Copy)]
+pub(super) struct Sources<'a> {
+    pub(super) control: &'a Control<'a>,
+    pub(super) edges: &'a Edges<'a>,
+    pub(super) trees: &'a Trees,
+    pub(super) chains: &'a Chains,
+    pub(super) closed: &'a [Closed],
+    pub(super) emission: &'a Emission,
+}
+
+impl Sources<'_> {
+    /// Shows the triangles of a control face, in the order in which they stand.
+    pub(super) fn show(&self, face: u32, beholder: &mut impl Beholder) {
+        let Self { control, edges, trees, chains, closed, emission } = *self;
+        let mut walk = Walk { trees, rules: control.rules, knots: Vec::new(), next: 0 };
+        let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
+        let mut leaves = Leaves {
+            rules: control.rules,
+            triangles: &emission.triangles,
+            next: emission.triangles_of(face).start as u32,
+            open: control.open(face),
+            diagonals: &closed[face as usize].diagonals,
+            rim: Rim::default(),
+            beholder,
+        };
+        let at = (Place::root(face), Spot::WHOLE);
+        with_patch(&control.patch(face), control.corners(face), 0, &mut |surface| {
+            walk.node(trees.root(face), at, sides, surface, &mut leaves);
+        });
+    }
+}
+
+/// Finds the triangles of the leaves again.
+struct Leaves<'a, B> {
+    rules: &'a Rules<'a>,
+    triangles: &'a [[u32; 3]],
+    next: u32,
+    /// The control face's own edges.
+    open: [bool; 3],
+    /// Those that have not come yet.
+    diagonals: &'a [bool],
+    rim: Rim,
+    beholder: &'a mut B,
+}
+
+impl<B: Beholder> Visitor for Leaves<'_, B> {
+    fn chain(&mut self, _: &[Knot], _: usize, _: Spot, _: &Surface<'_>) {}
+
+    fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+        self.rim.set(node, knots);
+        let n = 1usize << node.depth;
+        for j in 0..n {
+            for i in 0..n - j {
+                self.upright(node, (i, j));
+                if i + j + 1 < n {
+                    self.headlong(node, (i, j));
+                }
+            }
+        }
+    }
+}
+
+impl<B: Beholder> Leaves<'_, B> {
+    fn upright(&mut self, node: &Node<'_>, (i, j): (usize, usize)) {
+        let n = 1usize << node.depth;
+        let place = node.place.leaf(node.depth, (i, j), false);
+        let on_side = [j == 0, i + j + 1 == n, i == 0];
+        let open = [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && lies_along(node.place, edge));
+        let split = if on_side == [false; 3] { [None; 3] } else { self.rim.split(n, i, j) };
+        let bits = bits(&split);
+        let mut from_end = false;
+        if bits.count_ones() == 2
+            && let [first, rest @ ..] = self.diagonals
+        {
+            (from_end, self.diagonals) = (*first, rest);
+        }
+        let pattern =
+            closure(bits, if from_end { Diagonal::FromEnd } else { Diagonal::FromStart }).triangles();
+        let first = self.next;
+        self.next += pattern.len() as u32;
+        let mut vertices = [0; 6];
+        for (labels, triangle) in pattern.iter().zip(&self.triangles[first as usize..]) {
+            labels.iter().zip(triangle).for_each(|(&label, &vertex)| vertices[label as usize] = vertex);
+        }
+        let emitted = |part, labels: [usize; 3], borders: [Option<usize>; 3]| {
+            let has = |triangle: &[u8; 3]| labels.iter().all(|&label| triangle.contains(&(label as u8)));
+            Emitted {
+                number: first + pattern.iter().position(has).unwrap_or(0) as u32,
+                vertices: labels.map(|label| vertices[label]),
+                place,
+                part,
+                open: borders.map(|border| border.is_some_and(|edge| open[edge])),
+            }
+        };
+        let middles = [0, 1, 2].map(|edge| split[edge].map(|_| 3 + edge));
+        let triangles = leaf_triangles([0, 1, 2], middles, from_end);
+        match node.surface {
+            Surface::Unknown => {}
+            Surface::Regular(ground, spot) => {
+                let spot = spot.leaf(node.depth, i, j);
+                let [a, b, c] = spot.corners();
+                let domain = [a, b, c, spot.along(0, 0.5), spot.along(1, 0.5), spot.along(2, 0.5)];
+                for triangle in triangles {
+                    let emitted = emitted(triangle.part, triangle.corners, triangle.borders);
+                    let cell = Cell(triangle.corners.map(|label| domain[label]));
+                    self.beholder.triangle(&emitted, Over::Regular(ground, cell), self.rules);
+                }
+            }
+            Surface::General { patch, corners, .. } => {
+                let mut pieces = Pieces::of(patch);
+                let [a, b, c] = *corners;
+                let mut points = [a, b, c, a, b, c];
+                if bits != 0 {
+                    let refined = pieces.refined(self.rules);
+                    (0..3).for_each(|edge| points[3 + edge] = refined.middle(edge));
+                }
+                for triangle in triangles {
+                    let emitted = emitted(triangle.part, triangle.corners, triangle.borders);
+                    let limits = triangle.corners.map(|label| points[label]);
+                    self.beholder.triangle(&emitted, Over::General(&mut pieces, limits), self.rules);
+                }
+            }
+        }
+    }
+
+    /// The leaf to the right of an upright one, which stands on its head: its first corner is the second one emitted.
+    fn headlong(&mut self, node: &Node<'_>, (i, j): (usize, usize)) {
+        let number = self.next;
+        self.next += 1;
+        let Surface::Regular(ground, spot) = node.surface else { return };
+        let [a, b, c] = self.triangles[number as usize];
+        let place = node.place.leaf(node.depth, (i, j), true);
+        let emitted =
+            Emitted { number, vertices: [b, c, a], place, part: SubTriangle::Whole, open: [false; 3] };
+        let cell = spot.row(node.depth, i, j, true).cell();
+        self.beholder.triangle(&emitted, Over::Regular(ground, cell), self.rules);
+    }
+}

@@ -1,0 +1,273 @@
+//! The emitted triangles with their neighbours as they are: what each comes to, and which of them fail.
+//!
+//! Takes what was emitted, its vertices moved off the surface or not ([`super::offsets`]); gives, by control face, the
+//! greatest bound of a distance and where it is, and the leaves whose values are too much. Distances to moved triangles are
+//! bounded as [`crate::certificate::Deviation::grown`] says.
+
+use std::collections::HashSet;
+
+use super::emit::Emission;
+use super::emitted::{Beholder, Emitted, Over, Sources};
+use super::judge::{DIVISIONS, Goal, HALVINGS};
+use super::quadtree::Place;
+use super::settle::{beside, sharp_edges};
+use crate::certificate::{Deviation, Effort, Pieces, SubTriangle, TriangleFrame, exceeds};
+use crate::criterion::{Apart, Criteria, Region};
+use crate::parallel;
+use crate::patch::{LimitPoint, Rules};
+use crate::vector::{DVec3, vector};
+
+/// Control faces that one call takes together.
+const BLOCK: usize = 64;
+
+/// Halvings of a net for tight bounds: towards a corner at which points drift too fast, where only short pieces are near.
+const MOST_HALVINGS: usize = 16;
+
+/// What the triangles of a control face come to.
+#[derive(Clone, Debug)]
+pub(super) struct Measured {
+    /// The greatest bound of a distance, and the leaf that has it.
+    pub(super) worst: (f64, Place),
+    /// The greatest height of the surface over a triangle, about, and the leaf.
+    pub(super) highest: (f64, Place),
+    /// The greatest value.
+    pub(super) value: f64,
+    /// The greatest distance in the cameras' pictures, in pixels.
+    pub(super) pixels: f64,
+    /// Leaves that fail, in the order of the walk, and what they come to.
+    pub(super) failing: Vec<(Place, f64)>,
+}
+
+/// Looks at the triangles of some control faces. Bounds of distances below `length`, of triangles that do not fail, need not
+/// be tight.
+pub(super) fn measure(sources: &Sources<'_>, goal: &Goal, length: f64, faces: &[u32]) -> Vec<Measured> {
+    let sharp = sharp_edges(sources.emission);
+    let measured = parallel::pieces_of(faces.len(), BLOCK, |block| {
+        let measured = faces[block].iter().map(|&face| {
+            let nowhere = (0.0, Place::root(face));
+            let none =
+                Measured { worst: nowhere, highest: nowhere, value: 0.0, pixels: 0.0, failing: Vec::new() };
+            let mut measuring = Measuring {
+                emission: sources.emission,
+                criteria: sources.control.criteria.as_ref(),
+                sharp: &sharp,
+                limit: goal.allowed(face),
+                length,
+                found: none,
+            };
+            sources.show(face, &mut measuring);
+            measuring.found
+        });
+        measured.collect::<Vec<_>>()
+    });
+    measured.into_iter().flatten().collect()
+}
+
+struct Measuring<'a> {
+    emission: &'a Emission,
+    criteria: Option<&'a Criteria>,
+    sharp: &'a HashSet<u32>,
+    /// Greatest value.
+    limit: f64,
+    length: f64,
+    found: Measured,
+}
+
+impl Beholder for Measuring<'_> {
+    fn triangle<'p>(&mut self, emitted: &Emitted, mut over: Over<'_, 'p>, rules: &'p Rules<'p>) {
+        let among = Among::of(self.emission, self.sharp, emitted);
+        let cone = match (self.criteria.filter(|criteria| criteria.has_cones()), &over) {
+            (None, _) => 0.0,
+            (Some(criteria), Over::Regular(ground, cell)) => {
+                among.cone(criteria, emitted.place, &cell.0.map(|at| ground.at(at)))
+            }
+            (Some(criteria), Over::General(_, corners)) => among.cone(criteria, emitted.place, corners),
+        };
+        if let Some(value) = self.certain_failure(&among, emitted, &mut over, rules) {
+            return self.found.fail(emitted.place, Value { bound: f64::INFINITY, value, pixels: 0.0 });
+        }
+        let mut best: Option<(Value, f64)> = None;
+        let mut is_enough = |deviation: Deviation| {
+            let value = self.value(&among, &deviation);
+            // What counts alone has no height of its own.
+            let height = (deviation.height - deviation.across).max(0.0);
+            let (value, height) =
+                best.map_or((value, height), |(known, least)| (value.least(&known), height.min(least)));
+            best = Some((value, height));
+            value.value <= self.limit && value.bound <= self.length
+        };
+        match over {
+            Over::Regular(ground, cell) => {
+                let heights = ground.jet.heights(&cell, among.frame.normal());
+                let beside = ground.jet.beside(&cell, &among.frame, emitted.open);
+                let first =
+                    if among.moved > 0.0 { heights.lifted(among.lifts, 1) } else { heights.range().1 };
+                let off = |height| beside.deviation_off(height, among.moved, among.aside);
+                if !is_enough(off(first)) && !is_enough(off(heights.lifted(among.lifts, DIVISIONS))) {
+                    let patch = ground.patch(emitted.place);
+                    is_enough(self.by_pieces(&among, emitted, &mut Pieces::of(&patch), rules));
+                }
+            }
+            Over::General(pieces, _) => {
+                is_enough(self.by_pieces(&among, emitted, pieces, rules));
+            }
+        }
+        let Some((value, height)) = best else { return };
+        if exceeds(height, self.found.highest.0) {
+            self.found.highest = (height, emitted.place);
+        }
+        let value = Value { value: if exceeds(value.value, cone) { value.value } else { cone }, ..value };
+        self.found.add(emitted.place, &value);
+        if exceeds(value.value, self.limit) {
+            self.found.fail(emitted.place, value);
+        }
+    }
+}
+
+impl Measured {
+    fn add(&mut self, place: Place, value: &Value) {
+        if exceeds(value.bound, self.worst.0) {
+            self.worst = (value.bound, place);
+        }
+        if exceeds(value.value, self.value) {
+            self.value = value.value;
+        }
+        self.pixels = self.pixels.max(value.pixels);
+    }
+
+    fn fail(&mut self, place: Place, value: Value) {
+        self.add(place, &value);
+        match self.failing.last_mut() {
+            Some((last, known)) if *last == place => *known = known.max(value.value),
+            _ => self.failing.push((place, value.value)),
+        }
+    }
+}
+
+impl Measuring<'_> {
+    /// The distance of a triangle that fails for sure, as a few points of the surface over it tell: then it needs no bound, as
+    /// long as it is divided. Nobody who asks for tight bounds or for more than distances is told that.
+    fn certain_failure<'p>(
+        &self,
+        among: &Among,
+        emitted: &Emitted,
+        over: &mut Over<'_, 'p>,
+        rules: &'p Rules<'p>,
+    ) -> Option<f64> {
+        if self.length.is_finite() || self.criteria.is_some() {
+            return None;
+        }
+        let height = match over {
+            Over::Regular(ground, cell) => {
+                let (low, high) = ground.jet.heights(cell, among.frame.normal()).sampled(among.lifts);
+                high.max(-low)
+            }
+            Over::General(pieces, _) if emitted.part == SubTriangle::Whole => {
+                let refined = pieces.refined(rules);
+                let height = |edge| among.frame.height(refined.middle(edge).position).abs();
+                height(0).max(height(1)).max(height(2))
+            }
+            Over::General(..) => 0.0,
+        };
+        (height > self.limit).then_some(height)
+    }
+
+    fn by_pieces<'p>(
+        &self,
+        among: &Among,
+        emitted: &Emitted,
+        pieces: &mut Pieces<'p>,
+        rules: &'p Rules<'p>,
+    ) -> Deviation {
+        let allowed = match self.criteria {
+            None => self.limit,
+            Some(criteria) => self.limit * criteria.allowed_length(&among.region()),
+        };
+        let effort = Effort {
+            target: allowed.min(self.length),
+            halvings: if self.length.is_finite() { MOST_HALVINGS } else { HALVINGS },
+            open: emitted.open,
+            chord: among.chord,
+            slope: among.slope,
+        };
+        pieces.deviation(emitted.part, &among.frame, rules, effort).off(among.moved, among.aside)
+    }
+
+    /// What the triangle comes to with this deviation.
+    fn value(&self, among: &Among, deviation: &Deviation) -> Value {
+        let bound = deviation.bound(among.chord, among.slope);
+        let Some(criteria) = self.criteria else { return Value { bound, value: bound, pixels: 0.0 } };
+        let apart: Apart = deviation.apart(among.chord, among.slope);
+        let region = among.region().grown(apart.own);
+        let value = criteria.distance_ratio(&apart, &region);
+        Value { bound, value, pixels: criteria.pixels(&apart, &region).unwrap_or(0.0) }
+    }
+}
+
+/// What a triangle comes to.
+#[derive(Clone, Copy)]
+struct Value {
+    /// Of the distance.
+    bound: f64,
+    /// By the criteria; the bound where there are none.
+    value: f64,
+    /// In the cameras' pictures.
+    pixels: f64,
+}
+
+impl Value {
+    /// The lesser of two proofs.
+    fn least(&self, other: &Self) -> Self {
+        Self {
+            bound: self.bound.min(other.bound),
+            value: self.value.min(other.value),
+            pixels: self.pixels.min(other.pixels),
+        }
+    }
+}
+
+/// A triangle among its neighbours.
+struct Among {
+    corners: [DVec3; 3],
+    frame: TriangleFrame,
+    /// The greatest chord of the angles between its plane and its neighbours'.
+    chord: f64,
+    /// The greatest slope at which points may drift over its edges.
+    slope: f64,
+    /// Heights of the surface's corners over the triangle's plane.
+    lifts: [f64; 3],
+    /// How far the corners were moved.
+    moved: f64,
+    /// How far within the plane.
+    aside: f64,
+}
+
+impl Among {
+    fn of(emission: &Emission, sharp: &HashSet<u32>, emitted: &Emitted) -> Self {
+        let corners = emitted.vertices.map(|vertex| vector(emission.positions[vertex as usize]));
+        let frame = TriangleFrame::new(corners);
+        let (squared, slope) = beside(emission, sharp, emitted.number);
+        let steps = emitted.vertices.map(|vertex| emission.step(vertex));
+        let (mut moved, mut aside) = (0.0f64, 0.0f64);
+        let lifts = steps.map(|step| {
+            let lift = frame.normal().dot(step);
+            moved = moved.max(step.length());
+            aside = aside.max((step - lift * frame.normal()).length());
+            -lift
+        });
+        Self { corners, frame, chord: squared.sqrt(), slope, lifts, moved, aside }
+    }
+
+    fn region(&self) -> Region {
+        Region::around(self.corners, self.frame.normal()).turned(self.chord)
+    }
+
+    /// How many times over the triangle of a leaf leaves its cones; not at all where these are given up.
+    fn cone(&self, criteria: &Criteria, place: Place, corners: &[LimitPoint; 3]) -> f64 {
+        let (normal, normals) = (self.frame.normal(), corners.map(|corner| corner.normal));
+        let tilt = normals.iter().map(|corner| corner.distance(normal)).fold(0.0, f64::max);
+        let region = Region::around(self.corners, normal).turned(2.0 * tilt);
+        let ratio = criteria.cone_ratio(normal, normals, &region);
+        if place.level as usize >= criteria.deepest_cone() { ratio.min(1.0) } else { ratio }
+    }
+}

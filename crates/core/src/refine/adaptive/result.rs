@@ -1,0 +1,102 @@
+//! What is handed out: the emitted mesh with all that is known of it.
+
+use super::emit::Emission;
+use super::measure::Measured;
+use super::{Engine, Plan, probe, sides};
+use crate::certificate::{TriangleFrame, exceeds};
+use crate::criterion::{Criteria, Region};
+use crate::index::{FaceId, HalfEdgeId};
+use crate::mesh::{Mesh, Topology, check_finite, outgoing_half_edges};
+use crate::parallel;
+use crate::refine::RefineError;
+use crate::refine::exact_options::ExactOptions;
+use crate::refine::exact_result::{Exact, ExactStop};
+use crate::vector::vector;
+
+/// What rounding may do to an angle against its limit, relative: normals are taken anew from what is emitted.
+const CONE_ROUNDING: f64 = 1e-6;
+
+/// A plan that was emitted, with what its triangles come to by control face where all were looked at among their neighbours.
+pub(super) struct Outcome {
+    pub(super) plan: Plan,
+    pub(super) emission: Emission,
+    pub(super) measured: Option<Vec<Measured>>,
+}
+
+impl Outcome {
+    /// Measures what was emitted.
+    pub(super) fn finish(
+        self,
+        engine: &Engine<'_>,
+        stop: ExactStop,
+        options: &ExactOptions<'_>,
+    ) -> Result<Exact, RefineError> {
+        let Self { plan, emission, measured } = self;
+        let control = engine.control;
+        let stop = if stop == ExactStop::Met && plan.has_failed { ExactStop::LevelCap } else { stop };
+        check_finite(&emission.positions)?;
+        if let Some(why) = control.rules.failure() {
+            return Err(why.clone().into());
+        }
+        let error = probe::probe(engine, &plan, &emission, measured.as_deref());
+        let failed = options.tolerance.filter(|&tolerance| exceeds(error.upper, tolerance));
+        let stop = if stop == ExactStop::Met && failed.is_some() { ExactStop::Rounding } else { stop };
+        let beyond = failed.map_or(0.0, |tolerance| error.upper / tolerance);
+        let value = match &measured {
+            None => plan.worst(),
+            Some(measured) => measured.iter().map(|face| face.value).fold(0.0, f64::max),
+        };
+        let worst = match (&control.criteria, options.tolerance) {
+            (Some(_), _) => value.max(beyond),
+            (None, Some(tolerance)) => (value / tolerance).max(beyond),
+            (None, None) => 0.0,
+        };
+        let pixels = options.pixels.and(measured.as_ref());
+        let pixels = pixels.map(|measured| measured.iter().map(|face| face.pixels).fold(0.0, f64::max));
+        let (tags, sides) = (sides::tags(control, &emission), sides::sides(control, &emission));
+        let trees = &plan.decision.trees;
+        let levels = (0..control.mesh.face_count() as u32).map(|face| trees.depth(trees.root(face)) as usize);
+        let levels = levels.max().unwrap_or(0);
+        let Emission { positions, normals, origins, triangles, twins, parents, junctions, .. } = emission;
+        let outgoing = outgoing_half_edges(&triangles, &twins, positions.len());
+        let topology = Topology::from_parts(triangles, twins, outgoing);
+        let mut exact = Exact {
+            mesh: Mesh::from_parts(topology, positions, tags, junctions),
+            normals,
+            sides,
+            origins,
+            parents,
+            error,
+            pixels,
+            open_cones: 0,
+            refused: 0,
+            worst,
+            stop,
+            levels,
+        };
+        if options.angle.is_some()
+            && let Some(criteria) = &control.criteria
+        {
+            exact.open_cones = open_cones(&exact, criteria);
+        }
+        if exact.open_cones > 0 && exact.stop == ExactStop::Met {
+            exact.stop = ExactStop::Cones;
+        }
+        Ok(exact)
+    }
+}
+
+/// Triangles outside their cones.
+fn open_cones(exact: &Exact, criteria: &Criteria) -> usize {
+    let surface = exact.mesh.as_triangles();
+    let is_open = |face: usize| {
+        let corners = surface.corners(face).map(vector);
+        let normals = [0, 1, 2].map(|corner| HalfEdgeId::of(FaceId(face as u32), corner));
+        let normals = normals.map(|corner| vector(exact.corner_normal(corner)));
+        let frame = TriangleFrame::new(corners);
+        let tilt = normals.iter().map(|normal| normal.distance(frame.normal())).fold(0.0, f64::max);
+        let region = Region::around(corners, frame.normal()).turned(2.0 * tilt);
+        criteria.cone_ratio(frame.normal(), normals, &region) > 1.0 + CONE_ROUNDING
+    };
+    parallel::map(exact.mesh.face_count(), is_open).into_iter().filter(|&is_open| is_open).count()
+}

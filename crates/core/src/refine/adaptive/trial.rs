@@ -1,0 +1,116 @@
+//! How a triangle fares by criteria that ask for more than distances: cones, pixels, and distances beside them.
+//!
+//! Neighbours are expected to be like the triangle itself; with those that are emitted it is looked at again
+//! ([`super::measure`]).
+
+use super::judge::{DIVISIONS, Extent, HALVINGS, Outcome, Seen, Verdict};
+use super::quadtree::Place;
+use super::surface::Ground;
+use crate::certificate::{Cell, Deviation, Effort, Pieces, SubTriangle, exceeds};
+use crate::criterion::{Apart, Criteria, Region};
+use crate::patch::{LimitPoint, Rules};
+
+/// A triangle under test.
+pub(super) struct Trial<'a> {
+    criteria: &'a Criteria,
+    limit: f64,
+    seen: &'a Seen,
+    /// Where it lies, and the normals of it and its neighbours.
+    region: Region,
+    /// How many times over it leaves its cones; no more than the limit where these are given up.
+    cone: f64,
+}
+
+impl<'a> Trial<'a> {
+    pub(super) fn of(
+        criteria: &'a Criteria,
+        limit: f64,
+        seen: &'a Seen,
+        corners: &[LimitPoint; 3],
+        level: u32,
+    ) -> Self {
+        let (chord, _) = seen.expected();
+        let normal = seen.frame.normal();
+        let region = Region::around(corners.map(|corner| corner.position), normal).turned(chord);
+        let cone = criteria.cone_ratio(normal, corners.map(|corner| corner.normal), &region);
+        let is_given_up = level as usize >= criteria.deepest_cone();
+        Self { criteria, limit, seen, region, cone: if is_given_up { cone.min(1.0) } else { cone } }
+    }
+
+    /// Whether a triangle fails for sure with a point of its piece so high over it.
+    pub(super) fn is_lost(&self, height: f64) -> bool {
+        let least = Apart { own: height, height, across: 0.0 };
+        exceeds(self.cone, self.limit)
+            || exceeds(self.criteria.distance_ratio(&least, &self.region), self.limit)
+    }
+
+    /// What the triangle comes to with this deviation.
+    fn value(&self, deviation: &Deviation) -> f64 {
+        let (chord, slope) = self.seen.expected();
+        let apart = deviation.apart(chord, slope);
+        let distance = self.criteria.distance_ratio(&apart, &self.region.grown(apart.own));
+        // What is not a number fails.
+        if exceeds(distance, self.cone) { distance } else { self.cone }
+    }
+
+    fn verdict(&self, value: f64) -> Verdict {
+        let outcome = if exceeds(value, self.limit) { Outcome::Fails } else { Outcome::Passes };
+        Verdict { outcome, extent: Extent { bound: value, ..self.seen.extent() } }
+    }
+
+    pub(super) fn regular(
+        &self,
+        ground: &Ground,
+        (place, part): (Place, SubTriangle),
+        cell: &Cell,
+        open: [bool; 3],
+        rules: &Rules<'_>,
+    ) -> Verdict {
+        if !self.criteria.has_distances() {
+            return self.verdict(self.cone);
+        }
+        let heights = ground.jet.heights(cell, self.seen.frame.normal());
+        let (low, high) = heights.range();
+        if self.is_lost(low) {
+            let least = Apart { own: low, height: low, across: 0.0 };
+            return self.verdict(self.cone.max(self.criteria.distance_ratio(&least, &self.region)));
+        }
+        let beside = ground.jet.beside(cell, &self.seen.frame, open);
+        let verdict = self.verdict(self.value(&beside.deviation(high)));
+        if !verdict.fails() {
+            return verdict;
+        }
+        if !self.verdict(self.value(&beside.deviation(low))).fails() {
+            let high = heights.refined(DIVISIONS).min(high);
+            return self.verdict(self.value(&beside.deviation(high)));
+        }
+        let patch = ground.patch(place);
+        self.by_pieces(&mut Pieces::of(&patch), part, open, rules)
+    }
+
+    pub(super) fn general<'p>(
+        &self,
+        pieces: &mut Pieces<'p>,
+        part: SubTriangle,
+        open: [bool; 3],
+        rules: &'p Rules<'p>,
+    ) -> Verdict {
+        if !self.criteria.has_distances() || exceeds(self.cone, self.limit) {
+            return self.verdict(self.cone);
+        }
+        self.by_pieces(pieces, part, open, rules)
+    }
+
+    fn by_pieces<'p>(
+        &self,
+        pieces: &mut Pieces<'p>,
+        part: SubTriangle,
+        open: [bool; 3],
+        rules: &'p Rules<'p>,
+    ) -> Verdict {
+        let (chord, slope) = self.seen.expected();
+        let target = self.limit * self.criteria.allowed_length(&self.region);
+        let effort = Effort { target, halvings: HALVINGS, open, chord, slope };
+        self.verdict(self.value(&pieces.deviation(part, &self.seen.frame, rules, effort)))
+    }
+}
