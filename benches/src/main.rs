@@ -7,6 +7,7 @@
 //! * `against-paper`, `against-uniform`, `against-optimum`, `against-simplified`, `certificate`: how good exact refinement
 //!   is, over many models; `quality` runs all of these;
 //! * `throughput`: its triangles per second and bytes per triangle;
+//! * `scaling`: exact refinement of ever larger meshes, larger in one way each; needs no models;
 //! * `figures FOLDER`: the pictures of the README, from built-in models;
 //! * `all`: all but the figures.
 //!
@@ -19,6 +20,7 @@ mod load;
 mod peers;
 mod quality;
 mod refinement;
+mod scaling;
 
 use std::path::{Path, PathBuf};
 
@@ -35,6 +37,9 @@ const QUALITY: [&str; 5] =
 fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1);
     let work = arguments.next().unwrap_or_else(|| "all".into());
+    if work == "scaling" {
+        return scaling::scaling();
+    }
     let folder = arguments
         .next()
         .map(PathBuf::from)

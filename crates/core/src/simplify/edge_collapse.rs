@@ -8,10 +8,12 @@ use super::Goals;
 use super::edge_flip::{Flipper, edges};
 use super::editable_mesh::EditableMesh;
 use super::fine_samples::FineSamples;
+use super::history::History;
 use super::kept_features::Kind;
 use super::proof::Prover;
 use super::reference::Reference;
 use super::vertex_star::{VertexStar, Way};
+use crate::geometry::NONE;
 use crate::progress::{Cancelled, Watch};
 
 /// Growth of the threshold far from the goal. In a round of that growth the order hardly matters yet: what it costs is
@@ -53,6 +55,8 @@ pub(super) struct Collapser<'t, 's, 'a> {
     prover: Option<Prover<'t, 's, 'a>>,
     /// What costs no more is proven in the end.
     sure: f64,
+    /// Kept where there may be anything to take back.
+    history: Option<History>,
     /// Vertices that stay because their going was not proven to be within the goal.
     refused: Vec<bool>,
     /// Changes looked at since the observer was last called.
@@ -70,6 +74,8 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
     ) -> Self {
         let costs = vec![0.0; reference.kinds.len()];
         let refused = vec![false; costs.len()];
+        let may_fail = prover.is_some() && sure > 0.0;
+        let history = may_fail.then(|| History::new(reference.fine.face_count()));
         Self {
             surface,
             samples,
@@ -82,6 +88,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
             refused,
             prover,
             sure,
+            history,
             unobserved: 0,
         }
     }
@@ -97,11 +104,31 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         Ok(())
     }
 
-    /// Takes the proofs that were put off, as far as they hold.
+    /// Takes the proofs that were put off, and takes back what does not hold.
     pub(super) fn finish(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
-        let Some(prover) = &mut self.prover else { return Ok(()) };
-        prover.finish(&self.surface, &self.samples, goals.tolerance, watch)?;
-        Ok(())
+        let mut back = Vec::new();
+        if let Some(prover) = &mut self.prover {
+            while let Some(failing) = prover.finish(&self.surface, &self.samples, goals.tolerance, watch)? {
+                let Some(history) = &mut self.history else { break };
+                let Some(change) = history.latest(failing.into_iter()) else { break };
+                history.take_back(change, &mut self.surface, &mut self.samples, |faces, vertex| {
+                    prover.reopen(faces);
+                    back.push(vertex);
+                });
+            }
+        }
+        back.retain(|&vertex| vertex != NONE && self.surface.is_alive(vertex));
+        if back.is_empty() {
+            return Ok(());
+        }
+        // Most of it may go after all, now that nothing is put off.
+        (self.sure, self.history) = (0.0, None);
+        for vertex in back {
+            self.costs[vertex as usize] = 0.0;
+            let costs = &mut self.costs;
+            self.surface.for_each_neighbour(vertex, |v| costs[v as usize] = 0.0);
+        }
+        self.run(goals, watch)
     }
 
     /// The greatest distance that is proven; `None` where there is no proof of all of the mesh.
@@ -161,7 +188,8 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
             self.observe(watch)?;
             let proof = self.prover.as_mut().map(|prover| (prover, goals.tolerance));
             let (flat, surface, samples) = (self.flat, &mut self.surface, &mut self.samples);
-            let flipped = self.flipper.flip(h, flat, surface, samples, &self.reference, proof);
+            let history = self.history.as_mut();
+            let flipped = self.flipper.flip(h, flat, surface, samples, &self.reference, proof, history);
             any |= flipped.is_some();
             for v in flipped.into_iter().flatten() {
                 self.costs[v as usize] = 0.0;
@@ -220,6 +248,10 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
                 self.refused[vertex as usize] = true;
                 return if goal < goals.tolerance { goal } else { f64::INFINITY };
             }
+        }
+        if let Some(history) = &mut self.history {
+            let change = self.star.change(&self.surface);
+            history.record(change.old, vertex, change.region.samples(), &self.surface, &self.samples);
         }
         self.surface.collapse(self.star.edge(way.slot), vertex);
         self.star.hand_over(&mut self.samples);

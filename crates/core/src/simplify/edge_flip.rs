@@ -2,6 +2,7 @@
 
 use super::editable_mesh::{EditableMesh, next, previous};
 use super::fine_samples::FineSamples;
+use super::history::History;
 use super::proof::{Change, Prover};
 use super::reference::{LEAST_TURN, Reference, Worst, bulge};
 use super::star_region::StarRegion;
@@ -89,6 +90,7 @@ impl Flipper {
         samples: &mut FineSamples,
         reference: &Reference<'_>,
         proof: Option<(&mut Prover<'_, '_, '_>, f64)>,
+        history: Option<&mut History>,
     ) -> Option<[u32; 4]> {
         if surface.is_sharp(h) || surface.twin(h) == NONE {
             return None;
@@ -115,6 +117,9 @@ impl Flipper {
                 return None;
             }
             prover.commit(&change);
+        }
+        if let Some(history) = history {
+            history.record(&quadrilateral.faces, NONE, self.region.samples(), surface, samples);
         }
         surface.flip(h);
         self.region.hand_over(samples, quadrilateral.faces.into_iter());

@@ -17,6 +17,14 @@ pub(super) fn previous(h: u32) -> u32 {
     if h.is_multiple_of(3) { h + 2 } else { h - 1 }
 }
 
+/// What is known of a half-edge.
+#[derive(Clone, Copy)]
+pub(super) struct Slot {
+    origin: u32,
+    twin: u32,
+    sharp: bool,
+}
+
 /// Connectivity that shrinks.
 #[derive(Clone)]
 pub(super) struct EditableMesh {
@@ -217,6 +225,27 @@ impl EditableMesh {
             }
         }
         self.outgoing[vertex as usize] = first;
+    }
+
+    /// What is known of the half-edge `h`, to be [`Self::put`] back.
+    pub(super) fn slot(&self, h: u32) -> Slot {
+        let at = h as usize;
+        Slot { origin: self.origins[at], twin: self.twins[at], sharp: self.sharp[at] }
+    }
+
+    /// Makes the half-edge `h` what it was.
+    pub(super) fn put(&mut self, h: u32, slot: Slot) {
+        let at = h as usize;
+        // A face that was gone is back.
+        self.faces_left += usize::from(h.is_multiple_of(3) && self.origins[at] == NONE);
+        (self.origins[at], self.twins[at], self.sharp[at]) = (slot.origin, slot.twin, slot.sharp);
+    }
+
+    /// Lets the corners of a face that was put back know of it. All around it has been put back, too.
+    pub(super) fn seat_corners(&mut self, face: u32) {
+        for h in 3 * face..3 * face + 3 {
+            self.seat(self.origins[h as usize], h);
+        }
     }
 
     fn rename_fan(&mut self, from: u32, into: u32) {

@@ -57,6 +57,22 @@ impl FineSamples {
         self.errors[face] = self.errors[face].max(distance);
     }
 
+    /// Puts a sample into the care of a face again, or of none.
+    #[inline]
+    pub(super) fn give_back(&mut self, face: u32, sample: u32) {
+        if face == NONE {
+            self.holders[sample as usize] = NONE;
+        } else {
+            self.give(face, sample, 0.0);
+        }
+    }
+
+    /// Sets what [`Self::error`] says.
+    #[inline]
+    pub(super) fn set_error(&mut self, face: u32, error: f64) {
+        self.errors[face as usize] = error;
+    }
+
     /// Takes all its samples from `face`, or none if it has none.
     #[inline]
     pub(super) fn clear(&mut self, face: u32) {

@@ -23,6 +23,7 @@ mod edge_flip;
 mod editable_mesh;
 mod fine_face;
 mod fine_samples;
+mod history;
 mod kept_features;
 mod proof;
 mod reference;
@@ -128,8 +129,8 @@ struct Goals {
     triangles: usize,
 }
 
-/// Collapses whose estimate is up to this share of the tolerance are proven in the end only: of what is left then, next to
-/// nothing was not changed again, and estimates are rarely wrong by so much.
+/// Collapses whose estimate is up to this share of the tolerance are proven in the end only: of what is left then, little was
+/// not changed again, and estimates are rarely wrong by so much. Where they are, changes are taken back.
 const SURE: f64 = 0.35;
 
 /// Errors up to this share of the diagonal are taken for rounding: some ten thousand units in the last place.

@@ -69,6 +69,10 @@ pub(super) struct Prover<'t, 's, 'a> {
     bounds: Vec<f64>,
     /// For each sample that it asked for its place in the region.
     places: Vec<u32>,
+    /// Fine faces and faces without proof, perhaps among others, once the proofs that were put off are taken.
+    open_fine: Vec<u32>,
+    open_faces: Vec<u32>,
+    is_finishing: bool,
 }
 
 impl<'t, 's, 'a> Prover<'t, 's, 'a> {
@@ -89,6 +93,9 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
             rests: Vec::new(),
             bounds: Vec::new(),
             places: vec![0; fine.vertex_count()],
+            open_fine: Vec::new(),
+            open_faces: Vec::new(),
+            is_finishing: false,
         }
     }
 
@@ -257,49 +264,92 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
         }
     }
 
-    /// Takes the proofs that were put off; whether all that is there is proven now to be within `goal`.
+    /// Takes the proofs that were put off. Where one to be within `goal` is not found, gives the faces that it may depend on;
+    /// the others are taken when this is called again.
     pub(super) fn finish(
         &mut self,
         mesh: &EditableMesh,
         samples: &FineSamples,
         goal: f64,
         watch: &mut Watch<'_>,
-    ) -> Result<bool, Cancelled> {
+    ) -> Result<Option<Vec<u32>>, Cancelled> {
+        if !self.is_finishing {
+            self.is_finishing = true;
+            self.open_fine = (0..self.fine.face_count() as u32).rev().collect();
+            self.open_faces = self.open_fine.clone();
+        }
         let region = StarRegion::default();
         let nothing = Change { old: &[], around: &[], gone: NONE, region: &region };
-        for fine in 0..self.fine.face_count() as u32 {
-            if self.backward[fine as usize].is_finite() {
-                continue;
+        while let Some(&fine) = self.open_fine.last() {
+            if !self.backward[fine as usize].is_finite() {
+                if fine % OBSERVED == 0 {
+                    watch.poll()?;
+                }
+                self.candidates.clear();
+                self.affected.clear();
+                self.affected.push(fine);
+                if !self.prove_fine_faces(&nothing, mesh, samples, goal) {
+                    return Ok(Some(self.below(fine, samples)));
+                }
+                self.rest(fine);
             }
-            if fine % OBSERVED == 0 {
-                watch.poll()?;
-            }
-            self.candidates.clear();
-            self.affected.clear();
-            self.affected.push(fine);
-            if !self.prove_fine_faces(&nothing, mesh, samples, goal) {
-                return Ok(false);
-            }
-            self.backward[fine as usize] = self.rests[0].bound;
+            self.open_fine.pop();
         }
-        for face in mesh.faces() {
-            if self.forward[face as usize].is_finite() {
-                continue;
-            }
-            if face % OBSERVED == 0 {
-                watch.poll()?;
-            }
+        while let Some(&face) = self.open_faces.last() {
             let corners = mesh.corners(face);
-            let near = corners.map(|v| self.fine_face_at(v));
-            let start = samples.of(face).next().map_or(near[0], |v| self.fine_face_at(v));
-            let triangle = corners.map(|v| samples.position(v));
-            let bound = self.worker.within(triangle, start, near, goal);
-            if !is_within(bound, goal) {
-                return Ok(false);
+            if corners[0] != NONE && !self.forward[face as usize].is_finite() {
+                if face % OBSERVED == 0 {
+                    watch.poll()?;
+                }
+                let near = corners.map(|v| self.fine_face_at(v));
+                let start = samples.of(face).next().map_or(near[0], |v| self.fine_face_at(v));
+                let triangle = corners.map(|v| samples.position(v));
+                let bound = self.worker.within(triangle, start, near, goal);
+                if !is_within(bound, goal) {
+                    return Ok(Some(vec![face]));
+                }
+                self.forward[face as usize] = bound;
             }
-            self.forward[face as usize] = bound;
+            self.open_faces.pop();
         }
-        Ok(true)
+        Ok(None)
+    }
+
+    /// The faces that care for the corners of a fine face; those that its last proof looked at where its corners are all there.
+    fn below(&self, fine: u32, samples: &FineSamples) -> Vec<u32> {
+        let corners = self.fine.topology().triangles()[fine as usize];
+        let holders: Vec<u32> =
+            corners.map(|v| samples.holder(v)).into_iter().filter(|&face| face != NONE).collect();
+        if holders.is_empty() {
+            return (0..self.candidates.len()).map(|place| self.candidates.face(place)).collect();
+        }
+        holders
+    }
+
+    /// Takes in the last proof of a fine face, without a change.
+    fn rest(&mut self, fine: u32) {
+        let Some(&Rest { mut used, bound, .. }) = self.rests.first() else { return };
+        self.backward[fine as usize] = bound;
+        while used != 0 {
+            let face = self.candidates.face(used.trailing_zeros() as usize);
+            used &= used - 1;
+            let list = &mut self.resting[face as usize];
+            if !list.contains(&fine) {
+                list.push(fine);
+            }
+        }
+    }
+
+    /// Forgets what was proven of faces that have become what they were before.
+    pub(super) fn reopen(&mut self, faces: &mut dyn Iterator<Item = u32>) {
+        for face in faces {
+            for fine in self.resting[face as usize].drain(..) {
+                self.backward[fine as usize] = f64::INFINITY;
+                self.open_fine.push(fine);
+            }
+            self.forward[face as usize] = f64::INFINITY;
+            self.open_faces.push(face);
+        }
     }
 
     /// A fine face at a vertex of the fine mesh.
