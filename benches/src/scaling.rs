@@ -21,7 +21,9 @@ const SMALL_SIZES: [usize; 3] = [100, 1_000, 4_000];
 /// Prints a table for each way of being large.
 pub(crate) fn scaling() -> Result<()> {
     println!("exact refinement within {} % of the diagonal, one thread", 100.0 * TOLERANCE);
-    println!("shape                          size  control faces  triangles  ms         µs a face  µs a triangle");
+    println!(
+        "shape                          size  control faces  triangles  ms         µs a face  µs a triangle"
+    );
     let shapes: [(&str, fn(usize) -> PolygonSoup, &[usize]); 5] = [
         ("edges at one vertex", pole, &SIZES),
         ("edges at a boundary's vertex", fan, &SIZES),

@@ -6,7 +6,7 @@ mod support;
 
 use limitmesh::Mesh;
 use limitmesh::measure::{CertifiedOptions, certified_hausdorff};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate};
 use limitmesh::scheme::Loop;
 use support::tagged_obj;
 
@@ -63,6 +63,20 @@ fn it_takes_no_more_triangles_than_refinement_alone() {
             assert!(result.error.upper <= tolerance);
             let (count, plain) = (result.mesh.face_count(), plain.mesh.face_count());
             assert!(count <= plain, "{name} at {share}: {count}, alone {plain}");
+        }
+    }
+}
+
+#[test]
+fn estimates_come_near() {
+    for (name, shares) in [("cup", [0.003, 0.0004]), ("bunny", [0.003, 0.0004]), ("shoe", [0.01, 0.0007])] {
+        let control = model(name);
+        for share in shares {
+            let options = within(share * control.diagonal()).optimize(true);
+            let expected = exact_estimate(&control, &Loop, &options).unwrap();
+            let found = exact(&control, &Loop, &options).unwrap().mesh.face_count();
+            let ratio = expected.triangles as f64 / found as f64;
+            assert!((1.0 / 1.3..1.3).contains(&ratio), "{name} at {share}: {expected:?} for {found}");
         }
     }
 }

@@ -196,7 +196,7 @@ mod tests {
                         old.iter().flat_map(|&face| samples.of(face).collect::<Vec<_>>()).collect();
                     history.record(&old, NONE, &below, &surface, &samples);
                     surface.flip(h);
-                } else if surface.can_collapse(h, v) {
+                } else if spokes.len() > 1 + usize::from(twin != NONE) && surface.can_collapse(h, v) {
                     let mut below: Vec<u32> =
                         faces.iter().flat_map(|&face| samples.of(face).collect::<Vec<_>>()).collect();
                     below.push(v);
