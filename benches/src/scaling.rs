@@ -18,13 +18,16 @@ const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 /// Sizes of what takes time with the square of the size, too long beyond these.
 const SMALL_SIZES: [usize; 3] = [100, 1_000, 4_000];
 
+/// A mesh that is so large.
+type Shape = fn(usize) -> PolygonSoup;
+
 /// Prints a table for each way of being large.
 pub(crate) fn scaling() -> Result<()> {
     println!("exact refinement within {} % of the diagonal, one thread", 100.0 * TOLERANCE);
     println!(
         "shape                          size  control faces  triangles  ms         µs a face  µs a triangle"
     );
-    let shapes: [(&str, fn(usize) -> PolygonSoup, &[usize]); 5] = [
+    let shapes: [(&str, Shape, &[usize]); 5] = [
         ("edges at one vertex", pole, &SIZES),
         ("edges at a boundary's vertex", fan, &SIZES),
         ("edges at a semi-sharp vertex", semi_sharp_pole, &SMALL_SIZES),

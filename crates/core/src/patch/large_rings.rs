@@ -132,7 +132,7 @@ mod tests {
                     if faces == 500 {
                         let mut points = 0;
                         patch.for_each_hull_point(|_| points += 1);
-                        assert!(!large.0.is_empty() == (points < KEPT + 20), "{points} points");
+                        assert_eq!(points < KEPT + 20, !large.0.is_empty(), "{points} points");
                     }
                     limits(&patch, &rules, 4, &mut found);
                     // Far down at the vertex itself.

@@ -186,10 +186,10 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         let mut any = false;
         for h in edges(&self.surface) {
             self.observe(watch)?;
-            let proof = self.prover.as_mut().map(|prover| (prover, goals.tolerance));
-            let (flat, surface, samples) = (self.flat, &mut self.surface, &mut self.samples);
             let history = self.history.as_mut();
-            let flipped = self.flipper.flip(h, flat, surface, samples, &self.reference, proof, history);
+            let proof = self.prover.as_mut().map(|prover| (prover, goals.tolerance, history));
+            let (flat, surface, samples) = (self.flat, &mut self.surface, &mut self.samples);
+            let flipped = self.flipper.flip(h, flat, surface, samples, &self.reference, proof);
             any |= flipped.is_some();
             for v in flipped.into_iter().flatten() {
                 self.costs[v as usize] = 0.0;

@@ -19,6 +19,9 @@ pub(super) struct Flipper {
     region: StarRegion,
 }
 
+/// What proves that the new faces keep a distance, that distance, and where changes are recorded if they are.
+pub(super) type Proof<'p, 't, 's, 'a> = (&'p mut Prover<'t, 's, 'a>, f64, Option<&'p mut History>);
+
 /// The two faces at an edge: their corners counter-clockwise, the edge running from the first to the third.
 struct Quadrilateral {
     corners: [u32; 4],
@@ -89,8 +92,7 @@ impl Flipper {
         surface: &mut EditableMesh,
         samples: &mut FineSamples,
         reference: &Reference<'_>,
-        proof: Option<(&mut Prover<'_, '_, '_>, f64)>,
-        history: Option<&mut History>,
+        proof: Option<Proof<'_, '_, '_, '_>>,
     ) -> Option<[u32; 4]> {
         if surface.is_sharp(h) || surface.twin(h) == NONE {
             return None;
@@ -109,7 +111,7 @@ impl Flipper {
             return None;
         }
         self.region.assign();
-        if let Some((prover, goal)) = proof {
+        if let Some((prover, goal, history)) = proof {
             let around = quadrilateral.around(h, surface);
             let around = around.as_slice();
             let change = Change { old: &quadrilateral.faces, around, gone: NONE, region: &self.region };
@@ -117,9 +119,9 @@ impl Flipper {
                 return None;
             }
             prover.commit(&change);
-        }
-        if let Some(history) = history {
-            history.record(&quadrilateral.faces, NONE, self.region.samples(), surface, samples);
+            if let Some(history) = history {
+                history.record(&quadrilateral.faces, NONE, self.region.samples(), surface, samples);
+            }
         }
         surface.flip(h);
         self.region.hand_over(samples, quadrilateral.faces.into_iter());
