@@ -30,7 +30,8 @@ pub enum ExactStop {
 pub struct ErrorBounds {
     /// A distance that was found.
     pub lower: f64,
-    /// A distance that is not exceeded where [`Self::certified`] holds. Otherwise an estimate, the greatest distance of
+    /// A distance that is not exceeded where [`Self::certified`] holds; infinite where nothing was asked of distances, nor a
+    /// number of triangles, and nothing near [`Self::lower`] could be proven. Otherwise an estimate, the greatest distance of
     /// the surface's points three levels below the triangles, which the true one may exceed by some per cent.
     pub upper: f64,
     /// Whether `upper` is proven: so it is for the Loop family ([`crate::scheme::LoopFamily`]), whose masks are convex

@@ -15,11 +15,14 @@ use crate::refine::exact_result::{Exact, ExactStop};
 /// How far triangles may miss the surface before their corners are moved: by half that much afterwards at best.
 const UNBALANCED: f64 = 1.8;
 
-/// What balancing leaves of a plain mesh's distance at best, at equal triangles.
-const BALANCED: f64 = 0.35;
+/// What balancing leaves of a plain mesh's distance, at equal triangles, about.
+const BALANCED: f64 = 0.65;
 
-/// Values that are tried under a budget: it is spent but for some per cent then.
-const MOST_TRIES: usize = 6;
+/// Values that are tried under a budget.
+const MOST_TRIES: usize = 8;
+
+/// Values nearer to each other than this part tell nothing any more: the budget is spent but for some per cent.
+const NEAR: f64 = 0.98;
 
 impl Engine<'_> {
     /// Emits a plan whose triangles come to `goal` at most among their neighbours, dividing what fails; `None` if there are too
@@ -116,16 +119,16 @@ impl Engine<'_> {
         options: &ExactOptions<'_>,
     ) -> Result<Exact, RefineError> {
         let mut high = if self.control.criteria.is_some() { plain.worst } else { plain.error.upper };
-        let mut low = floor.max(BALANCED * high);
+        let mut low = floor;
         let mut best = None;
         for _ in 0..MOST_TRIES {
-            let middle = (low * high).sqrt();
-            if !(low < middle && middle < high) {
+            let next = (BALANCED * high).max((low * high).sqrt());
+            if !(low < next && next < high && low < NEAR * high) {
                 break;
             }
-            match self.balanced(middle, most)? {
-                Some(outcome) => (best, high) = (Some(outcome), middle),
-                None => low = middle,
+            match self.balanced(next, most)? {
+                Some(outcome) => (best, high) = (Some(outcome), next),
+                None => low = next,
             }
         }
         let Some(outcome) = best else { return Ok(plain) };

@@ -21,7 +21,7 @@ use crate::vector::{DVec3, vector};
 const BLOCK: usize = 64;
 
 /// Halvings of a net for tight bounds: towards a corner at which points drift too fast, where only short pieces are near.
-const MOST_HALVINGS: usize = 16;
+const MOST_HALVINGS: usize = 10;
 
 /// What the triangles of a control face come to.
 #[derive(Clone, Debug)]

@@ -43,15 +43,16 @@ const WIDE: f64 = 1.1;
 /// Control faces that are looked at together for tighter bounds at first, then twice as many each time.
 const TIGHTENED: usize = 64;
 
-/// How often that is done.
+/// How often that is done where no tolerance is met.
 const MOST_TIGHTENINGS: usize = 6;
 
-/// The certified interval; `measured` by control face where all triangles were looked at among their neighbours.
+/// The certified interval; `measured` by control face where all triangles were looked at among their neighbours, `is_met` if a
+/// tolerance is: then nobody waits for a tighter bound.
 pub(super) fn probe(
     engine: &Engine<'_>,
     plan: &Plan,
     emission: &Emission,
-    measured: Option<&[Measured]>,
+    (measured, is_met): (Option<&[Measured]>, bool),
 ) -> ErrorBounds {
     let mut worst = match measured {
         Some(measured) => measured.iter().map(|face| face.worst).collect(),
@@ -80,12 +81,13 @@ pub(super) fn probe(
     // What failed for sure has no bound yet.
     let unbounded = worst.iter().filter(|(bound, _)| bound.is_infinite()).map(|(_, place)| place.face);
     again(f64::MAX, &unbounded.collect::<Vec<u32>>(), &mut worst);
+    let rounds = if is_met { 1 } else { MOST_TIGHTENINGS };
     for round in 0.. {
         let mut order: Vec<(f64, Place)> = worst.clone();
         sort(&mut order);
         best.upper = order.first().map_or(0.0, |&(bound, _)| bound);
         lower(engine, emission, &mesh, (&order, &mut probed), &mut best);
-        if !best.certified || best.upper <= WIDE * best.lower || round >= MOST_TIGHTENINGS {
+        if !best.certified || best.upper <= WIDE * best.lower || round >= rounds {
             break;
         }
         // Bounds that are good enough for the goals need not be tight.

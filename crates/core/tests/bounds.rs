@@ -1,0 +1,67 @@
+//! Where nothing was asked of distances, the one that is called proven is not far above the true one, which the certified
+//! measurement of meshes finds by other means; or none is told.
+
+#![allow(clippy::unwrap_used)]
+
+use limitmesh::Mesh;
+use limitmesh::criterion::{Camera, View, Viewpoint};
+use limitmesh::measure::{CertifiedOptions, certified_hausdorff};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
+use limitmesh::scheme::Loop;
+
+fn model(name: &str) -> Mesh {
+    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+}
+
+/// The greatest distance between a result and the limit surface, for which a mesh that is nearer to it stands.
+fn true_distance(control: &Mesh, result: &Exact) -> (f64, f64) {
+    let options = ExactOptions::default().tolerance(result.error.lower / 25.0).max_triangles(Some(400_000));
+    let fine = exact(control, &Loop, &options).unwrap();
+    let asked = CertifiedOptions::default().relative_gap(0.03);
+    let found = certified_hausdorff(result.mesh.as_triangles(), fine.mesh.as_triangles(), &asked).unwrap();
+    let found = found.widened(fine.error.upper);
+    (found.lower(), found.upper())
+}
+
+fn goals(control: &Mesh) -> Vec<(&'static str, ExactStop, ExactOptions<'static>)> {
+    let diagonal = control.diagonal();
+    let [low, high] = control.as_triangles().bounding_box().unwrap();
+    let centre: [f64; 3] = std::array::from_fn(|i| 0.5 * (low[i] + high[i]));
+    let eye = [centre[0] + 1.3 * diagonal, centre[1] + 0.4 * diagonal, centre[2] + 0.2 * diagonal];
+    let up = [0.0, 0.0, 1.0];
+    let camera = Camera { eye, target: centre, up, fov_degrees: 45.0, width: 960, height: 540 };
+    let view = View { viewpoint: Viewpoint::Direction([0.0, 0.0, -1.0]), dilatation: 1.0 };
+    let none = ExactOptions::default;
+    vec![
+        ("angle", ExactStop::Met, none().angle(10f64.to_radians())),
+        ("angle in a view", ExactStop::Met, none().angle(10f64.to_radians()).view(view)),
+        ("pixels", ExactStop::Met, none().pixels(0.5, vec![camera])),
+        ("pixels and an angle", ExactStop::Met, none().pixels(0.5, vec![camera]).angle(20f64.to_radians())),
+    ]
+}
+
+#[test]
+fn bounds_are_near_the_truth_where_no_distance_was_asked_for() {
+    let mut told = 0;
+    for name in ["cup", "sphere", "sheet", "teddy"] {
+        let control = model(name);
+        for (goal, stop, options) in goals(&control) {
+            let result = exact(&control, &Loop, &options).unwrap();
+            assert_eq!(result.stop, stop, "{name}, {goal}");
+            let (least, most) = true_distance(&control, &result);
+            let error = result.error;
+            assert!(
+                error.certified && error.lower <= most && least <= error.upper,
+                "{name}, {goal}: {error:?}"
+            );
+            told += usize::from(error.upper.is_finite());
+            // A bound that is not worth much is not told.
+            assert!(
+                error.upper <= 1.25 * most || error.upper == f64::INFINITY,
+                "{name}, {goal}: {error:?}, in truth {least} to {most}"
+            );
+        }
+    }
+    // But most are.
+    assert!(told >= 8, "{told}");
+}
