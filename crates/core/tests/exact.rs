@@ -75,6 +75,30 @@ fn budgets_are_kept_and_spent_on_the_worst() {
     }
 }
 
+/// Numbers of triangles prove what tolerances prove, judged by the certified distance to the limit surface; more triangles never
+/// prove less.
+#[test]
+fn budgets_prove_what_tolerances_prove() {
+    for name in ["cup", "teddy", "bunny"] {
+        let control = model(name);
+        let mut last = f64::INFINITY;
+        for tolerance in [2e-3, 7e-4] {
+            let tolerance = tolerance * control.diagonal();
+            let within = exact(&control, &Loop, &ExactOptions::default().tolerance(tolerance)).unwrap();
+            let count = within.mesh.face_count();
+            let budget = exact(&control, &Loop, &ExactOptions::default().triangles(count)).unwrap();
+            assert!(budget.mesh.face_count() <= count, "{name}");
+            assert!(budget.error.upper <= 1.15 * tolerance, "{name}: {:?} of {tolerance}", budget.error);
+            assert!(budget.error.upper <= last, "{name}");
+            last = budget.error.upper;
+            let reference = limit_reference(&control, &Loop, 5).unwrap();
+            let samples = SamplingOptions::default().samples(60_000);
+            let found = hausdorff(budget.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+            assert!(found.symmetric() <= budget.error.upper + 0.03 * tolerance, "{name}");
+        }
+    }
+}
+
 #[test]
 fn caps_end_in_a_conforming_mesh_that_says_so() {
     let control = model("cup");

@@ -91,6 +91,8 @@ pub(crate) struct Effort {
     pub(crate) chord: f64,
     /// Expected greatest slope.
     pub(crate) slope: f64,
+    /// Whether nobody asks how far off a triangle is that surely misses the target.
+    pub(crate) gives_up: bool,
 }
 
 /// A patch whose parts several triangles stand for, and what is derived from it once for all of them.
@@ -162,6 +164,47 @@ impl<'a> Pieces<'a> {
     }
 }
 
+/// The net of a part of a regular piece.
+pub(crate) struct NetPart {
+    net: BezierTriangle,
+    borders: Borders,
+}
+
+impl NetPart {
+    /// A part of a piece with its net; one of a refinement is that part's own net.
+    fn of(net: &BezierTriangle, part: SubTriangle, borders: Borders) -> Self {
+        match part {
+            SubTriangle::Whole | SubTriangle::Child(_) => Self { net: *net, borders },
+            SubTriangle::Half { edge, second } => Self { net: net.half(edge, second), borders },
+            SubTriangle::Quarter { edge, at_end } => {
+                let (net, borders) = quarter(net, edge, at_end, borders);
+                Self { net, borders }
+            }
+        }
+    }
+
+    /// The part of a triangle's own piece.
+    pub(crate) fn own(net: &BezierTriangle, part: SubTriangle) -> Self {
+        Self::of(net, part, ALL)
+    }
+
+    /// The deviation that the points of the net tell, without halving it, and a height that the piece attains.
+    pub(crate) fn at_a_glance(&self, frame: &TriangleFrame, open: [bool; 3]) -> (Deviation, f64) {
+        DeviationBound { frame, open }.net(&self.net, self.borders)
+    }
+
+    /// The deviation where the net is halved as often as it helps.
+    pub(crate) fn deviation(&self, frame: &TriangleFrame, rules: &Rules<'_>, effort: Effort) -> Deviation {
+        if !frame.is_finite() {
+            return Deviation::alone(f64::INFINITY);
+        }
+        let bound = DeviationBound { frame, open: effort.open };
+        let mut search = Search { bound, rules, effort, found: Deviation::default() };
+        search.net(&self.net, self.borders, effort.halvings);
+        search.found
+    }
+}
+
 /// The bound of one triangle as it grows, piece by piece.
 struct Search<'a> {
     bound: DeviationBound<'a>,
@@ -188,12 +231,11 @@ impl Search<'_> {
     fn net_part(&mut self, net: &BezierTriangle, part: SubTriangle, borders: Borders) {
         let halvings = self.effort.halvings;
         match part {
-            SubTriangle::Half { edge, second } => self.net(&net.half(edge, second), borders, halvings),
-            SubTriangle::Quarter { edge, at_end } => {
-                let (quarter, borders) = quarter(net, edge, at_end, borders);
-                self.net(&quarter, borders, halvings);
-            }
             SubTriangle::Whole | SubTriangle::Child(_) => self.net(net, borders, halvings),
+            _ => {
+                let part = NetPart::of(net, part, borders);
+                self.net(&part.net, part.borders, halvings);
+            }
         }
     }
 
@@ -214,9 +256,16 @@ impl Search<'_> {
     }
 
     fn net(&mut self, net: &BezierTriangle, borders: Borders, halvings: usize) {
+        if self.found.own == f64::INFINITY {
+            return;
+        }
         let (deviation, attained) = self.bound.net(net, borders);
+        if self.effort.gives_up && exceeds(attained, self.effort.target) {
+            self.add(Deviation::alone(f64::INFINITY));
+            return;
+        }
         // What is much too far away for sure stays so however it is divided.
-        let is_hopeless = attained > HOPELESS * self.effort.target;
+        let is_hopeless = self.effort.target > 0.0 && attained > HOPELESS * self.effort.target;
         if halvings == 0 || is_hopeless || self.value(&deviation) <= self.aim() {
             self.add(deviation);
             return;
@@ -259,6 +308,9 @@ impl Search<'_> {
 
     /// A piece at an irregular vertex: as it is if that is enough, else refined.
     fn irregular(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) {
+        if self.found.own == f64::INFINITY {
+            return;
+        }
         if self.by_twin(patch, part, borders, depth) {
             return;
         }

@@ -5,11 +5,14 @@
 //! normals at the corners; drifts and slopes by the second derivatives in the middles of the edges. A part passes, or
 //! fails for sure, or has to be looked at by itself.
 
+mod few_parts;
+
 use core::array::from_fn;
 
 use super::quartic_cell::{CUBIC, CURVE_CUBIC, Domain, QUARTIC, QuarticJet, quadratic};
 use crate::patch::Quartic;
 use crate::vector::DVec3;
+use few_parts::{FEW, FEW_DIVISIONS, FewParts};
 
 /// Divisions at most.
 pub(crate) const MOST_DIVISIONS: u32 = 6;
@@ -102,6 +105,7 @@ pub(crate) struct CellRows {
     along: [Row; 2],
     diagonal: Row,
     upward: Row,
+    few: Box<FewParts>,
     found: Found,
 }
 
@@ -124,6 +128,7 @@ impl Default for CellRows {
             along: [row; 2],
             diagonal: row,
             upward: row,
+            few: Box::default(),
             found: Found { bound, low, tilt, slope, drift_slope },
         }
     }
@@ -234,8 +239,23 @@ impl CellRows {
             list.clear();
             list.resize(n * n, Mark::Passes);
         }
-        let step = block.size / n as f64;
         let rest = block.remainder(divisions);
+        if divisions <= FEW_DIVISIONS {
+            let few = &mut self.few;
+            few.fill(block, n);
+            measure(n * n, &few.parts(), &rest, target, &mut self.found);
+            let mut found = [Mark::Passes; FEW];
+            let worst = self.found.mark(n * n, target, extent, &mut found);
+            for (number, &(i, j, is_headlong)) in few.places[..n * n].iter().enumerate() {
+                let list = if is_headlong { &mut marks.headlong } else { &mut marks.upright };
+                list[j * n + i] = found[number];
+                if worst == Some(number) {
+                    extent.worst = Some((i, j, is_headlong, divisions));
+                }
+            }
+            return;
+        }
+        let step = block.size / n as f64;
         self.row(block, step, 0, n, 0);
         for j in 0..n {
             let (count, now) = (n - j, j % 2);

@@ -103,6 +103,66 @@ impl Deviation {
     }
 }
 
+/// A point as a triangle sees it from its first corner.
+struct Seen {
+    offset: DVec3,
+    height: f64,
+    /// How far outside the lines of the edges.
+    outside: [f64; 3],
+}
+
+impl Seen {
+    fn of(point: DVec3, frame: &TriangleFrame) -> Self {
+        let offset = frame.seen_from_first(point);
+        let outside = [0, 1, 2].map(|edge| frame.outside_from_first(edge, offset));
+        Self { offset, height: frame.height_from_first(offset), outside }
+    }
+}
+
+/// The points of a net likewise, by axis and point, so that several are looked at together.
+struct SeenNet {
+    offsets: [[f64; SEEN]; 3],
+    heights: [f64; SEEN],
+    outside: [[f64; SEEN]; 3],
+}
+
+/// The points of a net, rounded up to whole registers.
+const SEEN: usize = 16;
+
+impl SeenNet {
+    /// `None` if not all points are finite.
+    #[inline]
+    fn of(net: &BezierTriangle, frame: &TriangleFrame) -> Option<Self> {
+        let mut offsets = [[0.0; SEEN]; 3];
+        let mut sum = DVec3::ZERO;
+        for (at, &point) in net.0.iter().enumerate() {
+            let offset = frame.seen_from_first(point);
+            sum += offset;
+            (offsets[0][at], offsets[1][at], offsets[2][at]) = (offset.x, offset.y, offset.z);
+        }
+        let along = |direction: DVec3, from: f64| {
+            let mut values = [0.0; SEEN];
+            let [x, y, z] = &offsets;
+            for (at, value) in values.iter_mut().enumerate() {
+                *value = direction.x * x[at] + direction.y * y[at] + direction.z * z[at] - from;
+            }
+            values
+        };
+        let outside = [0, 1, 2].map(|edge| along(frame.outward(edge), frame.offset(edge)));
+        sum.is_finite().then(|| Self { offsets, heights: along(frame.normal(), 0.0), outside })
+    }
+
+    #[inline]
+    fn at(&self, at: usize) -> Seen {
+        let ([x, y, z], [a, b, c]) = (&self.offsets, &self.outside);
+        Seen {
+            offset: DVec3::new(x[at], y[at], z[at]),
+            height: self.heights[at],
+            outside: [a[at], b[at], c[at]],
+        }
+    }
+}
+
 /// A triangle and which of its edges have no neighbour.
 #[derive(Clone, Copy)]
 pub(crate) struct DeviationBound<'a> {
@@ -134,27 +194,28 @@ impl Greatest {
         self.squared = self.squared.max(height * height + side * side);
     }
 
-    /// A point of the surface, as seen from the frame's first corner, with its height.
+    /// A point of the surface.
     #[inline]
-    fn inner(&mut self, frame: &TriangleFrame, offset: DVec3, height: f64) {
+    fn inner(&mut self, frame: &TriangleFrame, seen: &Seen) {
         let mut side = 0.0f64;
         for edge in 0..3 {
-            let outside = frame.outside_from_first(edge, offset);
+            let outside = seen.outside[edge];
             if exceeds(outside, frame.on_edge()) {
-                let room = frame.room_from_first(edge, offset);
+                let room = frame.room_from_first(edge, seen.offset);
                 side = side.max(outside);
                 self.drift = self.drift.max(outside);
                 self.slope = self.slope.max(outside / room);
                 self.beyond |= exceeds(0.0, room);
             }
         }
-        self.stands(height, side);
+        self.stands(seen.height, side);
     }
 
     /// The same for a point of the curve over an edge.
     #[inline]
-    fn curve(&mut self, frame: &TriangleFrame, edge: usize, offset: DVec3, height: f64) {
-        let outside = frame.outside_from_first(edge, offset);
+    fn curve(&mut self, frame: &TriangleFrame, edge: usize, seen: &Seen) {
+        let Seen { offset, height, outside } = *seen;
+        let outside = outside[edge];
         let room = frame.room_from_first(edge, offset);
         self.stands(height, outside);
         if outside.abs() <= frame.on_edge() {
@@ -189,33 +250,31 @@ impl DeviationBound<'_> {
             return (self.each_of_net(net, borders), 0.0);
         }
         let frame = self.frame;
-        let offsets = net.0.map(|point| frame.seen_from_first(point));
-        if !offsets.iter().sum::<DVec3>().is_finite() {
+        let Some(seen) = SeenNet::of(net, frame) else {
             return (Deviation::alone(f64::INFINITY), 0.0);
-        }
-        let heights = offsets.map(|offset| frame.height_from_first(offset));
+        };
         let mut greatest = Greatest::default();
         for at in INNER {
-            greatest.inner(frame, offsets[at], heights[at]);
+            greatest.inner(frame, &seen.at(at));
         }
         for (edge, points) in EDGES.iter().enumerate() {
             let border = borders[edge];
             for &at in &points[1..4] {
                 if border == INSIDE {
-                    greatest.inner(frame, offsets[at], heights[at]);
+                    greatest.inner(frame, &seen.at(at));
                 } else {
-                    greatest.curve(frame, border as usize, offsets[at], heights[at]);
+                    greatest.curve(frame, border as usize, &seen.at(at));
                 }
             }
             let at = points[0];
             match corner(borders, edge) {
                 Corner::Own => {}
-                Corner::On(border) => greatest.curve(frame, border, offsets[at], heights[at]),
-                Corner::Inside => greatest.inner(frame, offsets[at], heights[at]),
+                Corner::On(border) => greatest.curve(frame, border, &seen.at(at)),
+                Corner::Inside => greatest.inner(frame, &seen.at(at)),
             }
         }
         let deviation = greatest.deviation(frame).unwrap_or_else(|| self.each_of_net(net, borders));
-        (deviation, attained(&heights))
+        (deviation, attained(&seen.heights))
     }
 
     /// The deviation of points of the surface, and of curves over edges.
@@ -229,13 +288,8 @@ impl DeviationBound<'_> {
             inner.clone().chain(curves.iter().map(|&(_, point)| point)).sum::<DVec3>().is_finite();
         if is_finite && !frame.is_flat() && self.open == [false; 3] {
             let mut greatest = Greatest::default();
-            for offset in inner.clone().map(|point| frame.seen_from_first(point)) {
-                greatest.inner(frame, offset, frame.height_from_first(offset));
-            }
-            for &(edge, point) in curves {
-                let offset = frame.seen_from_first(point);
-                greatest.curve(frame, edge, offset, frame.height_from_first(offset));
-            }
+            inner.clone().for_each(|point| greatest.inner(frame, &Seen::of(point, frame)));
+            curves.iter().for_each(|&(edge, point)| greatest.curve(frame, edge, &Seen::of(point, frame)));
             if let Some(deviation) = greatest.deviation(frame) {
                 return deviation;
             }
@@ -362,10 +416,11 @@ fn corner(borders: Borders, edge: usize) -> Corner {
 
 /// The greatest height in the middle of a piece and of its edges, from those of its net.
 #[inline]
-fn attained(heights: &[f64; 15]) -> f64 {
+fn attained(heights: &[f64; SEEN]) -> f64 {
     let mut greatest = 0.0f64;
     let (mut outer, mut halves, mut inner) = (0.0, 0.0, 0.0);
-    for [a, b, c, d, e] in EDGES.map(|edge| edge.map(|at| heights[at])) {
+    for &[a, b, c, d, e] in &EDGES {
+        let [a, b, c, d, e] = [heights[a], heights[b], heights[c], heights[d], heights[e]];
         let (ends, seconds) = (a + e, b + d);
         greatest = greatest.max((ends + 4.0 * seconds + 6.0 * c).abs() / 16.0);
         outer += a + 4.0 * seconds;

@@ -14,7 +14,7 @@ mod sampled;
 mod sub_triangle;
 mod triangle_frame;
 
-pub(crate) use bounds::{Effort, Pieces};
+pub(crate) use bounds::{Effort, NetPart, Pieces};
 pub(crate) use cell_rows::{CellRows, MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, RowTarget};
 pub(crate) use deviation::Deviation;
 pub(crate) use dihedral::{STEEP, around};

@@ -96,11 +96,12 @@ impl QuarticJet {
         let (square, cubic, quartic) = piece.powers();
         let jet = Jet::of(square, cubic, quartic);
         // Third derivatives are linear: greatest in a corner.
-        let at_corners = jet.third.map(|[c, u, v]| {
-            let squares = [c, c + u, c + v].map(|c: DVec3| c.length_squared());
-            squares.into_iter().fold(0.0, f64::max).sqrt()
-        });
-        let sizes = jet.fourth.map(|c: DVec3| c.length());
+        let (mut at_corners, mut sizes) = ([0.0; 4], [0.0; 5]);
+        for (most, &[c, u, v]) in at_corners.iter_mut().zip(&jet.third) {
+            let ends = (c + u).length_squared().max((c + v).length_squared());
+            *most = c.length_squared().max(ends).sqrt();
+        }
+        sizes.iter_mut().zip(&jet.fourth).for_each(|(size, c): (&mut f64, &DVec3)| *size = c.length());
         Self {
             jet,
             powers: (square, cubic, quartic),
@@ -167,7 +168,11 @@ impl QuarticJet {
 
     /// The third derivatives at a place: by u three times to v three times.
     pub(super) fn third_at(&self, [u, v]: Domain) -> [DVec3; 4] {
-        self.jet.third.map(|[c, by_u, by_v]| c + by_u * u + by_v * v)
+        let mut found = [DVec3::ZERO; 4];
+        for (found, &[c, by_u, by_v]) in found.iter_mut().zip(&self.jet.third) {
+            *found = c + by_u * u + by_v * v;
+        }
+        found
     }
 
     /// The fourth derivatives.
@@ -205,6 +210,11 @@ pub(crate) struct BesideEdges {
 }
 
 impl BesideEdges {
+    /// Whether the derivatives tell nothing of how far the surface reaches.
+    pub(crate) fn is_loose(&self) -> bool {
+        self.loose.is_some()
+    }
+
     /// The deviation where the surface is so high at most.
     pub(crate) fn deviation(&self, height: f64) -> Deviation {
         match self.loose {

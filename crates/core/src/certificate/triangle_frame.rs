@@ -185,6 +185,11 @@ impl TriangleFrame {
         self.normal.dot(offset)
     }
 
+    /// Where an edge's line stands outwards of the first corner.
+    pub(crate) fn offset(&self, edge: usize) -> f64 {
+        self.offsets[edge]
+    }
+
     /// How far a point, as seen from the first corner, stands outside an edge's line; negative inside.
     #[inline]
     pub(crate) fn outside_from_first(&self, edge: usize, offset: DVec3) -> f64 {

@@ -33,7 +33,8 @@ impl BezierTriangle {
         let mut net = [DVec3::ZERO; 15];
         for corner in 0..3 {
             let at = points[CORNERS[corner]];
-            let [a, b, c, d, e, f] = RINGS[corner].map(|place| points[place as usize]);
+            let ring = |slot: usize| points[RINGS[corner][slot] as usize];
+            let [a, b, c, d, e, f] = [ring(0), ring(1), ring(2), ring(3), ring(4), ring(5)];
             let turned = &TURNED[corner];
             let (across, along) = (a + d, (b + e) + (c + f));
             let all = across + along;

@@ -157,21 +157,25 @@ impl Refined {
     /// The points of a part.
     #[inline]
     pub(crate) fn part(&self, part: usize) -> Points {
-        PARTS[part].map(|at| self.0[at as usize])
+        let mut points = [DVec3::ZERO; 12];
+        points.iter_mut().zip(&PARTS[part]).for_each(|(point, &at)| *point = self.0[at as usize]);
+        points
     }
 
     /// The new point on the edge from corner `edge`, and its neighbours counter-clockwise.
     #[inline]
     pub(crate) fn middle(&self, edge: usize) -> (DVec3, [DVec3; 6]) {
         let (at, ring) = &MIDDLES[edge];
-        (self.0[*at as usize], ring.map(|at| self.0[at as usize]))
+        let mut around = [DVec3::ZERO; 6];
+        around.iter_mut().zip(ring).for_each(|(point, &at)| *point = self.0[at as usize]);
+        (self.0[*at as usize], around)
     }
 }
 
 #[inline]
 fn ring_sum(points: &Points, ring: &[u8; 6]) -> DVec3 {
-    let [a, b, c, d, e, f] = ring.map(|at| points[at as usize]);
-    ((a + d) + (b + e)) + (c + f)
+    let at = |slot: usize| points[ring[slot] as usize];
+    ((at(0) + at(3)) + (at(1) + at(4))) + (at(2) + at(5))
 }
 
 /// The twelve points from the corners and their rings, each starting with the next corner.

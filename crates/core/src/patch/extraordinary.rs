@@ -4,8 +4,8 @@
 //! The points are the vertex v, its ring r₀, r₁, … (the face is v r₀ r₁) and the five beyond the ring that complete the
 //! rings of r₀ and r₁. One refinement gives the same again, smaller, and three regular pieces.
 
-use super::Patch;
 use super::box_spline::{self, Points};
+use super::{Neighbours, Patch};
 use crate::vector::DVec3;
 
 /// The points around a face with one irregular corner. What is said of corners and edges counts from that one.
@@ -16,7 +16,7 @@ pub(crate) struct ExtraordinaryPatch {
     /// The irregular vertex.
     pub(crate) at: DVec3,
     /// Its neighbours, counter-clockwise from the face's next corner.
-    pub(crate) ring: Vec<DVec3>,
+    pub(crate) ring: Neighbours,
     /// What completes the rings of the other corners: opposite to the vertex beyond the edge r₋₁r₀, beyond r₀, beyond
     /// r₀r₁, beyond r₁, beyond r₁r₂.
     pub(crate) outer: [DVec3; 5],
@@ -166,6 +166,7 @@ mod tests {
     use crate::patch::Rules;
     use crate::patch::sector::{Centre, Far, SectorPatch, VertexSector};
     use crate::scheme::Loop;
+    use smallvec::smallvec;
 
     fn arbitrary(count: usize, seed: f64) -> Vec<DVec3> {
         (0..count)
@@ -194,8 +195,8 @@ mod tests {
         };
         let mut sectors = [
             smooth(at, ring.clone()),
-            smooth(ring[0], vec![ring[1], at, ring[k - 1], before, past_first, between]),
-            smooth(ring[1], vec![at, ring[0], between, past_second, after, ring[2]]),
+            smooth(ring[0], smallvec![ring[1], at, ring[k - 1], before, past_first, between]),
+            smooth(ring[1], smallvec![at, ring[0], between, past_second, after, ring[2]]),
         ];
         sectors.rotate_right(corner);
         SectorPatch(sectors)
@@ -208,8 +209,12 @@ mod tests {
             for corner in 0..3 {
                 let points = arbitrary(valence + 6, valence as f64);
                 let outer = core::array::from_fn(|i| points[valence + 1 + i]);
-                let mut patch =
-                    ExtraordinaryPatch { corner, at: points[0], ring: points[1..=valence].to_vec(), outer };
+                let mut patch = ExtraordinaryPatch {
+                    corner,
+                    at: points[0],
+                    ring: points[1..=valence].iter().copied().collect(),
+                    outer,
+                };
                 for level in 0..3 {
                     let sectors = sectors(&patch);
                     assert!(

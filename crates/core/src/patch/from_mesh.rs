@@ -1,15 +1,15 @@
 //! The patch of a control face.
 
-use super::Patch;
 use super::large_rings::LargeRings;
 use super::mesh_patch::MeshPatch;
 use super::rules::Rules;
 use super::sector::{Centre, Far, SectorPatch, VertexSector};
 use super::semi_sharp::{SemiSharpPatch, SemiSharpVertex};
+use super::{Neighbours, Patch};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sector, Sharpness, Topology};
 use crate::ring::RingShape;
-use crate::vector::{DVec3, vector};
+use crate::vector::vector;
 
 /// The limit surface over a control face.
 ///
@@ -53,7 +53,7 @@ fn sector(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> VertexSector
     let topology = mesh.topology();
     let at = |v: VertexId| vector(mesh.positions()[v.index()]);
     let sector = sector_of(topology, sharpness, h);
-    let neighbours: Vec<DVec3> = sector.neighbours(topology).map(at).collect();
+    let neighbours: Neighbours = sector.neighbours(topology).map(at).collect();
     let slot = sector.outgoing(topology).position(|other| other == h).unwrap_or(0);
     VertexSector {
         at: at(topology.origin(h)),

@@ -3,6 +3,7 @@
 //! Takes a mesh; gives, for a face at such a vertex, the neighbours near the face and what the rules ask of the others. Sharp edges are
 //! not known here: what is tagged has to be looked at as a whole.
 
+use super::Neighbours;
 use super::pole::LARGEST_RING;
 use super::sector::{Centre, Far, VertexSector};
 use crate::index::{HalfEdgeId, VertexId};
@@ -46,7 +47,7 @@ impl LargeRings {
         let on = forward.take(after).map(|h| at(topology.opposite(h)));
         let back = core::iter::successors(Some(h), |&h| topology.twin(h).map(HalfEdgeId::next)).skip(1);
         let before: Vec<DVec3> = back.take(KEPT - after - 1).map(|h| at(topology.target(h))).collect();
-        let mut neighbours = Vec::with_capacity(KEPT + 2);
+        let mut neighbours = Neighbours::with_capacity(KEPT + 2);
         let Some([first, last]) = ring.ends else {
             neighbours.push(at(topology.target(h)));
             neighbours.extend(on);

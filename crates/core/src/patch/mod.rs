@@ -34,6 +34,9 @@ pub(crate) use quartic::Quartic;
 use sector::{Far, RefinedSectors, SectorPatch};
 use semi_sharp::{RefinedSemiSharp, SemiSharpPatch};
 
+/// The neighbours of a vertex: nearly all have at most eight.
+pub(crate) type Neighbours = smallvec::SmallVec<[DVec3; 8]>;
+
 /// The limit surface over one face.
 // Almost all are regular: boxing them would cost an allocation for each face.
 #[allow(clippy::large_enum_variant)]
@@ -70,11 +73,6 @@ impl LimitPoint {
         let across = SINE * ((b - e) + (c - f));
         Self { position, normal: unit_or_zero(along.cross(across)) }
     }
-}
-
-/// The points of a part of a regular piece.
-pub(crate) fn refined_part(points: &Points, part: usize) -> Points {
-    Refined::of(points).part(part)
 }
 
 /// A patch refined once: its parts and the limits of its new vertices.

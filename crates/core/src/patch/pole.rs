@@ -119,7 +119,8 @@ mod tests {
             let points = arbitrary(valence + 6);
             let outer = core::array::from_fn(|i| points[valence + 1 + i]);
             let ring = points[1..=valence].to_vec();
-            let mut whole = ExtraordinaryPatch { corner: valence % 3, at: points[0], ring, outer };
+            let mut whole =
+                ExtraordinaryPatch { corner: valence % 3, at: points[0], ring: ring.into(), outer };
             let mut pole = PolePatch::of(whole.clone());
             assert_eq!(pole.near.ring.len(), LARGEST_RING);
             for level in 0..2 * REFINEMENTS {

@@ -7,6 +7,7 @@
 //! Of very many neighbours only those near the face and what else the rules ask for are kept ([`Far`]), so that a piece takes no
 //! more than any other; see [`super::pole`] for how long that lasts.
 
+use super::Neighbours;
 use super::box_spline::{self, Points};
 use super::extraordinary::ExtraordinaryPatch;
 use super::rules::Rules;
@@ -57,7 +58,7 @@ pub(crate) enum Far {
 #[derive(Clone, Debug)]
 pub(crate) struct VertexSector {
     pub(crate) at: DVec3,
-    pub(crate) neighbours: Vec<DVec3>,
+    pub(crate) neighbours: Neighbours,
     pub(crate) centre: Centre,
     /// The neighbour that is the face's next corner; the one after it is the corner after that. 0 where a mean stands for the others.
     pub(crate) slot: usize,
@@ -110,7 +111,7 @@ impl VertexSector {
             Far::Kept => {}
             Far::Mean { .. } => {
                 if count > 4 {
-                    self.neighbours.drain(count / 2..count / 2 + 2);
+                    self.neighbours.drain(count / 2..count / 2 + 2).for_each(drop);
                 }
             }
             Far::Ends { after_first, before_last } => {
@@ -127,7 +128,7 @@ impl VertexSector {
     }
 
     /// The new vertices on the edges to the neighbours.
-    fn edge_points(&self) -> Vec<DVec3> {
+    fn edge_points(&self) -> Neighbours {
         let count = self.neighbours.len();
         (0..count)
             .map(|slot| {
@@ -209,7 +210,7 @@ impl SectorPatch {
 pub(crate) struct RefinedSectors<'a> {
     sectors: &'a SectorPatch,
     moved: [DVec3; 3],
-    edge_points: [Vec<DVec3>; 3],
+    edge_points: [Neighbours; 3],
 }
 
 impl RefinedSectors<'_> {
@@ -220,15 +221,15 @@ impl RefinedSectors<'_> {
 
     /// The neighbours of that point: from the edge's end over the face to its start, and on beyond the edge unless that is
     /// sharp or a boundary.
-    fn around_middle(&self, edge: usize) -> (Vec<DVec3>, Centre) {
+    fn around_middle(&self, edge: usize) -> (Neighbours, Centre) {
         let (next, last) = ((edge + 1) % 3, (edge + 2) % 3);
         let (from, to) = (&self.sectors.0[edge], &self.sectors.0[next]);
         let near = [self.moved[next], self.middle(next), self.middle(last), self.moved[edge]];
         if from.is_sharp(from.slot) || to.is_sharp(to.neighbour(1)) {
-            return (near.to_vec(), Centre::Crease);
+            return (Neighbours::from_slice(&near), Centre::Crease);
         }
         let beyond = [self.edge_points[edge][from.neighbour(-1)], self.edge_points[next][to.neighbour(2)]];
-        ([near.as_slice(), &beyond].concat(), Centre::Smooth { sharp: None })
+        (near.into_iter().chain(beyond).collect(), Centre::Smooth { sharp: None })
     }
 
     /// The sector of the new point on the edge from corner `edge`, with the face that starts at neighbour `slot`.

@@ -115,7 +115,7 @@ impl SemiSharpVertex {
             let centre = Centre::Smooth { sharp: None };
             return VertexSector {
                 at: self.at,
-                neighbours: self.neighbours.clone(),
+                neighbours: self.neighbours.iter().copied().collect(),
                 centre,
                 slot: self.slot,
                 far: Far::Kept,

@@ -120,7 +120,8 @@ fn bounds_hold_for_every_part_and_valence() {
                 let farthest = inside.iter().map(|&p| frame.squared(p)).fold(0.0, f64::max).sqrt();
                 let highest = inside.iter().map(|&p| frame.height(p).abs()).fold(0.0, f64::max);
                 for (target, slope) in [(0.0, 0.5), (0.5 * farthest, 0.2), (2.0 * farthest, f64::MAX)] {
-                    let effort = Effort { target, halvings: 3, open: [false; 3], chord: 0.1, slope };
+                    let effort =
+                        Effort { target, halvings: 3, open: [false; 3], chord: 0.1, slope, gives_up: false };
                     let found = Pieces::of(&patch).deviation(part, &frame, &rules, effort);
                     assert!(
                         found.own >= farthest - 1e-12 && found.height >= highest - 1e-12,
@@ -145,7 +146,8 @@ fn nothing_is_within_a_distance_of_what_is_not_a_number() {
     let rules = Rules::of(&Loop);
     let mut numbers = Numbers(3);
     let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
-    let effort = Effort { target: 1e9, halvings: 1, open: [false; 3], chord: 0.1, slope: 0.5 };
+    let effort =
+        Effort { target: 1e9, halvings: 1, open: [false; 3], chord: 0.1, slope: 0.5, gives_up: false };
     let fails = |patch: &Patch, corners: [DVec3; 3], open: bool, what: &str| {
         let effort = Effort { open: [open; 3], ..effort };
         let found =

@@ -149,6 +149,41 @@ fn rows_are_points_bit_for_bit() {
 }
 
 #[test]
+fn points_here_and_there_are_points_of_rows_bit_for_bit() {
+    for factor in [1.0, 1e-90, 1e90] {
+        let piece = Quartic::of(&BezierTriangle::of(&gentle(0.7).map(|p| factor * p)), 1);
+        let places: Vec<_> = places().collect();
+        for four in places.as_chunks::<4>().0 {
+            let (u, v) = (four.map(|place| place.0), four.map(|place| place.1));
+            let [points, normals] = piece.points_and_normals_at(&u, &v);
+            for l in 0..4 {
+                let (point, normal) = (piece.point(u[l], v[l]), piece.normal(u[l], v[l]));
+                for axis in 0..3 {
+                    assert_eq!(points[axis][l].to_bits(), point[axis].to_bits());
+                    assert_eq!(normals[axis][l].to_bits(), normal[axis].to_bits());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn nets_of_parts_give_the_same_points() {
+    for first in 0..3 {
+        let piece = Quartic::of(&BezierTriangle::of(&arbitrary(2.0)), first);
+        for (at, size) in
+            [([0.0, 0.0], 1.0), ([0.25, 0.5], 0.25), ([0.75, 0.5], -0.5), ([0.5, 0.125], 0.0625)]
+        {
+            let net = piece.net(at, size);
+            for (s, t) in places() {
+                let expected = piece.point(at[0] + s * size, at[1] + t * size);
+                assert!(bernstein(&net, [1.0 - s - t, s, t]).distance(expected) < 1e-13);
+            }
+        }
+    }
+}
+
+#[test]
 fn without_a_plane_there_is_no_normal() {
     let direction = DVec3::new(0.3, 1.7, -0.9);
     let on_a_line =

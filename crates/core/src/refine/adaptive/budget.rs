@@ -24,6 +24,11 @@ const NEAR: f64 = 1e-3;
 
 /// What fails so many times over is as bad as any.
 const COARSEST: f64 = 1e12;
+/// What is found is at most so many times the least distance that fits.
+const PROMISED: f64 = 1.1;
+
+/// Plans that are made to spend what is left.
+const MOST_FILLS: usize = 9;
 
 /// Budgets below this are spent to the last face.
 const EXACT: usize = 20_000;
@@ -51,7 +56,10 @@ pub(super) fn search(
     let mut power = 1.0f64;
     let enough = most - (most / LEFT).max(LEFT_AT_LEAST).min(most);
     let mut bisects = false;
-    while best.triangles < enough && high > low * (1.0 + NEAR) && high > f64::MIN_POSITIVE {
+    let is_near = |high: f64, low: f64, triangles: usize| {
+        high <= low * if triangles < enough { 1.0 + NEAR } else { PROMISED }
+    };
+    while !is_near(high, low, best.triangles) && high > f64::MIN_POSITIVE {
         let wanted = (most as f64 / best.triangles as f64).min(STEP);
         let mut next = high / wanted.max(1.0 + NEAR).powf(1.0 / power);
         if low > 0.0 {
@@ -60,6 +68,10 @@ pub(super) fn search(
             let edge = (0.05 * span).exp();
             next = if bisects { (high.ln() - 0.5 * span).exp() } else { next.clamp(low * edge, high / edge) };
             bisects = !bisects;
+        }
+        if best.triangles >= enough {
+            // Where many triangles pass at once much less may take hardly more.
+            next = (high / PROMISED).max(low);
         }
         if !(next < high && next > low) {
             break;
@@ -84,47 +96,62 @@ pub(super) fn search(
 /// Spends what is left of a budget on the worst faces, as many as fit: they come within the lesser of two distances, the
 /// others within the greater.
 fn fill(engine: &Engine<'_>, plan: Plan, (high, low): (f64, f64), most: usize) -> Result<Plan, RefineError> {
-    filled(engine, plan, most, |is_finer| Goal::Partly(high, low, is_finer))
+    // Triangles grow with the reciprocal of the distance.
+    filled(engine, plan, most, high / low - 1.0, |is_finer| Goal::Partly(high, low, is_finer))
 }
 
-/// The finest plan whose worst faces, as many as fit, are marked in the goal.
+/// The finest plan whose worst faces, as many as fit, are marked in the goal. A marked face has so many times its triangles more,
+/// about.
 fn filled(
     engine: &Engine<'_>,
     plan: Plan,
     most: usize,
+    gain: f64,
     goal: impl Fn(Vec<bool>) -> Goal,
 ) -> Result<Plan, RefineError> {
     let order = plan.faces_by_bound();
-    let (mut best, mut fits, mut fails) = (plan, 0, order.len());
-    while fits + 1 < fails {
-        let middle = fits.midpoint(fails);
+    let mut left = (most - plan.triangles) as f64;
+    let costs = order.iter().map(|&(_, face)| gain * f64::from(plan.closed[face as usize].triangles));
+    let guess = costs.take_while(|cost| {
+        left -= cost;
+        left >= 0.0
+    });
+    let mut next = guess.count();
+    let (mut best, mut fits, mut fails) = (plan, 0, order.len() + 1);
+    for _ in 0..MOST_FILLS {
+        if fits + 1 >= fails {
+            break;
+        }
+        let middle = next.clamp(fits + 1, fails - 1);
         let mut is_finer = vec![false; best.closed.len()];
         order[..middle].iter().for_each(|&(_, face)| is_finer[face as usize] = true);
         match engine.plan(goal(is_finer), most)? {
-            Some(plan) => (best, fits) = (plan, middle),
-            None => fails = middle,
+            Some(plan) => {
+                (best, fits) = (plan, middle);
+                next = if fails > order.len() { 2 * middle } else { fits.midpoint(fails) };
+            }
+            None => {
+                fails = middle;
+                next = fits.midpoint(fails);
+            }
         }
     }
     Ok(best)
 }
 
-/// All faces divided evenly, as often as a budget allows, if that is any division.
+/// All faces divided evenly, as often as a budget allows, if that is any division, and what is left spent on the worst faces.
 pub(super) fn even(engine: &Engine<'_>, most: usize) -> Result<Option<Plan>, RefineError> {
     let faces = engine.control.mesh.face_count();
     let levels = levels(engine, most);
     if most >= EXACT || levels == 0 {
         return Ok(None);
     }
-    engine.plan(Goal::Even(levels, vec![false; faces]), most)
-}
-
-/// An even division, with what is left of a budget spent on its worst faces.
-pub(super) fn fill_even(engine: &Engine<'_>, even: Plan, most: usize) -> Result<Plan, RefineError> {
-    let levels = levels(engine, most);
+    let Some(even) = engine.plan(Goal::Even(levels, vec![false; faces]), most)? else { return Ok(None) };
     if levels >= engine.max_levels {
-        return Ok(even);
+        return Ok(Some(even));
     }
-    filled(engine, even, most, |is_finer| Goal::Even(levels, is_finer))
+    // Four for one, and what closes the gaps.
+    filled(engine, even, most, 3.5, |is_finer| Goal::Even(levels, is_finer)).map(Some)
 }
 
 /// How often all faces can be divided.

@@ -1,17 +1,16 @@
 //! Judges what the closing of gaps brings: the triangles of leaves with split edges (the paper's Figure 5), and leaves that were
 //! made for their neighbours' sake. Counts vertices and triangles on the way.
 
-use std::collections::HashMap;
-
 use super::chains::Chains;
 use super::decide::Control;
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
 use super::leaf::leaf_triangles;
 use super::quadtree::{Edges, Place, Trees};
-use super::rim::{Rim, bits};
-use super::surface::{Spot, Surface, with_patch};
+use super::rim::Rim;
+use super::surface::{Ground, Spot, Surface, with_patch};
 use super::walk::{Knot, Node, Visitor, Walk};
 use crate::certificate::{Cell, Pieces, SubTriangle};
+use crate::patch::{LimitPoint, Patch};
 
 /// What the walk over a control face found.
 #[derive(Clone, Debug, Default)]
@@ -32,76 +31,36 @@ pub(super) struct Closed {
     pub(super) verdicts: Verdicts,
 }
 
-/// Verdicts of leaves by their place, the edges that are split; with the diagonal.
-pub(super) type Verdicts = HashMap<(Place, u8), (Verdict, bool)>;
+/// What was said of leaves in the order of the walk.
+pub(super) type Verdicts = Vec<Judged>;
 
-/// Counts a face's vertices and triangles; whether there is anything to judge.
-struct Counter {
+/// A leaf with split edges, or one that was made for its neighbours' sake.
+#[derive(Clone, Debug)]
+pub(super) struct Judged {
+    place: Place,
+    /// The edges that are split.
+    split: [bool; 3],
+    /// The edges beyond which there is nobody.
+    open: [bool; 3],
+    is_strict: bool,
+    /// What was said of it, and whether its diagonal starts at the unsplit edge's end.
+    verdict: Option<(Verdict, bool)>,
+}
+
+/// Lists the leaves of a face that have to be judged, and counts its triangles.
+struct Lister {
     triangles: usize,
-    has_more: bool,
-}
-
-impl Visitor for Counter {
-    fn chain(&mut self, _: &[Knot], _: usize, _: Spot, _: &Surface<'_>) {}
-
-    fn leaves(&mut self, node: &Node<'_>, _: &mut [Knot]) {
-        self.triangles += node.triangles();
-        self.has_more |= node.is_unjudged || !node.is_plain();
-    }
-}
-
-/// Walks over a face.
-pub(super) fn close(
-    control: &Control<'_>,
-    goal: &Goal,
-    edges: &Edges<'_>,
-    (trees, chains): (&Trees, &Chains),
-    (allowance, known, is_kept): (&Allowance, &Verdicts, bool),
-    face: u32,
-    knots: &mut Vec<Knot>,
-) -> Closed {
-    let mut walk = Walk { trees, rules: control.rules, knots: core::mem::take(knots), next: 0 };
-    walk.knots.clear();
-    let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
-    let at = (Place::root(face), Spot::WHOLE);
-    let mut counter = Counter { triangles: 0, has_more: false };
-    walk.node(trees.root(face), at, sides, &Surface::Unknown, &mut counter);
-    let mut closed = Closed { vertices: walk.next, triangles: counter.triangles as u32, ..Closed::default() };
-    if counter.has_more {
-        let mut closer = Closer {
-            judge: goal.judge(control, face),
-            allowance,
-            known,
-            is_kept,
-            open: control.open(face),
-            rim: Rim::default(),
-            closed: Closed { extent: Some(Extent::NONE), ..closed },
-        };
-        with_patch(&control.patch(face), control.corners(face), 0, &mut |surface| {
-            walk.node(trees.root(face), at, sides, surface, &mut closer);
-        });
-        closed = closer.closed;
-    }
-    *knots = walk.knots;
-    closed
-}
-
-struct Closer<'a> {
-    judge: Judge<'a>,
-    allowance: &'a Allowance,
-    known: &'a Verdicts,
-    /// Whether verdicts are kept for the next walk.
-    is_kept: bool,
     /// The face's own edges.
     open: [bool; 3],
     rim: Rim,
-    closed: Closed,
+    leaves: Verdicts,
 }
 
-impl Visitor for Closer<'_> {
+impl Visitor for Lister {
     fn chain(&mut self, _: &[Knot], _: usize, _: Spot, _: &Surface<'_>) {}
 
     fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+        self.triangles += node.triangles();
         if node.is_plain() {
             if node.is_unjudged {
                 self.leaf(node, (0, 0), [None; 3]);
@@ -119,6 +78,17 @@ impl Visitor for Closer<'_> {
     }
 }
 
+impl Lister {
+    fn leaf(&mut self, node: &Node<'_>, (i, j): (usize, usize), split: [Option<usize>; 3]) {
+        let n = 1 << node.depth;
+        let place = node.place.leaf(node.depth, (i, j), false);
+        let on_side = [j == 0, i + j + 1 == n, i == 0];
+        let open = [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && lies_along(node.place, edge));
+        let split = split.map(|middle| middle.is_some());
+        self.leaves.push(Judged { place, split, open, is_strict: node.is_strict, verdict: None });
+    }
+}
+
 /// Whether an edge of a node lies along an edge of its control face.
 pub(super) fn lies_along(place: Place, edge: usize) -> bool {
     (0..place.level).all(|level| {
@@ -127,75 +97,150 @@ pub(super) fn lies_along(place: Place, edge: usize) -> bool {
     })
 }
 
+/// Walks over a face; `known` is what was said on the last walk.
+pub(super) fn close(
+    control: &Control<'_>,
+    (goal, max_levels): (&Goal, u32),
+    edges: &Edges<'_>,
+    (trees, chains): (&Trees, &Chains),
+    (allowance, known, is_kept): (&Allowance, &Verdicts, bool),
+    face: u32,
+    knots: &mut Vec<Knot>,
+) -> Closed {
+    let mut walk = Walk { trees, rules: control.rules, knots: core::mem::take(knots), next: 0 };
+    walk.knots.clear();
+    let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
+    let at = (Place::root(face), Spot::WHOLE);
+    let mut lister =
+        Lister { triangles: 0, open: control.open(face), rim: Rim::default(), leaves: Vec::new() };
+    walk.node(trees.root(face), at, sides, &Surface::Unknown, &mut lister);
+    *knots = walk.knots;
+    let Lister { triangles, mut leaves, .. } = lister;
+    let mut closed = Closed { vertices: walk.next, triangles: triangles as u32, ..Closed::default() };
+    if leaves.is_empty() {
+        return closed;
+    }
+    recall(known, &mut leaves);
+    if leaves.iter().any(|leaf| leaf.verdict.is_none()) {
+        let closer = Closer { judge: goal.judge(control, max_levels, face), allowance };
+        with_patch(&control.patch(face), control.corners(face), 0, &mut |surface| {
+            closer.judge(surface, 0, &mut leaves);
+        });
+    }
+    closed.take(&leaves);
+    if is_kept {
+        closed.verdicts = leaves;
+    }
+    closed
+}
+
+/// Takes over what was said of the same leaves with the same edges split.
+fn recall(known: &Verdicts, leaves: &mut Verdicts) {
+    let mut known = known.iter().peekable();
+    for leaf in leaves {
+        while known.next_if(|other| other.place.precedes(leaf.place)).is_some() {}
+        if let Some(other) = known.next_if(|other| other.place == leaf.place)
+            && other.split == leaf.split
+        {
+            leaf.verdict = other.verdict;
+        }
+    }
+}
+
+impl Closed {
+    /// Keeps what was said of leaves.
+    fn take(&mut self, leaves: &Verdicts) {
+        let mut extent = Extent::NONE;
+        for leaf in leaves {
+            let Some((verdict, from_end)) = leaf.verdict else { continue };
+            let place = leaf.place;
+            if leaf.split.iter().filter(|&&is_split| is_split).count() == 2 {
+                self.diagonals.push(from_end);
+            }
+            extent.add(&Extent { worst: Some(place), ..verdict.extent });
+            match verdict.outcome {
+                Outcome::Passes => {}
+                Outcome::Fails => self.failing.push(place),
+                Outcome::Depends { .. } if leaf.is_strict => self.failing.push(place),
+                Outcome::Depends { deviation, tilt, slope } => {
+                    self.conditions.push(Condition { place, deviation, tilt, slope });
+                }
+            }
+        }
+        self.extent = Some(extent);
+    }
+}
+
+/// Judges leaves of a face.
+struct Closer<'a> {
+    judge: Judge<'a>,
+    allowance: &'a Allowance,
+}
+
 impl Closer<'_> {
-    /// The triangles of a leaf, of which `split` says which edges are split.
-    fn leaf(&mut self, node: &Node<'_>, (i, j): (usize, usize), split: [Option<usize>; 3]) {
-        let n = 1 << node.depth;
-        let place = node.place.leaf(node.depth, (i, j), false);
-        let on_side = [j == 0, i + j + 1 == n, i == 0];
-        let open = [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && lies_along(node.place, edge));
-        let middles = [0, 1, 2].map(|edge| split[edge].map(|_| 3 + edge));
-        let (judge, allowance) = (&self.judge, *self.allowance);
-        let key = (place, bits(&split));
-        let found = match node.surface {
-            _ if self.known.contains_key(&key) => self.known[&key],
+    /// Judges those of a node's leaves that nobody has judged, over its surface.
+    fn judge(&self, surface: &Surface<'_>, level: u32, leaves: &mut [Judged]) {
+        let mut wanting = leaves.iter_mut().filter(|leaf| leaf.verdict.is_none()).peekable();
+        if wanting.peek().is_none() {
+            return;
+        }
+        match surface {
+            Surface::Unknown => {}
             Surface::Regular(ground, spot) => {
-                let spot = spot.leaf(node.depth, i, j);
-                let [a, b, c] = spot.corners();
-                let domain = [a, b, c, spot.along(0, 0.5), spot.along(1, 0.5), spot.along(2, 0.5)];
-                let points = domain.map(|at| ground.at(at));
-                best(middles, open, |part, labels, open| {
-                    let cell = Cell(labels.map(|label| domain[label]));
-                    judge.regular(
-                        ground,
-                        (place, part),
-                        &cell,
-                        &labels.map(|label| points[label]),
-                        open,
-                        &allowance,
-                    )
-                })
+                for leaf in wanting {
+                    let levels = level..leaf.place.level;
+                    let spot = levels.fold(*spot, |spot, level| spot.child(leaf.place.digit(level)));
+                    leaf.verdict = Some(self.regular(ground, spot, leaf));
+                }
             }
-            Surface::General { patch, corners, .. } => {
-                let mut pieces = Pieces::of(patch);
-                let [a, b, c] = *corners;
-                let refined = pieces.refined(judge.rules);
-                let [d, e, f] = [0, 1, 2].map(|edge| refined.middle(edge));
-                let points = [a, b, c, d, e, f];
-                best(middles, open, |part, labels, open| {
-                    let part = (place.level, part);
-                    judge.general(&mut pieces, part, &labels.map(|label| points[label]), open, &allowance)
-                })
-            }
-            Surface::Unknown => return,
-        };
-        if self.is_kept {
-            self.closed.verdicts.insert(key, found);
+            Surface::General { patch, corners, .. } => match leaves {
+                [leaf] if leaf.place.level == level => {
+                    leaf.verdict = Some(self.general(patch, *corners, leaf));
+                }
+                _ => surface.with_parts(self.judge.rules, |part| {
+                    for of_child in leaves.chunk_by_mut(|a, b| a.place.digit(level) == b.place.digit(level)) {
+                        let child = of_child[0].place.digit(level);
+                        part(child, &mut |surface| self.judge(surface, level + 1, of_child));
+                    }
+                }),
+            },
         }
-        if bits(&split).count_ones() == 2 {
-            self.closed.diagonals.push(found.1);
-        }
-        if let Some(extent) = &mut self.closed.extent {
-            extent.add(&Extent { worst: Some(place), ..found.0.extent });
-        }
-        match found.0.outcome {
-            Outcome::Passes => {}
-            Outcome::Fails => self.closed.failing.push(place),
-            Outcome::Depends { .. } if node.is_strict => self.closed.failing.push(place),
-            Outcome::Depends { deviation, tilt, slope } => {
-                self.closed.conditions.push(Condition { place, deviation, tilt, slope });
-            }
-        }
+    }
+
+    /// The triangles of a leaf over a regular piece.
+    fn regular(&self, ground: &Ground, spot: Spot, leaf: &Judged) -> (Verdict, bool) {
+        let [a, b, c] = spot.corners();
+        let domain = [a, b, c, spot.along(0, 0.5), spot.along(1, 0.5), spot.along(2, 0.5)];
+        let points = ground.at(domain);
+        best(leaf, |part, labels, open| {
+            let cell = Cell(labels.map(|label| domain[label]));
+            let at = (spot, leaf.place.level, part);
+            let corners = labels.map(|label| points[label]);
+            self.judge.regular(ground, at, &cell, &corners, open, self.allowance)
+        })
+    }
+
+    /// The triangles of a leaf over any piece.
+    fn general(&self, patch: &Patch, [a, b, c]: [LimitPoint; 3], leaf: &Judged) -> (Verdict, bool) {
+        let mut pieces = Pieces::of(patch);
+        let refined = pieces.refined(self.judge.rules);
+        let points = [a, b, c, refined.middle(0), refined.middle(1), refined.middle(2)];
+        best(leaf, |part, labels, open| {
+            let corners = labels.map(|label| points[label]);
+            let at = (leaf.place.level, part);
+            self.judge.general(&mut pieces, at, &corners, open, self.allowance)
+        })
     }
 }
 
 /// The verdict over all triangles of a leaf, by the better of two diagonals where there is a choice, and whether that
 /// starts at the unsplit edge's end.
 fn best(
-    middles: [Option<usize>; 3],
-    open: [bool; 3],
+    leaf: &Judged,
     mut judge: impl FnMut(SubTriangle, [usize; 3], [bool; 3]) -> Verdict,
 ) -> (Verdict, bool) {
+    let open = leaf.open;
+    let middles = [0, 1, 2].map(|edge| leaf.split[edge].then_some(3 + edge));
     let is_choice = middles.iter().flatten().count() == 2;
     let mut best: Option<(Verdict, bool)> = None;
     for from_end in [false, true] {

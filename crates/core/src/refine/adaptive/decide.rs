@@ -4,36 +4,31 @@
 //! those beside ([`Allowance`]) is guessed from the control faces' own curvature, checked against what came out, and
 //! widened where it was too little.
 
+mod even_parts;
+
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
 use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, Piece, Place, Trees, UNJUDGED};
 use super::surface::{Ground, Spot, child_corners};
-use crate::certificate::{CellRows, MOST_DIVISIONS, Mark, Marks, Pieces, RowBlock, RowExtent, SubTriangle};
+use crate::certificate::{CellRows, Marks, Pieces, SubTriangle};
 use crate::criterion::Criteria;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::SidedNormals;
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
+use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::large_rings::LargeRings;
 use crate::patch::{LimitPoint, Patch, RefinedPatch, Rules, root_patch};
 use crate::refine::RefineError;
 use crate::vector::vector;
+use even_parts::{AtOnce, MOST_TESTED};
 
 /// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
 const BLOCK: usize = 64;
 
 /// What is added to an allowance that was too little.
 const WIDER: f64 = 1.1;
-
-/// Divisions below a node that make whole rows worth while.
-const FEWEST_DIVISIONS: u32 = 2;
-
-/// Levels below the first that are tested at most.
-const MOST_SPREAD: u32 = 2;
-
-/// Levels tested at most.
-const MOST_TESTED: usize = MOST_SPREAD as usize + 1;
 
 /// Leaves that are added to the common count together.
 const COUNTED: usize = 256;
@@ -117,7 +112,7 @@ pub(super) fn decide(
     let faces = control.mesh.face_count();
     let count = Count { leaves: AtomicUsize::new(0), most };
     let blocks = parallel::pieces_of(faces, BLOCK, |block| {
-        let mut decider = Decider::new(control, goal, max_levels, &count);
+        let mut decider = Decider::new(control, edges, goal, max_levels, &count);
         let found: Vec<Found> = block.map(|face| decider.face(face as u32, None)).collect();
         decider.tell();
         (decider.piece, found)
@@ -179,7 +174,7 @@ impl Decision {
         let count = Count { leaves: AtomicUsize::new(0), most };
         let again = parallel::pieces_of(wanting.len(), BLOCK, |block| {
             let again = wanting[block].iter().map(|&(face, ..)| {
-                let mut decider = Decider::new(control, goal, max_levels, &count);
+                let mut decider = Decider::new(control, edges, goal, max_levels, &count);
                 let found = decider.face(face, Some(self.allowances[face as usize]));
                 decider.tell();
                 (face, decider.piece, found)
@@ -267,6 +262,7 @@ fn beside<'c>(control: &'c Control<'_>, edges: &'c Edges<'_>, face: u32) -> impl
 /// Divides faces one by one.
 struct Decider<'a> {
     control: &'a Control<'a>,
+    edges: &'a Edges<'a>,
     goal: &'a Goal,
     /// Of the face at hand.
     judge: Judge<'a>,
@@ -284,11 +280,18 @@ struct Decider<'a> {
 }
 
 impl<'a> Decider<'a> {
-    fn new(control: &'a Control<'a>, goal: &'a Goal, max_levels: u32, count: &'a Count) -> Self {
+    fn new(
+        control: &'a Control<'a>,
+        edges: &'a Edges<'a>,
+        goal: &'a Goal,
+        max_levels: u32,
+        count: &'a Count,
+    ) -> Self {
         Self {
             control,
+            edges,
             goal,
-            judge: goal.judge(control, 0),
+            judge: goal.judge(control, max_levels, 0),
             max_levels: max_levels.min(MOST_LEVELS),
             piece: Piece::default(),
             allowance: Allowance::NOTHING,
@@ -309,20 +312,20 @@ impl<'a> Decider<'a> {
             let (extent, allowance) = (Extent::NONE, Allowance::NOTHING);
             return Found { extent, allowance, has_failed: false, conditions: Vec::new() };
         }
-        self.judge = self.goal.judge(self.control, face);
+        self.judge = self.goal.judge(self.control, self.max_levels, face);
         let patch = self.control.patch(face);
         let corners = self.control.corners(face);
         (self.extent, self.has_failed) = (Extent::NONE, false);
         let (open, place) = (self.control.open(face), Place::root(face));
         let word = if let Patch::Regular(points) = &patch {
-            let ground = Ground::of(points, 0);
-            let middles = [0, 1, 2].map(|edge| ground.at(Spot::WHOLE.along(edge, 0.5)));
-            self.allowance = allowance.unwrap_or_else(|| self.judge.guess(&corners, &middles));
-            self.part(&ground, Spot::WHOLE, corners, open, (place, self.judge.has_rows()))
+            let net = BezierTriangle::of(points);
+            let middles = Ground::of(&net).at([0, 1, 2].map(|edge| Spot::WHOLE.along(edge, 0.5)));
+            self.allowance = allowance.unwrap_or_else(|| self.guess(face, &corners, &middles));
+            self.regular(&net, corners, open, place)
         } else {
             let refined = patch.refined(self.control.rules);
             let middles = [0, 1, 2].map(|edge| refined.middle(edge));
-            self.allowance = allowance.unwrap_or_else(|| self.judge.guess(&corners, &middles));
+            self.allowance = allowance.unwrap_or_else(|| self.guess(face, &corners, &middles));
             self.general(&patch, (&refined, middles), corners, open, place)
         };
         self.piece.roots.push(word);
@@ -341,7 +344,7 @@ impl<'a> Decider<'a> {
             return LEAF | UNJUDGED;
         }
         let children = [0; 4].map(|_| self.even(levels - 1));
-        self.piece.node(children)
+        self.piece.irregular_node(children)
     }
 
     /// Tells how many leaves were not told yet.
@@ -349,10 +352,15 @@ impl<'a> Decider<'a> {
         self.count.leaves.fetch_add(core::mem::take(&mut self.leaves), Ordering::Relaxed);
     }
 
+    /// What triangles of a face count on at first.
+    fn guess(&self, face: u32, corners: &[LimitPoint; 3], middles: &[LimitPoint; 3]) -> Allowance {
+        let beside = beside(self.control, self.edges, face).map(|face| self.control.corners(face));
+        self.judge.guess(corners, middles, beside)
+    }
+
     fn node(&mut self, patch: &Patch, corners: [LimitPoint; 3], open: [bool; 3], place: Place) -> u32 {
         if let Patch::Regular(points) = patch {
-            let ground = Ground::of(points, place.level);
-            return self.part(&ground, Spot::WHOLE, corners, open, (place, self.judge.has_rows()));
+            return self.regular(&BezierTriangle::of(points), corners, open, place);
         }
         let refined = patch.refined(self.control.rules);
         let middles = [0, 1, 2].map(|edge| refined.middle(edge));
@@ -384,7 +392,22 @@ impl<'a> Decider<'a> {
             let own = child_corners(corners, middles, child);
             self.node(&refined.part(child), own, child_open(open, child), place.child(child))
         });
-        self.piece.node(children)
+        self.piece.irregular_node(children)
+    }
+
+    /// A regular piece: most of those beside irregular vertices are not divided any more.
+    fn regular(
+        &mut self,
+        net: &BezierTriangle,
+        corners: [LimitPoint; 3],
+        open: [bool; 3],
+        place: Place,
+    ) -> u32 {
+        let verdict = self.judge.at_a_glance(net, place.level, &corners, open, &self.allowance);
+        match verdict {
+            Some(verdict) if !verdict.fails() || place.level >= self.max_levels => self.leaf(place, &verdict),
+            _ => self.part(&Ground::of(net), Spot::WHOLE, corners, open, (place, self.judge.has_rows())),
+        }
     }
 
     /// A part of a regular piece; `has_rows` as long as whole rows may be worth while below.
@@ -400,116 +423,27 @@ impl<'a> Decider<'a> {
             return LEAF;
         }
         let mut has_rows = has_rows;
+        let mut surely_fails = false;
         if has_rows && open == [false; 3] {
             match self.rows(ground, spot, place) {
-                Ok(word) => return word,
-                Err(is_hopeless) => has_rows = !is_hopeless,
+                AtOnce::Decided(word) => return word,
+                AtOnce::NotHere { fails, may_be_below } => (surely_fails, has_rows) = (fails, may_be_below),
             }
         }
-        let verdict = self.judge.regular(
-            ground,
-            (place, SubTriangle::Whole),
-            &spot.cell(),
-            &corners,
-            open,
-            &self.allowance,
-        );
-        if !verdict.fails() || place.level >= self.max_levels {
-            return self.leaf(place, &verdict);
+        if !surely_fails || place.level >= self.max_levels {
+            let at = (spot, place.level, SubTriangle::Whole);
+            let verdict = self.judge.regular(ground, at, &spot.cell(), &corners, open, &self.allowance);
+            if !verdict.fails() || place.level >= self.max_levels {
+                return self.leaf(place, &verdict);
+            }
         }
-        let middles = [0, 1, 2].map(|edge| ground.at(spot.along(edge, 0.5)));
+        let middles = ground.at([0, 1, 2].map(|edge| spot.along(edge, 0.5)));
         let children = [0, 1, 2, 3].map(|child| {
             let own = child_corners(corners, middles, child);
             let at = (place.child(child), has_rows);
             self.part(ground, spot.child(child), own, child_open(open, child), at)
         });
         self.piece.node(children)
-    }
-
-    /// Divides a part of a regular piece by testing all nodes of some levels at once; fails where that is not worth while,
-    /// saying whether it will not be below either.
-    fn rows(&mut self, ground: &Ground, spot: Spot, place: Place) -> Result<u32, bool> {
-        let target = self.judge.row_target(&self.allowance);
-        let block = RowBlock::of(&ground.piece, &ground.jet, [spot.u, spot.v], spot.size);
-        let (least, most) = block.levels(target.distance);
-        if least < FEWEST_DIVISIONS {
-            return Err(most < FEWEST_DIVISIONS);
-        }
-        let last = most.min(least + MOST_SPREAD);
-        if least > MOST_DIVISIONS || most > last || !block.is_fine(least, target.distance) {
-            return Err(false);
-        }
-        let last = last.min(MOST_DIVISIONS);
-        if place.level + last > self.max_levels {
-            return Err(true);
-        }
-        let mut levels = core::mem::take(&mut self.marks);
-        let mut rows = core::mem::take(&mut self.cell_rows);
-        let mut extent = RowExtent::NONE;
-        let mut tested = 0;
-        for divisions in least..=last {
-            let marks = &mut levels[tested];
-            rows.test(&block, divisions, &target, &mut extent, marks);
-            tested += 1;
-            if marks.are_all_passing() {
-                break;
-            }
-        }
-        self.add_rows(place, &extent);
-        let word = if tested == 1 && levels[0].are_all_passing() {
-            self.count_leaves(1 << (2 * least));
-            LEAF + least
-        } else {
-            let found = Rows { ground, place, spot, marks: &levels[..tested], first: least };
-            self.row_node(&found, (0, 0, false), 0)
-        };
-        (self.marks, self.cell_rows) = (levels, rows);
-        Ok(word)
-    }
-
-    /// A node `level` levels below the one whose rows were tested.
-    fn row_node(&mut self, rows: &Rows<'_>, (i, j, is_headlong): (usize, usize, bool), level: u32) -> u32 {
-        if level >= rows.first {
-            let tested = (level - rows.first) as usize;
-            let mark = rows.marks[tested].at(i, j, is_headlong);
-            if mark == Mark::Passes {
-                self.count_leaves(1);
-                return LEAF;
-            }
-            let is_last = tested + 1 == rows.marks.len();
-            if is_last || mark == Mark::Open {
-                let spot = rows.spot.row(level, i, j, is_headlong);
-                let place = rows.place.leaf(level, (i, j), is_headlong);
-                let corners = spot.corners().map(|at| rows.ground.at(at));
-                if is_last {
-                    return self.part(rows.ground, spot, corners, [false; 3], (place, false));
-                }
-                let at = (place, SubTriangle::Whole);
-                let verdict =
-                    self.judge.regular(rows.ground, at, &spot.cell(), &corners, [false; 3], &self.allowance);
-                if !verdict.fails() {
-                    return self.leaf(place, &verdict);
-                }
-            }
-        }
-        let (x, y) = (2 * i, 2 * j);
-        let below = if is_headlong {
-            [(x + 1, y + 1, true), (x, y + 1, true), (x + 1, y, true), (x + 1, y + 1, false)]
-        } else {
-            [(x, y, false), (x + 1, y, false), (x, y + 1, false), (x, y, true)]
-        };
-        let mut children = [LEAF; 4];
-        for (word, at) in children.iter_mut().zip(below) {
-            *word = self.row_node(rows, at, level + 1);
-        }
-        self.piece.node(children)
-    }
-
-    /// Keeps what the nodes that passed in rows come to.
-    fn add_rows(&mut self, place: Place, rows: &RowExtent) {
-        let RowExtent { tilt, slope, drift_slope, bound, worst } = *rows;
-        let worst = worst.map(|(i, j, is_headlong, depth)| place.leaf(depth, (i, j), is_headlong));
-        self.extent.add(&Extent { tilt, slope, drift_slope, bound, worst });
     }
 
     fn count_leaves(&mut self, count: usize) {
@@ -539,14 +473,4 @@ impl<'a> Decider<'a> {
             }
         }
     }
-}
-
-/// A node whose rows were tested.
-struct Rows<'a> {
-    ground: &'a Ground,
-    place: Place,
-    spot: Spot,
-    /// By level from `first` below the node on.
-    marks: &'a [Marks],
-    first: u32,
 }

@@ -29,8 +29,8 @@ pub(super) struct Emitted {
 
 /// The surface over an emitted triangle.
 pub(super) enum Over<'e, 'p> {
-    /// A part of a regular piece.
-    Regular(&'e Ground, Cell),
+    /// A part of a regular piece, and the place of the leaf.
+    Regular(&'e Ground, Cell, Spot),
     /// Any other, with the limits at the triangle's corners.
     General(&'e mut Pieces<'p>, [LimitPoint; 3]),
 }
@@ -147,7 +147,7 @@ impl<B: Beholder> Leaves<'_, B> {
                 for triangle in triangles {
                     let emitted = emitted(triangle.part, triangle.corners, triangle.borders);
                     let cell = Cell(triangle.corners.map(|label| domain[label]));
-                    self.beholder.triangle(&emitted, Over::Regular(ground, cell), self.rules);
+                    self.beholder.triangle(&emitted, Over::Regular(ground, cell, spot), self.rules);
                 }
             }
             Surface::General { patch, corners, .. } => {
@@ -176,7 +176,7 @@ impl<B: Beholder> Leaves<'_, B> {
         let place = node.place.leaf(node.depth, (i, j), true);
         let emitted =
             Emitted { number, vertices: [b, c, a], place, part: SubTriangle::Whole, open: [false; 3] };
-        let cell = spot.row(node.depth, i, j, true).cell();
-        self.beholder.triangle(&emitted, Over::Regular(ground, cell), self.rules);
+        let spot = spot.row(node.depth, i, j, true);
+        self.beholder.triangle(&emitted, Over::Regular(ground, spot.cell(), spot), self.rules);
     }
 }

@@ -8,15 +8,21 @@
 
 use super::decide::Control;
 use super::quadtree::Place;
-use super::surface::Ground;
+use super::surface::{Ground, Spot};
 use super::trial::Trial;
-use crate::certificate::{Cell, Deviation, Effort, Pieces, RowTarget, SubTriangle, TriangleFrame, exceeds};
+use crate::certificate::{
+    Cell, Deviation, Effort, NetPart, Pieces, RowTarget, SubTriangle, TriangleFrame, exceeds,
+};
 use crate::criterion::Criteria;
+use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{LimitPoint, Rules};
 use crate::vector::DVec3;
 
 /// Halvings of a net before a triangle is given up: the bound is within some per cent of the truth then.
 pub(super) const HALVINGS: usize = 2;
+
+/// The same where nothing can be divided further: then all that is gained is proof.
+const LENIENT_HALVINGS: usize = 4;
 
 /// Divisions into four of the heights over a plane, to the same end.
 pub(super) const DIVISIONS: u32 = 2;
@@ -29,7 +35,22 @@ const DRIFT_SHARE: f64 = 0.48;
 const LEAST_TILT: f64 = 0.01;
 
 /// What a guess leaves for triangles that bend more than their control face does on the whole.
-const GENEROUS: f64 = 1.6;
+const GENEROUS: f64 = 2.2;
+
+/// What is left of the least angle of the control faces when triangles close gaps, as tangents: they may halve it.
+const SLOPE_LEFT: f64 = 0.3;
+
+/// Below this level triangles count on neighbours with angles like their own.
+const FEW_LEVELS: u32 = 3;
+
+/// From this level on, triangles that miss by little are divided whatever their neighbours could do for them.
+const DEEP: u32 = 5;
+
+/// That goes for chords of the angles to neighbours below this.
+const NEARLY_FLAT: f64 = 0.06;
+
+/// And for bounds that are no more than so many times too great.
+const NEAR_MISS: f64 = 1.05;
 
 /// Unit vectors are off by no more than this.
 const ROUNDING: f64 = 1e-12;
@@ -94,7 +115,7 @@ pub(super) enum Goal {
 
 impl Goal {
     /// The judge of a face's triangles.
-    pub(super) fn judge<'a>(&self, control: &'a Control<'_>, face: u32) -> Judge<'a> {
+    pub(super) fn judge<'a>(&self, control: &'a Control<'_>, max_levels: u32, face: u32) -> Judge<'a> {
         let (distance, is_lenient) = match self {
             Self::Within(distance) => (*distance, false),
             Self::Partly(_, less, is_finer) if is_finer[face as usize] => (*less, false),
@@ -102,7 +123,8 @@ impl Goal {
             // Bounds as tight as they get.
             Self::Even(..) => (0.0, true),
         };
-        Judge { rules: control.rules, criteria: control.criteria.as_ref(), limit: distance, is_lenient }
+        let (rules, criteria) = (control.rules, control.criteria.as_ref());
+        Judge { rules, criteria, max_levels, limit: distance, is_lenient }
     }
 
     /// What bounds may come to once the neighbours are known.
@@ -122,6 +144,8 @@ pub(super) struct Judge<'a> {
     pub(super) rules: &'a Rules<'a>,
     /// What is asked beside distances.
     criteria: Option<&'a Criteria>,
+    /// Levels from which on triangles are not divided, whatever they come to.
+    max_levels: u32,
     /// Greatest value: a distance where nothing else counts.
     limit: f64,
     /// Everything passes, and all that counts is how far it is off among its neighbours.
@@ -174,6 +198,10 @@ impl Verdict {
     /// That of no triangle.
     pub(super) const NONE: Self = Self { outcome: Outcome::Passes, extent: Extent::NONE };
 
+    fn passes(&self) -> bool {
+        matches!(self.outcome, Outcome::Passes)
+    }
+
     pub(super) fn fails(&self) -> bool {
         matches!(self.outcome, Outcome::Fails)
     }
@@ -203,26 +231,52 @@ impl Judge<'_> {
     pub(super) fn regular(
         &self,
         ground: &Ground,
-        (place, part): (Place, SubTriangle),
+        (spot, level, part): (Spot, u32, SubTriangle),
         cell: &Cell,
         corners: &[LimitPoint; 3],
         open: [bool; 3],
         allowance: &Allowance,
     ) -> Verdict {
-        let seen = Seen::of(corners);
+        let seen = Seen::of(corners, level);
+        let net = || ground.net(spot, part);
         if let Some(criteria) = self.criteria {
-            let test = Trial::of(criteria, self.limit, &seen, corners, place.level);
-            return test.regular(ground, (place, part), cell, open, self.rules);
-        }
-        if self.is_lenient {
-            return self.by_pieces(&seen, &mut Pieces::of(&ground.patch(place)), part, open, allowance);
+            let test = Trial::of(criteria, self.limit, &seen, corners);
+            return test.regular(ground, net, cell, open, self.rules);
         }
         let heights = ground.jet.heights(cell, seen.frame.normal());
         let (low, high) = heights.range();
+        if self.is_lenient {
+            let beside = ground.jet.beside(cell, &seen.frame, open);
+            let by_derivatives = beside.deviation(heights.refined(DIVISIONS).min(high));
+            let by_net = net().deviation(&seen.frame, self.rules, self.effort(&seen, open));
+            let (chord, slope) = seen.expected();
+            let is_less = by_derivatives.bound(chord, slope) <= by_net.bound(chord, slope);
+            return self.decided(&seen, if is_less { by_derivatives } else { by_net }, allowance);
+        }
         if exceeds(low, self.limit) {
             return Verdict { outcome: Outcome::Fails, extent: Extent { bound: low, ..seen.extent() } };
         }
         let beside = ground.jet.beside(cell, &seen.frame, open);
+        if beside.is_loose() {
+            // Drifts by the net, heights by the derivatives: those of a net are a third too great.
+            let net = net();
+            if open != [false; 3] {
+                return self.by_net(&seen, &net, open, allowance);
+            }
+            let (mut deviation, _) = net.at_a_glance(&seen.frame, open);
+            deviation.height = deviation.height.min(high);
+            let at_once = self.decided(&seen, deviation, allowance);
+            if at_once.passes() {
+                return at_once;
+            }
+            deviation.height = deviation.height.min(heights.refined(DIVISIONS));
+            let refined = self.decided(&seen, deviation, allowance);
+            if refined.passes() {
+                return refined;
+            }
+            let halved = self.by_net(&seen, &net, open, allowance);
+            return if halved.fails() { refined } else { halved };
+        }
         let verdict = self.decided(&seen, beside.deviation(high), allowance);
         if !verdict.fails() {
             return verdict;
@@ -234,8 +288,28 @@ impl Judge<'_> {
             return self.decided(&seen, beside.deviation(high), allowance);
         }
         // Wide parts are better seen by their points.
-        let patch = ground.patch(place);
-        self.by_pieces(&seen, &mut Pieces::of(&patch), part, open, allowance)
+        self.by_net(&seen, &net(), open, allowance)
+    }
+
+    /// A triangle over a regular piece, as far as its net decides at a glance.
+    pub(super) fn at_a_glance(
+        &self,
+        net: &BezierTriangle,
+        level: u32,
+        corners: &[LimitPoint; 3],
+        open: [bool; 3],
+        allowance: &Allowance,
+    ) -> Option<Verdict> {
+        if self.is_lenient || self.criteria.is_some() {
+            return None;
+        }
+        let seen = Seen::of(corners, level);
+        let (deviation, attained) = NetPart::own(net, SubTriangle::Whole).at_a_glance(&seen.frame, open);
+        if exceeds(attained, self.limit) {
+            let extent = Extent { bound: attained, ..seen.extent() };
+            return Some(Verdict { outcome: Outcome::Fails, extent });
+        }
+        Some(self.decided(&seen, deviation, allowance)).filter(Verdict::passes)
     }
 
     /// A triangle over a part of any piece, so many levels below its control face.
@@ -247,12 +321,25 @@ impl Judge<'_> {
         open: [bool; 3],
         allowance: &Allowance,
     ) -> Verdict {
-        let seen = Seen::of(corners);
+        let seen = Seen::of(corners, level);
         if let Some(criteria) = self.criteria {
-            return Trial::of(criteria, self.limit, &seen, corners, level)
-                .general(pieces, part, open, self.rules);
+            return Trial::of(criteria, self.limit, &seen, corners).general(pieces, part, open, self.rules);
         }
         self.by_pieces(&seen, pieces, part, open, allowance)
+    }
+
+    fn by_net(&self, seen: &Seen, net: &NetPart, open: [bool; 3], allowance: &Allowance) -> Verdict {
+        let deviation = net.deviation(&seen.frame, self.rules, self.effort(seen, open));
+        self.decided(seen, deviation, allowance)
+    }
+
+    /// What is done for a bound.
+    fn effort(&self, seen: &Seen, open: [bool; 3]) -> Effort {
+        let (chord, slope) = seen.expected();
+        // What will be divided needs no bound.
+        let gives_up = !self.is_lenient && seen.level < self.max_levels;
+        let halvings = if self.is_lenient { LENIENT_HALVINGS } else { HALVINGS };
+        Effort { target: self.limit, halvings, open, chord, slope, gives_up }
     }
 
     fn by_pieces<'p>(
@@ -263,9 +350,7 @@ impl Judge<'_> {
         open: [bool; 3],
         allowance: &Allowance,
     ) -> Verdict {
-        let (chord, slope) = seen.expected();
-        let effort = Effort { target: self.limit, halvings: HALVINGS, open, chord, slope };
-        let deviation = pieces.deviation(part, &seen.frame, self.rules, effort);
+        let deviation = pieces.deviation(part, &seen.frame, self.rules, self.effort(seen, open));
         self.decided(seen, deviation, allowance)
     }
 
@@ -282,9 +367,11 @@ impl Judge<'_> {
             let counted = if deviation.slope <= slope { deviation.slope } else { 0.0 };
             return verdict(Outcome::Passes, bound, counted);
         }
+        // Few triangles miss by so little: to divide them costs less than to look at their neighbours.
+        let is_near_miss = seen.level >= DEEP && chord < NEARLY_FLAT && bound <= NEAR_MISS * self.limit;
         let (chord, slope) = seen.expected();
         let bound = deviation.bound(chord, slope);
-        if self.is_lenient || bound <= self.limit {
+        if self.is_lenient || !is_near_miss && bound <= self.limit {
             // What it comes to is known when its neighbours are.
             let Extent { tilt, slope, .. } = seen.extent();
             return verdict(Outcome::Depends { deviation, tilt, slope }, 0.0, 0.0);
@@ -298,26 +385,33 @@ impl Judge<'_> {
         RowTarget { distance: self.limit, tilt, slope, drift_share: DRIFT_SHARE }
     }
 
-    /// What a triangle counts on of those beside it at first, by the heights of points of its piece over it and its tilt: angles
-    /// shrink with the size of triangles, heights with its square. Where more than distances count, triangles are looked at
-    /// among their neighbours as they are emitted, and count on nothing.
-    pub(super) fn guess(&self, corners: &[LimitPoint; 3], points: &[LimitPoint]) -> Allowance {
+    /// What a triangle counts on of those beside it at first, by the heights of points of its piece over it and its tilt, and the
+    /// corners of those beside: angles between planes shrink with the size of triangles, heights with its square. Where more than
+    /// distances count, triangles are looked at among their neighbours as they are emitted, and count on nothing.
+    pub(super) fn guess(
+        &self,
+        corners: &[LimitPoint; 3],
+        points: &[LimitPoint],
+        beside: impl Iterator<Item = [LimitPoint; 3]>,
+    ) -> Allowance {
         if self.criteria.is_some() {
             return Allowance::NOTHING;
         }
-        let seen = Seen::of(corners);
+        let seen = Seen::of(corners, 0);
         let height = seen.highest(points);
         let levels = if height > self.limit { (self.limit / height).sqrt() } else { 1.0 };
-        Allowance { tilt: (GENEROUS * seen.tilt * levels).max(LEAST_TILT), slope: f64::INFINITY }
+        let slopes = beside.map(|corners| Seen::of(&corners, 0).frame.least_slope());
+        let slope = slopes.fold(seen.frame.least_slope(), f64::min);
+        Allowance { tilt: (GENEROUS * seen.tilt * levels).max(LEAST_TILT), slope: SLOPE_LEFT * slope }
     }
 
     /// Whether a triangle may pass, as far as some points of its piece tell.
     pub(super) fn may_pass(&self, corners: &[LimitPoint; 3], points: &[LimitPoint], level: u32) -> bool {
-        let seen = Seen::of(corners);
+        let seen = Seen::of(corners, level);
         let height = seen.highest(points);
         match self.criteria {
             None => height <= self.limit,
-            Some(criteria) => !Trial::of(criteria, self.limit, &seen, corners, level).is_lost(height),
+            Some(criteria) => !Trial::of(criteria, self.limit, &seen, corners).is_lost(height),
         }
     }
 
@@ -331,10 +425,12 @@ impl Judge<'_> {
 pub(super) struct Seen {
     pub(super) frame: TriangleFrame,
     pub(super) tilt: f64,
+    /// Its level below the control face.
+    pub(super) level: u32,
 }
 
 impl Seen {
-    pub(super) fn of(corners: &[LimitPoint; 3]) -> Self {
+    pub(super) fn of(corners: &[LimitPoint; 3], level: u32) -> Self {
         let frame = TriangleFrame::new(corners.map(|corner| corner.position));
         // Of the two corners that neighbours share one must have a normal.
         let known = corners.iter().filter(|corner| corner.normal != DVec3::ZERO);
@@ -344,7 +440,7 @@ impl Seen {
             count += 1;
         }
         let tilt = if count < 2 || frame.is_flat() { ANY_TILT } else { squared.sqrt() + ROUNDING };
-        Self { frame, tilt }
+        Self { frame, tilt, level }
     }
 
     /// How high the highest of some points stands over the triangle.
@@ -363,8 +459,10 @@ impl Seen {
         (self.tilt + allowance.tilt, slope)
     }
 
-    /// The same as they are expected: neighbours are alike, on the other side of the limit normals.
+    /// The same as they are expected: neighbours are alike, on the other side of the limit normals. From some level on that
+    /// is not expected of their angles: what is wrong there is put right one level at a time.
     pub(super) fn expected(&self) -> (f64, f64) {
-        (2.0 * self.tilt, self.frame.least_slope())
+        let share = if self.level < FEW_LEVELS { 1.0 } else { DRIFT_SHARE };
+        (2.0 * self.tilt, share * self.frame.least_slope())
     }
 }

@@ -78,8 +78,8 @@ impl Beholder for Measuring<'_> {
         let among = Among::of(self.emission, self.sharp, emitted);
         let cone = match (self.criteria.filter(|criteria| criteria.has_cones()), &over) {
             (None, _) => 0.0,
-            (Some(criteria), Over::Regular(ground, cell)) => {
-                among.cone(criteria, emitted.place, &cell.0.map(|at| ground.at(at)))
+            (Some(criteria), Over::Regular(ground, cell, _)) => {
+                among.cone(criteria, emitted.place, &ground.at(cell.0))
             }
             (Some(criteria), Over::General(_, corners)) => among.cone(criteria, emitted.place, corners),
         };
@@ -97,15 +97,16 @@ impl Beholder for Measuring<'_> {
             value.value <= self.limit && value.bound <= self.length
         };
         match over {
-            Over::Regular(ground, cell) => {
+            Over::Regular(ground, cell, spot) => {
                 let heights = ground.jet.heights(&cell, among.frame.normal());
                 let beside = ground.jet.beside(&cell, &among.frame, emitted.open);
                 let first =
                     if among.moved > 0.0 { heights.lifted(among.lifts, 1) } else { heights.range().1 };
                 let off = |height| beside.deviation_off(height, among.moved, among.aside);
                 if !is_enough(off(first)) && !is_enough(off(heights.lifted(among.lifts, DIVISIONS))) {
-                    let patch = ground.patch(emitted.place);
-                    is_enough(self.by_pieces(&among, emitted, &mut Pieces::of(&patch), rules));
+                    let net = ground.net(spot, emitted.part);
+                    let deviation = net.deviation(&among.frame, rules, self.effort(&among, emitted));
+                    is_enough(deviation.off(among.moved, among.aside));
                 }
             }
             Over::General(pieces, _) => {
@@ -158,7 +159,7 @@ impl Measuring<'_> {
             return None;
         }
         let height = match over {
-            Over::Regular(ground, cell) => {
+            Over::Regular(ground, cell, _) => {
                 let (low, high) = ground.jet.heights(cell, among.frame.normal()).sampled(among.lifts);
                 high.max(-low)
             }
@@ -179,18 +180,24 @@ impl Measuring<'_> {
         pieces: &mut Pieces<'p>,
         rules: &'p Rules<'p>,
     ) -> Deviation {
+        let deviation = pieces.deviation(emitted.part, &among.frame, rules, self.effort(among, emitted));
+        deviation.off(among.moved, among.aside)
+    }
+
+    /// What is done for a bound.
+    fn effort(&self, among: &Among, emitted: &Emitted) -> Effort {
         let allowed = match self.criteria {
             None => self.limit,
             Some(criteria) => self.limit * criteria.allowed_length(&among.region()),
         };
-        let effort = Effort {
+        Effort {
             target: allowed.min(self.length),
             halvings: if self.length.is_finite() { MOST_HALVINGS } else { HALVINGS },
             open: emitted.open,
             chord: among.chord,
             slope: among.slope,
-        };
-        pieces.deviation(emitted.part, &among.frame, rules, effort).off(among.moved, among.aside)
+            gives_up: false,
+        }
     }
 
     /// What the triangle comes to with this deviation.

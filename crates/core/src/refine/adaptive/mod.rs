@@ -51,16 +51,13 @@ use balance::{Pending, balance};
 use chains::Chains;
 use close::{Closed, Verdicts, close};
 use decide::{Control, Decision, decide};
-use emit::{Emission, Extend};
+use emit::Emission;
 use judge::Goal;
 use quadtree::{Edges, Place, Trees};
 use result::Outcome;
 
 /// Control faces that one call takes together.
 const BLOCK: usize = 256;
-
-/// Rounds of dividing leaves whose conditions do not hold; what still fails after them has to pass without conditions.
-const MOST_ROUNDS: usize = 2;
 
 /// Triangles that splitting a leaf adds, closing included, on the average.
 const ADDED: usize = 6;
@@ -183,6 +180,8 @@ pub(super) struct Plan {
     settled: Vec<Option<(f64, Place)>>,
     /// Control faces that were walked over since somebody last looked at what is emitted.
     is_touched: Vec<bool>,
+    /// What was emitted to look at conditions, if that is all of it.
+    emission: Option<Emission>,
 }
 
 impl Engine<'_> {
@@ -211,20 +210,19 @@ impl Engine<'_> {
                 reserve *= 2;
                 continue;
             };
-            let worst_first = outcome.finish(self, stop, options)?;
-            if stop == ExactStop::Met || floor > 0.0 {
-                return Ok(worst_first);
-            }
+            let is_best = stop == ExactStop::Met || floor > 0.0;
+            let even = if is_best { None } else { self.even(most)? };
+            let Some(even) = even else { return outcome.finish(self, stop, options) };
             // Evenly curved models are best divided evenly, though drifts may allow to prove less of that. Lower
-            // bounds are found distances, within some per cent of the truth.
-            let Some(even) = self.even(most)? else { return Ok(worst_first) };
-            let even = even.finish(self, stop, options)?;
+            // bounds are found distances, within some per cent of the truth where all triangles are looked at.
+            let worst_first = outcome.looked_at(self).finish(self, stop, options)?;
+            let even = even.looked_at(self).finish(self, stop, options)?;
             let is_better = even.error.lower < worst_first.error.lower;
             return Ok(if is_better { even } else { worst_first });
         }
     }
 
-    /// Divides as asked; `None` if that takes more than `most` triangles.
+    /// Divides as asked, until all conditions hold; `None` if that takes more than `most` triangles.
     fn plan(&self, goal: Goal, most: usize) -> Result<Option<Plan>, RefineError> {
         let Some(decision) = decide(self.control, &goal, &self.edges, self.max_levels, most)? else {
             return Ok(None);
@@ -240,8 +238,12 @@ impl Engine<'_> {
             has_failed: false,
             settled: vec![None; faces],
             is_touched: vec![true; faces],
+            emission: None,
         };
-        Ok(self.carry_out(&mut plan, vec![true; faces], most)?.then_some(plan))
+        let is_settled_later = self.control.criteria.is_some() || self.is_balanced;
+        let fits = self.carry_out(&mut plan, vec![true; faces], most)?
+            && (is_settled_later || self.settle(&mut plan, most)?);
+        Ok(fits.then_some(plan))
     }
 
     /// Restricts and closes until everything holds, beginning with the marked faces; `false` if there are too many triangles.
@@ -273,66 +275,19 @@ impl Engine<'_> {
             return self.emit_among(plan, &goal, (most, is_budget));
         }
         let mut plan = plan;
-        let emission = self.emit_settled(&mut plan, most, is_budget)?;
-        Ok(emission.map(|emission| Outcome { plan, emission, measured: None }))
-    }
-
-    /// Emits a plan, dividing where conditions do not hold; `None` if there are too many triangles.
-    fn emit_settled(
-        &self,
-        plan: &mut Plan,
-        most: usize,
-        is_budget: bool,
-    ) -> Result<Option<Emission>, RefineError> {
-        let mut rounds = 0;
-        loop {
-            self.settle_by_allowances(plan);
-            let only = self.conditional(plan);
-            let chains = (&plan.decision, &plan.chains);
-            let emission = match &only {
-                Some(only) => emit::emit(self.control, &self.edges, chains, &plan.closed, Some(only))?,
-                None => self.emit_all(plan)?,
-            };
-            let failing = settle::settle(&emission, &plan.goal, &mut plan.settled);
-            let mut is_dirty = vec![false; plan.closed.len()];
-            let mut is_split = false;
-            rounds += 1;
-            // Where a budget is all that ends the division, what does not fit any more counts as it is.
-            let has_room = !is_budget || plan.triangles + ADDED * failing.len() <= most;
-            for (place, bound) in failing {
-                if place.level >= self.max_levels || !has_room {
-                    plan.has_failed |= has_room;
-                    let known = &mut plan.settled[place.face as usize];
-                    if known.is_none_or(|(known, _)| bound > known) {
-                        *known = Some((bound, place));
-                    }
-                    continue;
-                }
-                is_split = true;
-                self.mark(place.face, &mut is_dirty);
-                if rounds > MOST_ROUNDS {
-                    plan.decision.trees.make_strict(place);
-                }
-                self.split(&mut plan.decision.trees, place, |place| self.mark(place.face, &mut is_dirty))?;
-            }
-            if !is_split {
-                if only.is_some() {
-                    drop(emission);
-                    return self.emit_all(plan).map(Some);
-                }
-                return Ok(Some(emission));
-            }
-            if !self.carry_out(plan, is_dirty, most)? {
-                return Ok(None);
-            }
-        }
+        let emission = match plan.emission.take() {
+            Some(emission) => emission,
+            None => self.emit_all(&plan)?,
+        };
+        Ok(Some(Outcome { plan, emission, measured: None }))
     }
 
     /// The even division that fits, what is left spent on its worst faces.
     fn even(&self, most: usize) -> Result<Option<Outcome>, RefineError> {
-        let Some(even) = budget::even(self, most)? else { return Ok(None) };
-        let Some(even) = self.emit(even, most, true)? else { return Ok(None) };
-        self.emit(budget::fill_even(self, even.plan, most)?, most, true)
+        match budget::even(self, most)? {
+            Some(even) => self.emit(even, most, true),
+            None => Ok(None),
+        }
     }
 
     /// Emits all of a plan.
@@ -343,51 +298,6 @@ impl Engine<'_> {
         join_copies(&mut emission.positions, &junctions.vertices);
         emission.junctions = junctions;
         Ok(emission)
-    }
-
-    /// Settles the faces whose conditions hold whatever is beside, by what triangles there came to after all.
-    fn settle_by_allowances(&self, plan: &mut Plan) {
-        for face in 0..plan.closed.len() {
-            let lists = [plan.decision.conditions(face as u32), &plan.closed[face].conditions];
-            if plan.settled[face].is_some() || lists.iter().all(|list| list.is_empty()) {
-                continue;
-            }
-            let closing = |face: u32| plan.closed[face as usize].extent.as_ref();
-            let (around, _) = plan.decision.around(self.control, &self.edges, face as u32, closing);
-            let bounds =
-                lists.into_iter().flatten().map(|condition| (condition.bound(&around), condition.place));
-            let worst = bounds.max_by(|a, b| a.0.total_cmp(&b.0));
-            plan.settled[face] = worst.filter(|&(bound, _)| bound <= plan.goal.allowed(face as u32));
-        }
-    }
-
-    /// What must be emitted to look at the conditions that nobody has looked at: their faces and those around, and the
-    /// edges of the faces around these. `None` if that is most of all.
-    fn conditional(&self, plan: &Plan) -> Option<Vec<Extend>> {
-        let has = |face: usize| {
-            let conditions = [plan.decision.conditions(face as u32), &plan.closed[face].conditions];
-            plan.settled[face].is_none() && conditions.iter().any(|list| !list.is_empty())
-        };
-        let wider = |marked: &[bool]| {
-            let mut wider = marked.to_vec();
-            (0..marked.len())
-                .filter(|&face| marked[face])
-                .for_each(|face| self.mark(face as u32, &mut wider));
-            wider
-        };
-        let whole = wider(&(0..plan.closed.len()).map(has).collect::<Vec<bool>>());
-        let triangles = plan.closed.iter().zip(&whole).filter(|&(_, &is_whole)| is_whole);
-        let triangles: usize = triangles.map(|(face, _)| face.triangles as usize).sum();
-        if 2 * triangles >= plan.triangles {
-            return None;
-        }
-        let edges = wider(&whole);
-        let extend = |(is_whole, is_edge): (bool, bool)| match (is_whole, is_edge) {
-            (true, _) => Extend::All,
-            (false, true) => Extend::Edges,
-            (false, false) => Extend::Nothing,
-        };
-        Some(whole.into_iter().zip(edges).map(extend).collect())
     }
 
     fn split(&self, trees: &mut Trees, place: Place, fresh: impl FnMut(Place)) -> Result<(), RefineError> {
@@ -432,7 +342,7 @@ impl Engine<'_> {
                     let known = &plan.closed[face as usize].verdicts;
                     close(
                         self.control,
-                        &plan.goal,
+                        (&plan.goal, self.max_levels),
                         &self.edges,
                         trees,
                         (allowance, known, !is_first),

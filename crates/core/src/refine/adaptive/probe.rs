@@ -38,7 +38,7 @@ const MOST_SAMPLED_LEVELS: usize = 6;
 const NARROW: f64 = 0.99;
 
 /// Upper bounds so many times the lower one are taken again.
-const WIDE: f64 = 1.1;
+const WIDE: f64 = 1.2;
 
 /// Control faces that are looked at together for tighter bounds at first, then twice as many each time.
 const TIGHTENED: usize = 64;

@@ -76,6 +76,13 @@ impl Place {
         place
     }
 
+    /// Whether a walk over the face comes to this node before the other, or to one that holds it.
+    pub(super) fn precedes(self, other: Self) -> bool {
+        let most = self.level.max(other.level);
+        let path = |place: Self| place.path << (2 * (most - place.level));
+        (path(self), self.level) < (path(other), other.level)
+    }
+
     /// The child taken on the way from `level` to the next one.
     pub(super) fn digit(self, level: u32) -> usize {
         (self.path >> (2 * (self.level - 1 - level)) & 3) as usize
@@ -295,12 +302,17 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// The word of a node with the given children.
+    /// The word of a node over a regular part with the given children.
     pub(super) fn node(&mut self, children: [u32; 4]) -> u32 {
         let [first, ..] = children;
         if first & LEAF != 0 && first & MARKS == 0 && children == [first; 4] && first & !LEAF < MOST_LEVELS {
             return first + 1;
         }
+        self.irregular_node(children)
+    }
+
+    /// The same where the surface is not regular: such nodes are kept one by one, so that what is kept as a whole is regular.
+    pub(super) fn irregular_node(&mut self, children: [u32; 4]) -> u32 {
         let at = self.words.len() as u32;
         self.words.extend(children);
         at

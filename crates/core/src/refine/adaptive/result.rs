@@ -1,7 +1,8 @@
 //! What is handed out: the emitted mesh with all that is known of it.
 
 use super::emit::Emission;
-use super::measure::Measured;
+use super::judge::Goal;
+use super::measure::{Measured, measure};
 use super::{Engine, Plan, probe, sides};
 use crate::certificate::{TriangleFrame, exceeds};
 use crate::criterion::{Criteria, Region};
@@ -27,6 +28,16 @@ pub(super) struct Outcome {
 }
 
 impl Outcome {
+    /// Looks at all triangles among their neighbours, if nobody has.
+    pub(super) fn looked_at(mut self, engine: &Engine<'_>) -> Self {
+        let all: Vec<u32> = (0..self.plan.closed.len() as u32).collect();
+        self.measured.get_or_insert_with(|| {
+            let sources = engine.sources(&self.plan, &self.emission);
+            measure(&sources, &Goal::Within(f64::INFINITY), f64::INFINITY, &all)
+        });
+        self
+    }
+
     /// Measures what was emitted.
     pub(super) fn finish(
         self,

@@ -1,39 +1,52 @@
 //! The limit surface over a node, as far as a walk needs it: regular pieces stay what they are all the way down, others are
 //! refined on the way.
 
-use super::quadtree::Place;
-use crate::certificate::{Cell, QuarticJet};
+use core::array::from_fn;
+
+use crate::certificate::{Cell, NetPart, QuarticJet, SubTriangle};
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{LimitPoint, Patch, Points, Quartic, Rules, refined_part};
+use crate::patch::{LimitPoint, Patch, Quartic, Rules};
 use crate::vector::DVec3;
+
+/// Points that are evaluated together.
+const LANES: usize = 4;
 
 /// A regular piece as a polynomial.
 #[derive(Clone, Debug)]
 pub(super) struct Ground {
     pub(super) piece: Quartic,
     pub(super) jet: QuarticJet,
-    points: Points,
-    /// Its level below the control face.
-    level: u32,
 }
 
 impl Ground {
-    pub(super) fn of(points: &Points, level: u32) -> Self {
-        let piece = Quartic::of(&BezierTriangle::of(points), 0);
-        Self { jet: QuarticJet::of(&piece), piece, points: *points, level }
+    pub(super) fn of(net: &BezierTriangle) -> Self {
+        let piece = Quartic::of(net, 0);
+        Self { jet: QuarticJet::of(&piece), piece }
     }
 
-    /// The patch of a node below.
-    pub(super) fn patch(&self, place: Place) -> Patch {
-        let levels = self.level..place.level;
-        Patch::Regular(levels.fold(self.points, |points, level| refined_part(&points, place.digit(level))))
+    /// The net of a part of a node.
+    pub(super) fn net(&self, spot: Spot, part: SubTriangle) -> NetPart {
+        let (at, part) = match part {
+            SubTriangle::Child(child) => (spot.child(child), SubTriangle::Whole),
+            _ => (spot, part),
+        };
+        NetPart::own(&self.piece.net([at.u, at.v], at.size), part)
     }
 
-    /// The point at a place, and its unit normal.
-    pub(super) fn at(&self, [u, v]: [f64; 2]) -> LimitPoint {
-        let (mut position, mut normal) = ([[0.0; 3]], [[0.0; 3]]);
-        self.piece.points_and_normals_along(v, u, 0.0, &mut position, &mut normal);
-        LimitPoint { position: DVec3::from_array(position[0]), normal: DVec3::from_array(normal[0]) }
+    /// The points at several places, and their unit normals.
+    pub(super) fn at<const N: usize>(&self, places: [[f64; 2]; N]) -> [LimitPoint; N] {
+        let [mut u, mut v] = [[0.0; N]; 2];
+        for (l, place) in places.iter().enumerate() {
+            [u[l], v[l]] = *place;
+        }
+        let [points, normals] = self.piece.points_and_normals_at(&u, &v);
+        let vector =
+            |by_axis: &[[f64; N]; 3], l: usize| DVec3::new(by_axis[0][l], by_axis[1][l], by_axis[2][l]);
+        let mut found = [LimitPoint { position: DVec3::ZERO, normal: DVec3::ZERO }; N];
+        for (l, found) in found.iter_mut().enumerate() {
+            *found = LimitPoint { position: vector(&points, l), normal: vector(&normals, l) };
+        }
+        found
     }
 }
 
@@ -155,7 +168,7 @@ impl Surface<'_> {
     pub(super) fn middles(&self, rules: &Rules<'_>) -> [LimitPoint; 3] {
         match self {
             Surface::Unknown => [LimitPoint { position: DVec3::ZERO, normal: DVec3::ZERO }; 3],
-            Surface::Regular(ground, spot) => [0, 1, 2].map(|edge| ground.at(spot.along(edge, 0.5))),
+            Surface::Regular(ground, spot) => ground.at([0, 1, 2].map(|edge| spot.along(edge, 0.5))),
             Surface::General { patch, .. } => {
                 let refined = patch.refined(rules);
                 [0, 1, 2].map(|edge| refined.middle(edge))
@@ -189,8 +202,19 @@ impl Surface<'_> {
         match self {
             Surface::Unknown => {}
             Surface::Regular(ground, spot) => {
-                for (at, place) in places.iter().enumerate().take(last).skip(first) {
-                    found(at, ground.at(spot.along(edge, (place - from) / length)));
+                let place = |at: usize| spot.along(edge, (places[at] - from) / length);
+                let mut at = first;
+                while at < last {
+                    let count = (last - at).min(LANES);
+                    if count == 1 {
+                        let [point] = ground.at([place(at)]);
+                        found(at, point);
+                    } else {
+                        let points: [LimitPoint; LANES] =
+                            ground.at(from_fn(|l| place((at + l).min(last - 1))));
+                        (at..last).zip(points).for_each(|(at, point)| found(at, point));
+                    }
+                    at += count;
                 }
             }
             Surface::General { patch, corners, level } => {
@@ -227,7 +251,7 @@ pub(super) fn with_patch(
 ) {
     match patch {
         Patch::Regular(points) => {
-            let ground = Ground::of(points, level);
+            let ground = Ground::of(&BezierTriangle::of(points));
             take(&Surface::Regular(&ground, Spot::WHOLE));
         }
         _ => take(&Surface::General { patch, corners, level }),

@@ -4,9 +4,8 @@
 //! ([`super::measure`]).
 
 use super::judge::{DIVISIONS, Extent, HALVINGS, Outcome, Seen, Verdict};
-use super::quadtree::Place;
 use super::surface::Ground;
-use crate::certificate::{Cell, Deviation, Effort, Pieces, SubTriangle, exceeds};
+use crate::certificate::{Cell, Deviation, Effort, NetPart, Pieces, SubTriangle, exceeds};
 use crate::criterion::{Apart, Criteria, Region};
 use crate::patch::{LimitPoint, Rules};
 
@@ -22,18 +21,12 @@ pub(super) struct Trial<'a> {
 }
 
 impl<'a> Trial<'a> {
-    pub(super) fn of(
-        criteria: &'a Criteria,
-        limit: f64,
-        seen: &'a Seen,
-        corners: &[LimitPoint; 3],
-        level: u32,
-    ) -> Self {
+    pub(super) fn of(criteria: &'a Criteria, limit: f64, seen: &'a Seen, corners: &[LimitPoint; 3]) -> Self {
         let (chord, _) = seen.expected();
         let normal = seen.frame.normal();
         let region = Region::around(corners.map(|corner| corner.position), normal).turned(chord);
         let cone = criteria.cone_ratio(normal, corners.map(|corner| corner.normal), &region);
-        let is_given_up = level as usize >= criteria.deepest_cone();
+        let is_given_up = seen.level as usize >= criteria.deepest_cone();
         Self { criteria, limit, seen, region, cone: if is_given_up { cone.min(1.0) } else { cone } }
     }
 
@@ -61,7 +54,7 @@ impl<'a> Trial<'a> {
     pub(super) fn regular(
         &self,
         ground: &Ground,
-        (place, part): (Place, SubTriangle),
+        net: impl Fn() -> NetPart,
         cell: &Cell,
         open: [bool; 3],
         rules: &Rules<'_>,
@@ -84,8 +77,15 @@ impl<'a> Trial<'a> {
             let high = heights.refined(DIVISIONS).min(high);
             return self.verdict(self.value(&beside.deviation(high)));
         }
-        let patch = ground.patch(place);
-        self.by_pieces(&mut Pieces::of(&patch), part, open, rules)
+        let deviation = net().deviation(&self.seen.frame, rules, self.effort(open));
+        self.verdict(self.value(&deviation))
+    }
+
+    /// What is done for a bound.
+    fn effort(&self, open: [bool; 3]) -> Effort {
+        let (chord, slope) = self.seen.expected();
+        let target = self.limit * self.criteria.allowed_length(&self.region);
+        Effort { target, halvings: HALVINGS, open, chord, slope, gives_up: false }
     }
 
     pub(super) fn general<'p>(
@@ -98,19 +98,6 @@ impl<'a> Trial<'a> {
         if !self.criteria.has_distances() || exceeds(self.cone, self.limit) {
             return self.verdict(self.cone);
         }
-        self.by_pieces(pieces, part, open, rules)
-    }
-
-    fn by_pieces<'p>(
-        &self,
-        pieces: &mut Pieces<'p>,
-        part: SubTriangle,
-        open: [bool; 3],
-        rules: &'p Rules<'p>,
-    ) -> Verdict {
-        let (chord, slope) = self.seen.expected();
-        let target = self.limit * self.criteria.allowed_length(&self.region);
-        let effort = Effort { target, halvings: HALVINGS, open, chord, slope };
-        self.verdict(self.value(&pieces.deviation(part, &self.seen.frame, rules, effort)))
+        self.verdict(self.value(&pieces.deviation(part, &self.seen.frame, rules, self.effort(open))))
     }
 }

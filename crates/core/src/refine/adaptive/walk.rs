@@ -80,7 +80,7 @@ pub(super) trait Visitor {
     fn chain(&mut self, knots: &[Knot], edge: usize, spot: Spot, middle: &Surface<'_>);
 
     /// A node whose leaves lie `depth` levels below it. `interior` is the first of the numbers kept for the vertices inside, in
-    /// rows from edge 0 on. Surfaces that are not regular come with depth 0 only.
+    /// rows from edge 0 on. Surfaces that are not regular have depth 0.
     fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]);
 }
 
@@ -134,9 +134,7 @@ impl Walk<'_> {
         surface: &Surface<'_>,
         visitor: &mut V,
     ) {
-        if let Some(depth) = even_depth(word)
-            && (depth == 0 || !matches!(surface, Surface::General { .. }))
-        {
+        if let Some(depth) = even_depth(word) {
             let interior = self.next;
             let n = 1u32 << depth;
             self.next += if n > 2 { (n - 1) * (n - 2) / 2 } else { 0 };

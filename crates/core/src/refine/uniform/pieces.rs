@@ -283,7 +283,7 @@ impl Weights {
             let patch = ExtraordinaryPatch {
                 corner: 0,
                 at: DVec3::ZERO,
-                ring: points[..valence].to_vec(),
+                ring: points[..valence].iter().copied().collect(),
                 outer: core::array::from_fn(|i| points[valence + i]),
             };
             let patch = Patch::Extraordinary(Box::new(patch));

@@ -1,0 +1,119 @@
+//! Even parts of regular pieces: all nodes of a level are tested at once, and single ones only where that leaves something open.
+
+use super::super::judge::Extent;
+use super::super::quadtree::{LEAF, Place};
+use super::super::surface::{Ground, Spot};
+use super::Decider;
+use crate::certificate::{MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, SubTriangle};
+
+/// Levels below the first that are tested at most.
+const MOST_SPREAD: u32 = 2;
+
+/// Levels tested at most.
+pub(super) const MOST_TESTED: usize = MOST_SPREAD as usize + 1;
+
+/// What testing all nodes of some levels below a node at once came to.
+pub(super) enum AtOnce {
+    /// The node is divided so.
+    Decided(u32),
+    /// It is not worth while, and whether it may be below; a node that certainly fails need not be judged.
+    NotHere { fails: bool, may_be_below: bool },
+}
+
+/// A node whose rows were tested.
+struct Rows<'a> {
+    ground: &'a Ground,
+    place: Place,
+    spot: Spot,
+    /// By level from `first` below the node on.
+    marks: &'a [Marks],
+    first: u32,
+}
+
+impl Decider<'_> {
+    /// Divides a part of a regular piece by testing all nodes of some levels at once, where that is worth while.
+    pub(super) fn rows(&mut self, ground: &Ground, spot: Spot, place: Place) -> AtOnce {
+        let target = self.judge.row_target(&self.allowance);
+        let block = RowBlock::of(&ground.piece, &ground.jet, [spot.u, spot.v], spot.size);
+        let (least, most) = block.levels(target.distance);
+        let fails = least > 0;
+        if !fails {
+            return AtOnce::NotHere { fails, may_be_below: most > 1 };
+        }
+        let last = most.min(least + MOST_SPREAD);
+        if least > MOST_DIVISIONS || most > last || !block.is_fine(least, target.distance) {
+            return AtOnce::NotHere { fails, may_be_below: true };
+        }
+        let last = last.min(MOST_DIVISIONS);
+        if place.level + last > self.max_levels {
+            return AtOnce::NotHere { fails, may_be_below: false };
+        }
+        let mut levels = core::mem::take(&mut self.marks);
+        let mut rows = core::mem::take(&mut self.cell_rows);
+        let mut extent = RowExtent::NONE;
+        let mut tested = 0;
+        for divisions in least..=last {
+            let marks = &mut levels[tested];
+            rows.test(&block, divisions, &target, &mut extent, marks);
+            tested += 1;
+            if marks.are_all_passing() {
+                break;
+            }
+        }
+        self.add_rows(place, &extent);
+        let word = if tested == 1 && levels[0].are_all_passing() {
+            self.count_leaves(1 << (2 * least));
+            LEAF + least
+        } else {
+            let found = Rows { ground, place, spot, marks: &levels[..tested], first: least };
+            self.row_node(&found, (0, 0, false), 0)
+        };
+        (self.marks, self.cell_rows) = (levels, rows);
+        AtOnce::Decided(word)
+    }
+
+    /// A node `level` levels below the one whose rows were tested.
+    fn row_node(&mut self, rows: &Rows<'_>, (i, j, is_headlong): (usize, usize, bool), level: u32) -> u32 {
+        if level >= rows.first {
+            let tested = (level - rows.first) as usize;
+            let mark = rows.marks[tested].at(i, j, is_headlong);
+            if mark == Mark::Passes {
+                self.count_leaves(1);
+                return LEAF;
+            }
+            let is_last = tested + 1 == rows.marks.len();
+            if is_last || mark == Mark::Open {
+                let spot = rows.spot.row(level, i, j, is_headlong);
+                let place = rows.place.leaf(level, (i, j), is_headlong);
+                let corners = rows.ground.at(spot.corners());
+                if is_last {
+                    return self.part(rows.ground, spot, corners, [false; 3], (place, false));
+                }
+                let at = (spot, place.level, SubTriangle::Whole);
+                let verdict =
+                    self.judge.regular(rows.ground, at, &spot.cell(), &corners, [false; 3], &self.allowance);
+                if !verdict.fails() {
+                    return self.leaf(place, &verdict);
+                }
+            }
+        }
+        let (x, y) = (2 * i, 2 * j);
+        let below = if is_headlong {
+            [(x + 1, y + 1, true), (x, y + 1, true), (x + 1, y, true), (x + 1, y + 1, false)]
+        } else {
+            [(x, y, false), (x + 1, y, false), (x, y + 1, false), (x, y, true)]
+        };
+        let mut children = [LEAF; 4];
+        for (word, at) in children.iter_mut().zip(below) {
+            *word = self.row_node(rows, at, level + 1);
+        }
+        self.piece.node(children)
+    }
+
+    /// Keeps what the nodes that passed in rows come to.
+    fn add_rows(&mut self, place: Place, rows: &RowExtent) {
+        let RowExtent { tilt, slope, drift_slope, bound, worst } = *rows;
+        let worst = worst.map(|(i, j, is_headlong, depth)| place.leaf(depth, (i, j), is_headlong));
+        self.extent.add(&Extent { tilt, slope, drift_slope, bound, worst });
+    }
+}

@@ -1,0 +1,256 @@
+//! Writes the leaves of control faces: the vertices inside and along chains, the triangles row by row, and which half-edges are
+//! twins.
+
+use super::super::judge::Condition;
+use super::super::quadtree::Place;
+use super::super::rim::{Rim, bits};
+use super::super::surface::{Spot, Surface};
+use super::super::walk::{Knot, Node, Visitor};
+use super::fraction;
+use crate::emit::{Diagonal, closure};
+use crate::mesh::NONE;
+use crate::patch::{LimitPoint, Rules};
+use crate::refine::exact_result::Origin;
+
+/// A run of vertices to be written: the first's number, then positions, normals, origins.
+pub(super) struct Vertices<'a> {
+    pub(super) first: u32,
+    pub(super) positions: &'a mut [[f64; 3]],
+    pub(super) normals: &'a mut [[f64; 3]],
+    pub(super) origins: &'a mut [Origin],
+}
+
+impl<'a> Vertices<'a> {
+    /// Takes the first `count` off.
+    pub(super) fn take(&mut self, count: usize) -> Vertices<'a> {
+        let originating = count.min(self.origins.len());
+        let (positions, normals, origins) = (
+            split_off(&mut self.positions, count),
+            split_off(&mut self.normals, count),
+            split_off(&mut self.origins, originating),
+        );
+        let first = self.first;
+        self.first += count as u32;
+        Vertices { first, positions, normals, origins }
+    }
+
+    pub(super) fn set(&mut self, vertex: u32, point: LimitPoint, origin: Origin) {
+        let at = (vertex - self.first) as usize;
+        self.positions[at] = point.position.to_array();
+        self.normals[at] = point.normal.to_array();
+        if let Some(slot) = self.origins.get_mut(at) {
+            *slot = origin;
+        }
+    }
+}
+
+pub(super) fn split_off<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    let (head, tail) = core::mem::take(slice).split_at_mut(count);
+    *slice = tail;
+    head
+}
+
+/// Writes the leaves of control faces.
+pub(super) struct Writer<'a> {
+    pub(super) rules: &'a Rules<'a>,
+    pub(super) face: u32,
+    /// Those of the face that have not come yet.
+    pub(super) diagonals: &'a [bool],
+    /// Conditions of the face that have not come yet: those of its division, and those of its closing.
+    pub(super) conditions: [&'a [Condition]; 2],
+    pub(super) found: Vec<(Condition, u32, u32)>,
+    pub(super) next_triangle: u32,
+    pub(super) inside: Vertices<'a>,
+    pub(super) first_triangle: u32,
+    pub(super) triangles: &'a mut [[u32; 3]],
+    pub(super) twins: &'a mut [u32],
+    pub(super) rim: Rim,
+    /// By column, the half-edge that waits for the row above.
+    pub(super) below: Vec<u32>,
+    pub(super) places: Vec<f64>,
+}
+
+impl Visitor for Writer<'_> {
+    fn chain(&mut self, knots: &[Knot], edge: usize, spot: Spot, middle: &Surface<'_>) {
+        let last = knots.len() - 1;
+        if last < 2 {
+            return;
+        }
+        let mut places = core::mem::take(&mut self.places);
+        places.clear();
+        // The middle child's edge runs the other way.
+        places.extend(knots[1..last].iter().rev().map(|knot| 1.0 - fraction(knot.at)));
+        middle.along(self.rules, edge, &places, &mut |i, point| {
+            let origin = self.origin(spot.along(edge, places[i]));
+            self.inside.set(knots[last - 1 - i].vertex, point, origin);
+        });
+        self.places = places;
+    }
+
+    fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+        self.interior(node);
+        self.rim.set(node, knots);
+        self.cover(node, knots);
+    }
+}
+
+impl Writer<'_> {
+    fn origin(&self, [u, v]: [f64; 2]) -> Origin {
+        Origin { face: self.face, barycentric: [1.0 - u - v, u, v] }
+    }
+
+    /// The vertices inside a node, row by row.
+    fn interior(&mut self, node: &Node<'_>) {
+        let n = 1usize << node.depth;
+        let Surface::Regular(ground, spot) = node.surface else { return };
+        let mut at = (node.interior - self.inside.first) as usize;
+        let (step, own) = (spot.size / n as f64, node.spot);
+        for j in 1..n.max(2) - 1 {
+            let count = n - 1 - j;
+            let row = at..at + count;
+            ground.piece.points_and_normals_along(
+                spot.v + step * j as f64,
+                spot.u + step,
+                step,
+                &mut self.inside.positions[row.clone()],
+                &mut self.inside.normals[row],
+            );
+            if !self.inside.origins.is_empty() {
+                for i in 1..=count {
+                    let leaf = own.leaf(node.depth, i, j);
+                    self.inside.origins[at + i - 1] = self.origin([leaf.u, leaf.v]);
+                }
+            }
+            at += count;
+        }
+    }
+
+    /// The vertex at a corner of the leaves.
+    fn vertex(&self, node: &Node<'_>, knots: &[Knot], i: usize, j: usize) -> u32 {
+        let n = 1usize << node.depth;
+        if j == 0 {
+            knots[self.rim.corner(0, i)].vertex
+        } else if i == 0 {
+            knots[self.rim.corner(2, n - j)].vertex
+        } else if i + j == n {
+            knots[self.rim.corner(1, j)].vertex
+        } else {
+            node.interior + ((j - 1) * (n - 1) - (j - 1) * j / 2 + i - 1) as u32
+        }
+    }
+
+    /// The triangles of all leaves below a node, row by row: each leaf that stands upright is followed by the one to its right
+    /// that stands on its head.
+    fn cover(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+        let n = 1usize << node.depth;
+        self.below.clear();
+        self.below.resize(n, NONE);
+        for j in 0..n {
+            let mut left = NONE;
+            for i in 0..n - j {
+                let corners = [(i, j), (i + 1, j), (i, j + 1)].map(|(i, j)| self.vertex(node, knots, i, j));
+                let right = self.upright(node, knots, (i, j), corners, left);
+                if i + j + 1 < n {
+                    let far = self.vertex(node, knots, i + 1, j + 1);
+                    let first = self.push([corners[1], far, corners[2]]);
+                    self.pair(first + 2, right);
+                    left = first;
+                    self.below[i] = first + 1;
+                }
+            }
+        }
+    }
+
+    /// The triangles of an upright leaf, whose left edge has the given half-edge beyond it. Gives the half-edge along its
+    /// edge to the right.
+    fn upright(
+        &mut self,
+        node: &Node<'_>,
+        knots: &mut [Knot],
+        (i, j): (usize, usize),
+        [a, b, c]: [u32; 3],
+        left: u32,
+    ) -> u32 {
+        let n = 1usize << node.depth;
+        let on_side = [j == 0, i + j + 1 == n, i == 0];
+        let split = if on_side == [false; 3] { [None; 3] } else { self.rim.split(n, i, j) };
+        let bits = bits(&split);
+        let mut diagonal = Diagonal::FromStart;
+        if bits.count_ones() == 2
+            && let [from_end, rest @ ..] = self.diagonals
+        {
+            self.diagonals = rest;
+            diagonal = if *from_end { Diagonal::FromEnd } else { Diagonal::FromStart };
+        }
+        let pattern = closure(bits, diagonal);
+        let [d, e, f] = split.map(|knot| knot.map_or(NONE, |knot| knots[knot].vertex));
+        let labels = [a, b, c, d, e, f];
+        let first = 3 * self.next_triangle;
+        for triangle in pattern.triangles() {
+            self.push(triangle.map(|label| labels[label as usize]));
+        }
+        for h in 0..3 * pattern.triangles().len() {
+            if let Some(twin) = pattern.twin(h) {
+                self.twins[(first + h as u32 - 3 * self.first_triangle) as usize] = first + twin as u32;
+            }
+        }
+        if node.is_conditional || !self.conditions[1].is_empty() {
+            let closing = node.is_unjudged || bits != 0;
+            self.condition(node.place.leaf(node.depth, (i, j), false), usize::from(closing), first / 3);
+        }
+        let place = [i, j, n - 1 - j];
+        for edge in 0..3 {
+            let border = pattern.border(edge).map(|h| first + h as u32);
+            if on_side[edge] {
+                let [start, end] = [0, 1].map(|step| self.rim.corner(edge, place[edge] + step));
+                match split[edge] {
+                    None => self.meet(knots, start.min(end), border[0]),
+                    Some(middle) => {
+                        self.meet(knots, start.min(middle), border[0]);
+                        self.meet(knots, middle.min(end), border[1]);
+                    }
+                }
+            } else if edge == 0 {
+                self.pair(border[0], self.below[i]);
+            } else if edge == 2 {
+                self.pair(border[0], left);
+            }
+        }
+        first + pattern.border(1)[0] as u32
+    }
+
+    /// Keeps the condition of a leaf, if it has one in the list.
+    fn condition(&mut self, place: Place, list: usize, first: u32) {
+        let conditions = self.conditions[list];
+        if let Some(at) = conditions.iter().position(|condition| condition.place == place) {
+            self.found.push((conditions[at], first, self.next_triangle));
+            self.conditions[list] = &conditions[at + 1..];
+        }
+    }
+
+    /// Adds a triangle; gives its first half-edge.
+    #[inline]
+    fn push(&mut self, triangle: [u32; 3]) -> u32 {
+        self.triangles[(self.next_triangle - self.first_triangle) as usize] = triangle;
+        self.next_triangle += 1;
+        3 * (self.next_triangle - 1)
+    }
+
+    #[inline]
+    fn pair(&mut self, a: u32, b: u32) {
+        let first = 3 * self.first_triangle;
+        self.twins[(a - first) as usize] = b;
+        self.twins[(b - first) as usize] = a;
+    }
+
+    /// A half-edge along a stretch of a chain: the twin of the one that was there before, if there was.
+    #[inline]
+    fn meet(&mut self, knots: &mut [Knot], stretch: usize, half_edge: u32) {
+        let other = knots[stretch].half_edge;
+        if other == NONE {
+            knots[stretch].half_edge = half_edge;
+        } else {
+            self.pair(half_edge, other);
+        }
+    }
+}
