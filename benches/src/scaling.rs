@@ -11,7 +11,7 @@ use limitmesh::scheme::Loop;
 use crate::clock::one_thread;
 
 /// The tolerance, as a part of the diagonal.
-const TOLERANCE: f64 = 0.02;
+const TOLERANCE: f64 = 0.01;
 
 const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 
