@@ -43,6 +43,12 @@ const WIDE: f64 = 1.2;
 /// Control faces that are looked at together for tighter bounds at first, then twice as many each time.
 const TIGHTENED: usize = 64;
 
+/// The share of the triangles (one in so many) that are looked at again where the tolerance is met.
+const MET_SHARE: usize = 64;
+
+/// How many of them may be in any case.
+const MET_AT_LEAST: usize = 200;
+
 /// How often that is done where no tolerance is met.
 const MOST_TIGHTENINGS: usize = 6;
 
@@ -81,7 +87,9 @@ pub(super) fn probe(
     // What failed for sure has no bound yet.
     let unbounded = worst.iter().filter(|(bound, _)| bound.is_infinite()).map(|(_, place)| place.face);
     again(f64::MAX, &unbounded.collect::<Vec<u32>>(), &mut worst);
+    // A tolerance that is met is proven already: what else there is to know must not take longer than to meet it.
     let rounds = if is_met { 1 } else { MOST_TIGHTENINGS };
+    let room = if is_met { emission.triangles.len() / MET_SHARE + MET_AT_LEAST } else { usize::MAX };
     for round in 0.. {
         let mut order: Vec<(f64, Place)> = worst.clone();
         sort(&mut order);
@@ -92,9 +100,16 @@ pub(super) fn probe(
         }
         // Bounds that are good enough for the goals need not be tight.
         let loose = order.iter().take_while(|&&(bound, _)| bound > best.lower).map(|(_, place)| place.face);
+        let loose =
+            loose.filter(|&face| WIDE * tightened[face as usize] < best.lower).take(TIGHTENED << round);
+        let mut left = room;
         let loose: Vec<u32> = loose
-            .filter(|&face| WIDE * tightened[face as usize] < best.lower)
-            .take(TIGHTENED << round)
+            .take_while(|&face| {
+                let count = emission.triangles_of(face).len();
+                let fits = count <= left;
+                left = left.saturating_sub(count);
+                fits
+            })
             .collect();
         if loose.is_empty() {
             break;
