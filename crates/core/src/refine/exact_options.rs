@@ -19,7 +19,7 @@ pub struct ExactOptions<'a> {
     /// Greatest angle between a triangle's normal and the limit normals of its corners (the paper's equation 2), in
     /// radians. Control faces are not divided for its sake once triangles are 1/1024 of them and the angle (in radians)
     /// smaller: where it is not met by then, at cusps and where the surface is not regular, it cannot be, and
-    /// [`Exact::open_cones`] says so. Default: none.
+    /// [`Exact::open_cones`](super::Exact::open_cones) says so. Default: none.
     pub angle: Option<f64>,
     /// Makes the angle depend on where the viewer stands, as in the paper's equation 11, but never smaller than
     /// [`Self::angle`], so that silhouettes come to an end and a viewer asks for no more than none: what looks away is not

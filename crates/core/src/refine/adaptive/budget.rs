@@ -143,7 +143,8 @@ fn filled(
 pub(super) fn even(engine: &Engine<'_>, most: usize) -> Result<Option<Plan>, RefineError> {
     let faces = engine.control.mesh.face_count();
     let levels = levels(engine, most);
-    if most >= EXACT || levels == 0 {
+    // With twice the triangles the worst places come first in any case.
+    if most >= EXACT || levels == 0 || most / 2 > faces << (2 * levels) {
         return Ok(None);
     }
     let Some(even) = engine.plan(Goal::Even(levels, vec![false; faces]), most)? else { return Ok(None) };
