@@ -20,7 +20,7 @@ pub(crate) use deviation::Deviation;
 pub(crate) use dihedral::{STEEP, around};
 pub(crate) use quartic_cell::{Cell, QuarticJet};
 pub(crate) use sub_triangle::SubTriangle;
-pub(crate) use triangle_frame::TriangleFrame;
+pub(crate) use triangle_frame::{TriangleFrame, least_slope};
 
 /// Whether a value is not known to be within a limit: also where either is not a number.
 #[inline]

@@ -43,6 +43,13 @@ pub(crate) struct Beside {
     pub(crate) along: f64,
 }
 
+/// [`TriangleFrame::least_slope`] of a triangle of which nothing else is asked.
+pub(crate) fn least_slope([a, b, c]: [DVec3; 3]) -> f64 {
+    let edges = [b - a, c - b, a - c];
+    let product = |corner: usize| -edges[corner].dot(edges[(corner + 2) % 3]);
+    edges[0].cross(edges[1]).length() / product(0).max(product(1)).max(product(2))
+}
+
 impl TriangleFrame {
     /// Distances below this part of the coordinates' size are what rounding leaves of zero where points coincide.
     pub(crate) const ROUNDING: f64 = 5e-14;

@@ -87,6 +87,14 @@ impl BezierTriangle {
         }
     }
 
+    /// The points of the piece in the middles of its edges.
+    pub(crate) fn middles(&self) -> [DVec3; 3] {
+        EDGES.map(|[a, b, c, d, e]| {
+            let [a, b, c, d, e] = [self.0[a], self.0[b], self.0[c], self.0[d], self.0[e]];
+            ((a + e) + 4.0 * (b + d) + 6.0 * c) / 16.0
+        })
+    }
+
     /// The corners.
     pub(crate) fn corners(&self) -> [DVec3; 3] {
         [self.0[0], self.0[4], self.0[14]]

@@ -21,7 +21,7 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::large_rings::LargeRings;
 use crate::patch::{LimitPoint, Patch, RefinedPatch, Rules, root_patch};
 use crate::refine::RefineError;
-use crate::vector::vector;
+use crate::vector::{DVec3, vector};
 use even_parts::{AtOnce, MOST_TESTED};
 
 /// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
@@ -319,7 +319,7 @@ impl<'a> Decider<'a> {
         let (open, place) = (self.control.open(face), Place::root(face));
         let word = if let Patch::Regular(points) = &patch {
             let net = BezierTriangle::of(points);
-            let middles = Ground::of(&net).at([0, 1, 2].map(|edge| Spot::WHOLE.along(edge, 0.5)));
+            let middles = net.middles().map(|position| LimitPoint { position, normal: DVec3::ZERO });
             self.allowance = allowance.unwrap_or_else(|| self.guess(face, &corners, &middles));
             self.regular(&net, corners, open, place)
         } else {
@@ -354,7 +354,10 @@ impl<'a> Decider<'a> {
 
     /// What triangles of a face count on at first.
     fn guess(&self, face: u32, corners: &[LimitPoint; 3], middles: &[LimitPoint; 3]) -> Allowance {
-        let beside = beside(self.control, self.edges, face).map(|face| self.control.corners(face));
+        let beside = beside(self.control, self.edges, face).map(|face| {
+            self.control.mesh.triangles()[face as usize]
+                .map(|vertex| vector(self.control.positions[vertex as usize]))
+        });
         self.judge.guess(corners, middles, beside)
     }
 

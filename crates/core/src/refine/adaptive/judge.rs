@@ -11,7 +11,7 @@ use super::quadtree::Place;
 use super::surface::{Ground, Spot};
 use super::trial::Trial;
 use crate::certificate::{
-    Cell, Deviation, Effort, NetPart, Pieces, RowTarget, SubTriangle, TriangleFrame, exceeds,
+    Cell, Deviation, Effort, NetPart, Pieces, RowTarget, SubTriangle, TriangleFrame, exceeds, least_slope,
 };
 use crate::criterion::Criteria;
 use crate::patch::bezier_triangle::BezierTriangle;
@@ -392,7 +392,7 @@ impl Judge<'_> {
         &self,
         corners: &[LimitPoint; 3],
         points: &[LimitPoint],
-        beside: impl Iterator<Item = [LimitPoint; 3]>,
+        beside: impl Iterator<Item = [DVec3; 3]>,
     ) -> Allowance {
         if self.criteria.is_some() {
             return Allowance::NOTHING;
@@ -400,7 +400,7 @@ impl Judge<'_> {
         let seen = Seen::of(corners, 0);
         let height = seen.highest(points);
         let levels = if height > self.limit { (self.limit / height).sqrt() } else { 1.0 };
-        let slopes = beside.map(|corners| Seen::of(&corners, 0).frame.least_slope());
+        let slopes = beside.map(least_slope);
         let slope = slopes.fold(seen.frame.least_slope(), f64::min);
         Allowance { tilt: (GENEROUS * seen.tilt * levels).max(LEAST_TILT), slope: SLOPE_LEFT * slope }
     }

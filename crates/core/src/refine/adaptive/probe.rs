@@ -22,6 +22,10 @@ use crate::vector::{DVec3, vector};
 /// Leaves with the greatest bounds that are looked at for a lower bound.
 const PROBED: usize = 64;
 
+/// Leaves that are looked at however many control faces there are, and the boxes of control faces that may be looked at for others.
+const FEWEST_PROBED: usize = 8;
+const MOST_BOXES: usize = 2_000_000;
+
 /// Levels below a leaf whose vertices are sampled: the greatest distance is met within some per cent.
 const SAMPLED_LEVELS: usize = 3;
 
@@ -140,7 +144,8 @@ fn lower(
     best: &mut ErrorBounds,
 ) {
     let most = order.first().map_or(0.0, |&(promise, _)| promise);
-    for &(promise, place) in order.iter().take(PROBED) {
+    let most_probed = PROBED.min(FEWEST_PROBED + MOST_BOXES / mesh.boxes.len().max(1));
+    for &(promise, place) in order.iter().take(most_probed) {
         if promise <= best.lower || best.lower > NARROW * most {
             break;
         }
