@@ -5,7 +5,9 @@
 
 use limitmesh::Mesh;
 use limitmesh::criterion::{Camera, View, Viewpoint};
-use limitmesh::measure::{CertifiedOptions, certified_hausdorff};
+use limitmesh::measure::{
+    CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff, limit_reference,
+};
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
 use limitmesh::scheme::Loop;
 
@@ -64,4 +66,27 @@ fn bounds_are_near_the_truth_where_no_distance_was_asked_for() {
     }
     // But some are.
     assert!(told >= 3, "{told}");
+}
+
+/// Where levels end the division what is left undivided is bounded all the same: samples never find more than the upper bound, but
+/// for how far the mesh that stands for the limit surface is from it.
+#[test]
+fn bounds_hold_where_levels_end_the_division() {
+    for name in ["torus", "sphere", "cup", "bunny", "spike", "bumpy", "head", "cube", "tetrahedron"] {
+        let control = model(name);
+        let reference = limit_reference(&control, &Loop, 6).unwrap();
+        for levels in [0, 1, 2] {
+            let options = ExactOptions::default().tolerance(1e-6 * control.diagonal()).max_levels(levels);
+            let result = exact(&control, &Loop, &options).unwrap();
+            assert_eq!(result.stop, ExactStop::LevelCap, "{name}");
+            let samples = SamplingOptions::default().samples(40_000);
+            let found = hausdorff(result.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+            let found = found.symmetric();
+            assert!(
+                found <= 1.01 * result.error.upper,
+                "{name}, {levels} levels: {found} above {:?}",
+                result.error
+            );
+        }
+    }
 }

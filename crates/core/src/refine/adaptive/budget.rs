@@ -24,7 +24,8 @@ const NEAR: f64 = 1e-3;
 
 /// What fails so many times over is as bad as any.
 const COARSEST: f64 = 1e12;
-/// What is found is at most so many times the least distance that fits.
+
+/// What is found is at most so many times a distance that is known not to fit.
 const PROMISED: f64 = 1.1;
 
 /// Plans that are made to spend what is left.

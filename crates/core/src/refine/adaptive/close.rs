@@ -127,7 +127,7 @@ pub(super) fn close(
             closer.judge(surface, 0, &mut leaves);
         });
     }
-    closed.take(&leaves);
+    closed.take(&leaves, max_levels);
     if is_kept {
         closed.verdicts = leaves;
     }
@@ -149,7 +149,7 @@ fn recall(known: &Verdicts, leaves: &mut Verdicts) {
 
 impl Closed {
     /// Keeps what was said of leaves.
-    fn take(&mut self, leaves: &Verdicts) {
+    fn take(&mut self, leaves: &Verdicts, max_levels: u32) {
         let mut extent = Extent::NONE;
         for leaf in leaves {
             let Some((verdict, from_end)) = leaf.verdict else { continue };
@@ -161,7 +161,9 @@ impl Closed {
             match verdict.outcome {
                 Outcome::Passes => {}
                 Outcome::Fails => self.failing.push(place),
-                Outcome::Depends { .. } if leaf.is_strict => self.failing.push(place),
+                Outcome::Depends { .. } if leaf.is_strict && place.level < max_levels => {
+                    self.failing.push(place)
+                }
                 Outcome::Depends { deviation, tilt, slope } => {
                     self.conditions.push(Condition { place, deviation, tilt, slope });
                 }

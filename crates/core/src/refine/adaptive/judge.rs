@@ -159,7 +159,8 @@ pub(super) enum Outcome {
     Passes,
     /// To be divided.
     Fails,
-    /// Good enough if this deviation, with the neighbours as they are emitted, comes to no more than the greatest distance.
+    /// Good enough if this deviation, with the neighbours as they are emitted, comes to no more than the greatest distance; or
+    /// not to be divided in any case, and what it comes to is known then.
     Depends {
         /// How far the triangle is from its part of the surface.
         deviation: Deviation,
@@ -253,7 +254,7 @@ impl Judge<'_> {
             let is_less = by_derivatives.bound(chord, slope) <= by_net.bound(chord, slope);
             return self.decided(&seen, if is_less { by_derivatives } else { by_net }, allowance);
         }
-        if exceeds(low, self.limit) {
+        if exceeds(low, self.limit) && !self.is_kept(&seen) {
             return Verdict { outcome: Outcome::Fails, extent: Extent { bound: low, ..seen.extent() } };
         }
         let beside = ground.jet.beside(cell, &seen.frame, open);
@@ -305,7 +306,7 @@ impl Judge<'_> {
         }
         let seen = Seen::of(corners, level);
         let (deviation, attained) = NetPart::own(net, SubTriangle::Whole).at_a_glance(&seen.frame, open);
-        if exceeds(attained, self.limit) {
+        if exceeds(attained, self.limit) && !self.is_kept(&seen) {
             let extent = Extent { bound: attained, ..seen.extent() };
             return Some(Verdict { outcome: Outcome::Fails, extent });
         }
@@ -333,11 +334,16 @@ impl Judge<'_> {
         self.decided(seen, deviation, allowance)
     }
 
+    /// Whether a triangle stays whatever it comes to, so that it takes a bound that holds among its neighbours.
+    fn is_kept(&self, seen: &Seen) -> bool {
+        self.is_lenient || seen.level >= self.max_levels
+    }
+
     /// What is done for a bound.
     fn effort(&self, seen: &Seen, open: [bool; 3]) -> Effort {
         let (chord, slope) = seen.expected();
         // What will be divided needs no bound.
-        let gives_up = !self.is_lenient && seen.level < self.max_levels;
+        let gives_up = !self.is_kept(seen);
         let halvings = if self.is_lenient { LENIENT_HALVINGS } else { HALVINGS };
         Effort { target: self.limit, halvings, open, chord, slope, gives_up }
     }
@@ -371,7 +377,7 @@ impl Judge<'_> {
         let is_near_miss = seen.level >= DEEP && chord < NEARLY_FLAT && bound <= NEAR_MISS * self.limit;
         let (chord, slope) = seen.expected();
         let bound = deviation.bound(chord, slope);
-        if self.is_lenient || !is_near_miss && bound <= self.limit {
+        if self.is_kept(seen) || !is_near_miss && bound <= self.limit {
             // What it comes to is known when its neighbours are.
             let Extent { tilt, slope, .. } = seen.extent();
             return verdict(Outcome::Depends { deviation, tilt, slope }, 0.0, 0.0);

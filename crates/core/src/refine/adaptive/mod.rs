@@ -62,7 +62,8 @@ const BLOCK: usize = 256;
 /// Triangles that splitting a leaf adds, closing included, on the average.
 const ADDED: usize = 6;
 
-/// Under a budget, the part that is kept for leaves whose conditions do not hold (one in so many) where that was too little.
+/// Under a budget with angles or pixels, the part that is kept for leaves that fail among their neighbours (one in so many) where
+/// that was too little.
 const RESERVE: usize = 100;
 
 /// Refines until the goals are met, or as far as the caps allow.
@@ -88,7 +89,8 @@ pub(super) fn adaptive(
     })
 }
 
-/// The triangles that goals so many times as coarse take, but for those of leaves that turn out to fail among their neighbours.
+/// The triangles that goals so many times as coarse take; with angles or pixels but for those of leaves that turn out to fail among
+/// their neighbours.
 pub(super) fn count(
     mesh: &Mesh,
     scheme: &dyn Scheme,
