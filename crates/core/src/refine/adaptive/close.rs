@@ -152,8 +152,12 @@ impl Closed {
     fn take(&mut self, leaves: &Verdicts, max_levels: u32) {
         let mut extent = Extent::NONE;
         for leaf in leaves {
-            let Some((verdict, from_end)) = leaf.verdict else { continue };
             let place = leaf.place;
+            let Some((verdict, from_end)) = leaf.verdict else {
+                // What nobody has judged is beyond every bound.
+                extent.add(&Extent { bound: f64::INFINITY, worst: Some(place), ..Extent::NONE });
+                continue;
+            };
             if leaf.split.iter().filter(|&&is_split| is_split).count() == 2 {
                 self.diagonals.push(from_end);
             }

@@ -285,6 +285,7 @@ fn write(
                 walk.node(trees.root(face), at, sides, surface, &mut writer);
             });
         }
+        writer.end();
         let after = writer.next_triangle - job.first_triangle;
         job.parents[before as usize..after as usize].fill(face);
         for side in sides {

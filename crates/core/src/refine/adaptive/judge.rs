@@ -181,6 +181,11 @@ pub(super) struct Condition {
 }
 
 impl Condition {
+    /// That of a leaf of which nothing is known any more: it never holds.
+    pub(super) fn unknown(place: Place) -> Self {
+        Self { place, deviation: Deviation::alone(f64::INFINITY), tilt: ANY_TILT, slope: 0.0 }
+    }
+
     /// What it comes to beside triangles of these tilts and angles at most.
     pub(super) fn bound(&self, around: &Allowance) -> f64 {
         let slope = (DRIFT_SHARE * self.slope).min(around.slope);

@@ -356,8 +356,12 @@ impl Engine<'_> {
             });
             for (&face, found) in dirty.iter().zip(found.into_iter().flatten()) {
                 plan.closed[face as usize] = found;
-                plan.settled[face as usize] = None;
                 plan.is_touched[face as usize] = true;
+                // Conditions count on the triangles beside, which may have been closed in another way.
+                plan.settled[face as usize] = None;
+                for twin in (3 * face..3 * face + 3).filter_map(|h| self.edges.twin(h)) {
+                    plan.settled[twin as usize / 3] = None;
+                }
             }
             plan.chains = chains;
             plan.triangles = plan.closed.iter().map(|face| face.triangles as usize).sum();

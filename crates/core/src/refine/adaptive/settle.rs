@@ -171,3 +171,112 @@ pub(super) fn beside(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -
     });
     around(emission.triangles[triangle as usize].map(at), &opposite)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::quadtree::{CONDITIONAL, LEAF, Piece};
+    use super::super::with_engine;
+    use super::*;
+    use crate::certificate::Deviation;
+    use crate::mesh::Mesh;
+    use crate::models;
+    use crate::refine::ExactOptions;
+    use crate::scheme::Loop;
+
+    /// Points on a model's, each off by up to a share of the diagonal.
+    fn stirred(name: &str, seed: u64) -> Mesh {
+        let soup = models::find(name).unwrap().soup();
+        let mesh = Mesh::from_soup(&soup, &Default::default()).unwrap().0;
+        let mut state = seed;
+        let size = [0.0, 0.01, 0.05, 0.2][seed as usize % 4] * mesh.diagonal();
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            size * ((state >> 11) as f64 / (1u64 << 52) as f64 - 1.0)
+        };
+        let positions = mesh.positions().iter().map(|p| p.map(|x| x + next())).collect();
+        mesh.with_positions(positions).unwrap()
+    }
+
+    /// Runs on the plans of some stirred models.
+    fn with_plans(models: &[(&str, u64)], mut run: impl FnMut(&Engine<'_>, Plan, &str)) {
+        for &(name, seed) in models {
+            let mesh = stirred(name, seed);
+            let tolerance = 10f64.powf(-0.5 - 0.13 * (seed % 20) as f64) * mesh.diagonal();
+            with_engine(&mesh, &Loop, &ExactOptions::default().tolerance(tolerance), |engine| {
+                let plan = engine.plan(Goal::Within(tolerance), usize::MAX)?.unwrap();
+                run(engine, plan, &format!("{name}, seed {seed}"));
+                Ok(())
+            })
+            .unwrap();
+        }
+    }
+
+    type Settled = Vec<Option<(f64, Place)>>;
+
+    /// What fails, and what is found of each face, where nothing is known.
+    fn looked_at(engine: &Engine<'_>, plan: &Plan) -> (Vec<(Place, f64)>, Settled) {
+        let mut settled = vec![None; plan.settled.len()];
+        let emission = engine.emit_all(plan).unwrap();
+        (failing(&emission, &plan.goal, &mut settled), settled)
+    }
+
+    /// What is known of conditions is what they come to in the end: divisions change the triangles beside closing ones too,
+    /// in faces that are not beside the divided one.
+    #[test]
+    fn what_is_settled_holds_among_the_triangles_that_are_emitted() {
+        let models = [
+            ("icosphere", 219),
+            ("icosphere", 378),
+            ("torus", 19),
+            ("torus", 115),
+            ("sheet", 218),
+            ("bumpy", 94),
+            ("spike", 39),
+            ("spike", 294),
+            ("head", 258),
+        ];
+        let mut counted = 0;
+        with_plans(&models, |engine, plan, name| {
+            let (failing, found) = looked_at(engine, &plan);
+            assert!(failing.is_empty(), "{name}: {failing:?}");
+            for (found, known) in found.into_iter().zip(&plan.settled) {
+                let [found, known] = [found, *known].map(|known| known.map_or(0.0, |(bound, _)| bound));
+                assert!(found <= known, "{name}: {found} is settled as {known}");
+                counted += usize::from(found > 0.0);
+            }
+        });
+        assert!(counted > 100, "{counted}");
+    }
+
+    /// A leaf that was marked for its condition but has none, and a condition whose leaf does not come, are not settled.
+    #[test]
+    fn conditions_do_not_get_lost() {
+        let mut counted = 0;
+        with_plans(
+            &[("icosphere", 0), ("sheet", 4), ("spike", 8), ("head", 12)],
+            |engine, mut plan, name| {
+                let place = Place { face: 0, level: 20, path: 3 };
+                let condition = Condition { place, deviation: Deviation::alone(0.0), tilt: 0.0, slope: 1.0 };
+                plan.closed[0].conditions.insert(0, condition);
+                let mut lost = vec![0];
+                let is_whole = |face: &usize| {
+                    plan.closed[*face].triangles == 1 && plan.decision.conditions(*face as u32).is_empty()
+                };
+                if let Some(face) = (1..plan.closed.len()).find(is_whole) {
+                    let marked = Piece { roots: vec![LEAF | CONDITIONAL], words: Vec::new() };
+                    assert!(plan.decision.trees.replace(face as u32, &marked));
+                    lost.push(face);
+                    counted += 1;
+                }
+                let (failing, found) = looked_at(engine, &plan);
+                for face in lost {
+                    assert_eq!(found[face], None, "{name}");
+                    let is_told =
+                        |&(place, bound): &(Place, f64)| place.face == face as u32 && bound == f64::INFINITY;
+                    assert!(failing.iter().any(is_told), "{name}: {failing:?}");
+                }
+            },
+        );
+        assert!(counted > 0);
+    }
+}

@@ -50,13 +50,18 @@ pub(super) fn split_off<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut
     head
 }
 
+/// The lists of conditions.
+const DIVISION: usize = 0;
+const CLOSING: usize = 1;
+
 /// Writes the leaves of control faces.
 pub(super) struct Writer<'a> {
     pub(super) rules: &'a Rules<'a>,
     pub(super) face: u32,
     /// Those of the face that have not come yet.
     pub(super) diagonals: &'a [bool],
-    /// Conditions of the face that have not come yet: those of its division, and those of its closing.
+    /// Conditions of the face that have not come yet: those of its division, some of whose leaves were divided since, and
+    /// those of its closing, whose leaves all come.
     pub(super) conditions: [&'a [Condition]; 2],
     pub(super) found: Vec<(Condition, u32, u32)>,
     pub(super) next_triangle: u32,
@@ -196,7 +201,8 @@ impl Writer<'_> {
         }
         if node.is_conditional || !self.conditions[1].is_empty() {
             let closing = node.is_unjudged || bits != 0;
-            self.condition(node.place.leaf(node.depth, (i, j), false), usize::from(closing), first / 3);
+            let place = node.place.leaf(node.depth, (i, j), false);
+            self.condition((place, node.is_conditional), usize::from(closing), first / 3);
         }
         let place = [i, j, n - 1 - j];
         for edge in 0..3 {
@@ -219,13 +225,30 @@ impl Writer<'_> {
         first + pattern.border(1)[0] as u32
     }
 
-    /// Keeps the condition of a leaf, if it has one in the list.
-    fn condition(&mut self, place: Place, list: usize, first: u32) {
+    /// Keeps the condition of a leaf, if it has one in the list; leaves that were marked for theirs and closings that are
+    /// passed over must not get lost, so they count as beyond every bound.
+    fn condition(&mut self, (place, is_marked): (Place, bool), list: usize, first: u32) {
         let conditions = self.conditions[list];
         if let Some(at) = conditions.iter().position(|condition| condition.place == place) {
             self.found.push((conditions[at], first, self.next_triangle));
             self.conditions[list] = &conditions[at + 1..];
+            if list == CLOSING {
+                self.lose(&conditions[..at]);
+            }
+        } else if list == DIVISION && is_marked {
+            self.found.push((Condition::unknown(place), first, self.next_triangle));
         }
+    }
+
+    /// Ends a face.
+    pub(super) fn end(&mut self) {
+        let conditions = core::mem::take(&mut self.conditions[CLOSING]);
+        self.lose(conditions);
+    }
+
+    fn lose(&mut self, conditions: &[Condition]) {
+        let at = self.next_triangle;
+        self.found.extend(conditions.iter().map(|condition| (Condition::unknown(condition.place), at, at)));
     }
 
     /// Adds a triangle; gives its first half-edge.
