@@ -27,10 +27,12 @@ use super::triangle_frame::TriangleFrame;
 use crate::patch::Quartic;
 use crate::vector::DVec3;
 
-/// Bounds Σ λₐλ_b|λ_b − λₐ|/12 over the triangle: 0.1177/12, found on a grid with a margin for what lies between.
+/// Bounds Σ λₐλ_b|λ_b − λₐ|/12 over the triangle, which is 0.1176/12 at most: a polynomial wherever the coordinates are in
+/// order, whose Bernstein coefficients over small parts are less (`the_cubic_constant_holds`).
 pub(super) const CUBIC: f64 = 0.00985;
 
-/// Bounds |r| where the six fourth derivatives along pairs of edges are at most 1: 0.00505, found likewise.
+/// Bounds |r| where the six fourth derivatives along pairs of edges are at most 1: linear in the fourth derivatives, it is
+/// greatest at a vertex of that polytope, 0.00505 by Bernstein coefficients over small parts (`the_quartic_constant_holds`).
 pub(super) const QUARTIC: f64 = 0.0052;
 
 /// The greatest of |x³ − x/4|/6 for |x| ≤ 1/2, √3/216, rounded up.

@@ -1,4 +1,4 @@
-//! Bounds of parts of regular pieces against dense samples, and the two constants against grids.
+//! Bounds of parts of regular pieces against dense samples, and proofs of the two constants.
 
 use super::*;
 use crate::patch::bezier_triangle::BezierTriangle;
@@ -144,21 +144,46 @@ fn triangles_off_the_surface_are_bounded() {
     assert!(counted > 1700 && tight * 10 > counted * 9, "{tight} of {counted}");
 }
 
-/// The cubic part's constant: the sum is Lipschitz in each coordinate with constant 2, so a grid misses little.
+/// The coefficients in Bernstein's basis of a polynomial of fourth degree at most, by its values: no more than rounding is lost.
+fn net(value: impl Fn([f64; 3]) -> f64) -> [f64; 15] {
+    let places: Vec<[f64; 3]> = grid(4).collect();
+    let factorial = |n: f64| (1..=n as u32).map(f64::from).product::<f64>();
+    let basis = |[a, b, c]: [f64; 3], [i, j, k]: [f64; 3]| {
+        let [i, j, k] = [i, j, k].map(|x| (4.0 * x).round());
+        24.0 / (factorial(i) * factorial(j) * factorial(k)) * a.powf(i) * b.powf(j) * c.powf(k)
+    };
+    let matrix = nalgebra::SMatrix::<f64, 15, 15>::from_fn(|row, of| basis(places[row], places[of]));
+    let values = nalgebra::SVector::<f64, 15>::from_fn(|row, _| value(places[row]));
+    let found = matrix.lu().solve(&values).unwrap();
+    core::array::from_fn(|of| found[of])
+}
+
+/// Divisions of nets, whose coefficients bound polynomials: they are within some thousandths of them then.
+const DIVISIONS: u32 = 5;
+
+/// What rounding may do to the sizes of coefficients here.
+const SLACK: f64 = 1e-9;
+
+/// The cubic part's constant: where the coordinates are in order the sum is a polynomial, and it is the same in any order, so one
+/// sixth of the triangle tells all.
 #[test]
 fn the_cubic_constant_holds() {
-    let n = 4000;
     let sum = |[a, b, c]: [f64; 3]| {
         [(a, b), (b, c), (c, a)].into_iter().map(|(x, y)| x * y * f64::abs(y - x)).sum::<f64>() / 12.0
     };
-    let greatest = grid(n).map(sum).fold(0.0, f64::max);
-    // Derivatives of x y |y − x| are at most 1 in size; three terms, half a step.
-    let margin = 3.0 * 0.5 / n as f64 / 12.0;
-    assert!(greatest + margin <= CUBIC, "{greatest}");
+    let sixth = |[u, v, w]: [f64; 3]| sum([u / 3.0, u / 3.0 + 0.5 * v, u / 3.0 + 0.5 * v + w]);
+    let net = net(sixth);
+    for [u, v, w] in grid(9) {
+        let turned = sum([u / 3.0 + 0.5 * v + w, u / 3.0, u / 3.0 + 0.5 * v]);
+        assert!((turned - sixth([u, v, w])).abs() < 1e-15);
+    }
+    let most = divided(&net, DIVISIONS);
+    let greatest = grid(200).map(sum).fold(0.0, f64::max);
+    assert!(greatest <= most && most + SLACK <= CUBIC, "{greatest} {most}");
 }
 
 /// The quartic part's constant: r is linear in the five fourth derivatives, so at each place it is greatest in a vertex of the
-/// polytope in which all six pairs are within ±1.
+/// polytope in which all six pairs are within ±1; and over the triangle the coefficients of each vertex's r bound it.
 #[test]
 fn the_quartic_constant_holds() {
     let forms = |f: [f64; 5]| {
@@ -207,16 +232,28 @@ fn the_quartic_constant_holds() {
         }
     }
     assert!(vertices.len() >= 20, "{}", vertices.len());
-    let n = 200;
-    let mut greatest = 0.0f64;
+    let (mut most, mut greatest) = (0.0f64, 0.0f64);
     for &f in &vertices {
-        for weights in grid(n) {
-            greatest = greatest.max(rest(f, weights).abs());
-        }
+        most = most.max(divided(&net(|place| rest(f, place)), DIVISIONS));
+        greatest = grid(60).map(|place| rest(f, place).abs()).fold(greatest, f64::max);
     }
-    // Derivatives of r along edges are below 0.05; half a step on the grid.
-    assert!(greatest + 0.05 * 0.5 / n as f64 <= QUARTIC, "{greatest}");
-    assert!(greatest > 0.004, "{greatest}");
+    assert!(greatest <= most + SLACK && most + SLACK <= QUARTIC, "{greatest} {most}");
+    assert!(greatest > 0.9 * QUARTIC, "{greatest}");
+}
+
+/// Coefficients from values are those of the polynomial: cut finer, they close in on its greatest size.
+#[test]
+fn nets_are_of_their_polynomials() {
+    let mut numbers = Numbers(21);
+    for _ in 0..50 {
+        let x: [f64; 5] = core::array::from_fn(|_| numbers.next());
+        let value = |[a, b, c]: [f64; 3]| {
+            x[0] * a * a * b * c + x[1] * b.powi(4) + x[2] * a * c.powi(3) + x[3] * b * c + x[4] * a
+        };
+        let greatest = grid(64).map(|place| value(place).abs()).fold(0.0, f64::max);
+        let most = divided(&net(value), DIVISIONS);
+        assert!(greatest <= most + SLACK && most <= 1.02 * greatest, "{greatest} {most}");
+    }
 }
 
 /// f − q − c at (s, r), the parts as the module's page gives them.
