@@ -58,11 +58,22 @@ pub(super) fn simplified(
     if over(&collapsed) {
         collapsed = collapse(&fine.mesh, None, options.max_triangles, options)?;
     }
+    let plainly = || adaptive(control, scheme, &ExactOptions { optimize: false, ..options.clone() });
+    // Where no more edges can go, refinement alone keeps the number of triangles; where nothing is proven, it proves.
+    let asked = options.triangles.filter(|_| options.tolerance.is_none());
+    let most = asked.into_iter().chain(options.max_triangles).min().unwrap_or(usize::MAX);
+    let is_over = collapsed.mesh.face_count() > most;
+    if is_over || collapsed.bound.is_none() {
+        let plain = plainly()?;
+        if !is_over || plain.mesh.face_count() < collapsed.mesh.face_count() {
+            return Ok(plain);
+        }
+    }
     let error = error_bounds(&fine, &collapsed)?;
     let is_met = options.tolerance.is_some_and(|tolerance| error.upper <= tolerance);
     if options.tolerance.is_some() && (!is_met || collapsed.mesh.face_count() > fine.mesh.face_count() / FEW)
     {
-        let plain = adaptive(control, scheme, &ExactOptions { optimize: false, ..options.clone() })?;
+        let plain = plainly()?;
         if plain.stop == ExactStop::Met && (!is_met || plain.mesh.face_count() <= collapsed.mesh.face_count())
         {
             return Ok(plain);

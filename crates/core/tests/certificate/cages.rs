@@ -1,5 +1,6 @@
-//! Random control meshes that are hard on a certificate: any valence, boundaries, sharp edges, slivers, folds, thin sheets
-//! with holes, flat ones, tiny, huge and far from the origin.
+//! Random control meshes that are hard on a certificate: any valence, boundaries, sharp edges, tags that fade, sheets that
+//! are cut apart where more than two meet, slivers, folds, thin sheets with holes, flat ones, tiny, huge and far from the
+//! origin.
 
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::{Mesh, PolygonSoup};
@@ -27,6 +28,9 @@ pub(crate) fn cage(seed: u64) -> Cage {
         }
         what += ", holes";
     }
+    if random.below(6) == 0 {
+        fins(&mut positions, &mut triangles, &mut random, &mut what);
+    }
     deform(&mut positions, &mut random, &mut what);
     let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
     triangles.iter().for_each(|triangle| soup.faces.push(triangle));
@@ -40,15 +44,16 @@ type Raw = (Vec<Point>, Vec<[u32; 3]>, String);
 fn base(random: &mut Random, seed: u64) -> Raw {
     let raw = |mesh: Mesh, what: String| (mesh.positions().to_vec(), mesh.triangles().to_vec(), what);
     let size = |random: &mut Random| 3 + random.below(4) as u32;
-    match random.below(9) {
+    match random.below(10) {
         0 => raw(octahedron(), "octahedron".into()),
         1 => raw(lumpy(1 + random.below(30), seed), "lumpy".into()),
         2 => raw(torus(size(random), size(random)), "torus".into()),
         3 => raw(sheet(1 + random.below(5) as u32, 1 + random.below(5) as u32, seed), "sheet".into()),
         4 => washer(3 + random.below(8) as u32, 0.02 * (1 + random.below(20)) as f64),
-        5 => bipyramid([3, 4, 5, 7, 8, 9, 10, 11, 12, 20, 40][random.below(11)]),
-        6 => fan([2, 3, 4, 6, 9, 20, 40][random.below(7)]),
+        5 => bipyramid([3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 20, 30, 40][random.below(13)]),
+        6 => fan([2, 3, 4, 6, 9, 20, 30, 40][random.below(8)]),
         7 => soup_of_tetrahedra(1 + random.below(3) as u32),
+        8 => book(2 + random.below(4) as u32, 1 + random.below(3) as u32),
         _ => pillow(3 + random.below(9) as u32),
     }
 }
@@ -102,6 +107,41 @@ fn soup_of_tetrahedra(count: u32) -> Raw {
         triangles.extend(faces.map(|face| face.map(|v: u32| 4 * i + v)));
     }
     (positions, triangles, format!("{count} tetrahedra"))
+}
+
+/// Sheets of two by `n` quads that share their first edges: more than two are cut apart there.
+fn book(pages: u32, n: u32) -> Raw {
+    let mut positions: Vec<Point> = (0..=n).map(|i| [f64::from(i), 0.0, 0.0]).collect();
+    let mut triangles = Vec::new();
+    for page in 0..pages {
+        let angle = 5.0 * f64::from(page) / f64::from(pages);
+        let first = positions.len() as u32;
+        for column in 1..=2 {
+            let (x, y) = (f64::from(column), 0.3 * f64::from(column * column));
+            let (sine, cosine) = angle.sin_cos();
+            positions.extend((0..=n).map(|i| [f64::from(i), cosine * x - sine * y, sine * x + cosine * y]));
+        }
+        let at = |i: u32, column: u32| if column == 0 { i } else { first + (column - 1) * (n + 1) + i };
+        for (i, j) in (0..n).flat_map(|i| [(i, 0), (i, 1)]) {
+            triangles.push([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
+            triangles.push([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
+        }
+    }
+    (positions, triangles, format!("book of {pages}"))
+}
+
+/// Triangles more at edges that have theirs.
+fn fins(positions: &mut Vec<Point>, triangles: &mut Vec<[u32; 3]>, random: &mut Random, what: &mut String) {
+    let count = 1 + random.below(4);
+    for _ in 0..count {
+        let (f, i) = (random.below(triangles.len()), random.below(3));
+        let [a, b] = [0, 1].map(|k| triangles[f][(i + k) % 3]);
+        let [from, to] = [a, b].map(|v| positions[v as usize]);
+        let tip = std::array::from_fn(|axis| 0.5 * (from[axis] + to[axis]) + random.signed());
+        triangles.push([b, a, positions.len() as u32]);
+        positions.push(tip);
+    }
+    *what += &format!(", {count} fins");
 }
 
 /// Two sheets joined along a star-shaped outline that bends both ways.
@@ -163,26 +203,33 @@ fn deform(positions: &mut [Point], random: &mut Random, what: &mut String) {
     }
 }
 
-/// Infinitely sharp edges and vertices.
+/// Sharp edges and vertices, for good or for some levels.
 fn tagged(mesh: Mesh, random: &mut Random, what: &mut String) -> Mesh {
     let share = [0, 0, 5, 30, 100][random.below(5)];
     if share == 0 {
         return mesh;
     }
+    let fades = random.below(2) == 0;
+    let sharpness = |random: &mut Random| match random.below(3) {
+        _ if !fades => INFINITELY_SHARP,
+        0 => INFINITELY_SHARP,
+        _ => [0.3, 1.0, 1.5, 2.0, 3.7][random.below(5)],
+    };
     let mut tags = Tags::default();
     for triangle in mesh.triangles() {
         for i in 0..3 {
             let vertices = [triangle[i], triangle[(i + 1) % 3]];
             if random.below(200) < share {
-                tags.creases.push(CreaseTag { vertices, sharpness: INFINITELY_SHARP });
+                tags.creases.push(CreaseTag { vertices, sharpness: sharpness(random) });
             }
         }
     }
     for vertex in 0..mesh.vertex_count() as u32 {
         if random.below(800) < share {
-            tags.corners.push(CornerTag { vertex, sharpness: INFINITELY_SHARP });
+            tags.corners.push(CornerTag { vertex, sharpness: sharpness(random) });
         }
     }
-    *what += &format!(", {} creases and {} corners", tags.creases.len(), tags.corners.len());
+    let kind = if fades { "fading " } else { "" };
+    *what += &format!(", {} {kind}creases and {} corners", tags.creases.len(), tags.corners.len());
     mesh.with_tags(tags).unwrap()
 }

@@ -40,25 +40,38 @@ struct Goal<'a> {
 fn goal(control: &Mesh, random: &mut Random) -> Goal<'static> {
     let diagonal = control.diagonal();
     let tolerance = diagonal * 10f64.powf(-1.6 + 1.4 * random.signed());
-    let balance = random.below(2) == 0;
     let faces = control.face_count();
-    let mut options =
-        ExactOptions::default().balance(balance).max_triangles(Some(MOST_TRIANGLES.max(2 * faces)));
+    let mut options = ExactOptions::default().max_triangles(Some(MOST_TRIANGLES.max(2 * faces)));
     let mut what = String::new();
     if random.below(3) != 0 {
+        // Where levels end the division most leaves fail.
+        let (levels, tolerance) = match random.below(8) {
+            0 => (Some(random.below(4)), tolerance),
+            1 => (Some(random.below(3)), 1e-5 * tolerance),
+            _ => (None, tolerance),
+        };
         options = options.tolerance(tolerance);
         what += &format!("tolerance {tolerance:e}");
+        if let Some(levels) = levels {
+            options = options.max_levels(levels);
+            what += &format!(", {levels} levels");
+        }
     } else {
         let budget = faces + random.below(20 * faces);
         options = options.triangles(budget);
         what += &format!("{budget} triangles");
     }
-    if random.below(8) == 0 {
-        let levels = random.below(4);
-        options = options.max_levels(levels);
-        what += &format!(", {levels} levels");
+    match random.below(6) {
+        0..3 => {
+            options = options.balance(true);
+            what += ", balanced";
+        }
+        3 => {
+            options = options.optimize(true);
+            what += ", optimised";
+        }
+        _ => {}
     }
-    what += if balance { ", balanced" } else { "" };
     Goal { options, what }
 }
 
