@@ -6,7 +6,7 @@
 use limitmesh::Mesh;
 use limitmesh::criterion::{Camera, View, Viewpoint};
 use limitmesh::measure::{
-    CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff, limit_reference,
+    Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff_between, limit_reference,
 };
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
 use limitmesh::scheme::Loop;
@@ -75,13 +75,14 @@ fn bounds_hold_where_levels_end_the_division() {
     for name in ["torus", "sphere", "cup", "bunny", "spike", "bumpy", "head", "cube", "tetrahedron"] {
         let control = model(name);
         let reference = limit_reference(&control, &Loop, 6).unwrap();
+        let reference = Bvh::new(reference.as_triangles()).unwrap();
         for levels in [0, 1, 2] {
             let options = ExactOptions::default().tolerance(1e-6 * control.diagonal()).max_levels(levels);
             let result = exact(&control, &Loop, &options).unwrap();
             assert_eq!(result.stop, ExactStop::LevelCap, "{name}");
             let samples = SamplingOptions::default().samples(40_000);
-            let found = hausdorff(result.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
-            let found = found.symmetric();
+            let output = Bvh::new(result.mesh.as_triangles()).unwrap();
+            let found = hausdorff_between(&output, &reference, &samples).symmetric();
             assert!(
                 found <= 1.01 * result.error.upper,
                 "{name}, {levels} levels: {found} above {:?}",

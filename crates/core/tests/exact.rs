@@ -6,7 +6,7 @@ mod support;
 
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
-use limitmesh::measure::{SamplingOptions, hausdorff, limit_reference};
+use limitmesh::measure::{Bvh, SamplingOptions, hausdorff, hausdorff_between, limit_reference};
 use limitmesh::refine::{ExactOptions, ExactStop, exact, exact_estimate};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 use support::vertices_are_of_uniform_refinement;
@@ -38,7 +38,7 @@ fn the_certified_bound_holds_and_is_tight() {
         let result = exact(&control, &Loop, &ExactOptions::default().tolerance(tolerance)).unwrap();
         assert_eq!(result.stop, ExactStop::Met);
         assert!(result.error.upper <= tolerance, "{name}: {}", result.error.upper);
-        let reference = limit_reference(&control, &Loop, 6).unwrap();
+        let reference = limit_reference(&control, &Loop, 5).unwrap();
         let samples = SamplingOptions::default().samples(200_000);
         let sampled = hausdorff(result.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
         // The reference's own chords leave the surface, inwards, by less than this.
@@ -81,6 +81,8 @@ fn budgets_are_kept_and_spent_on_the_worst() {
 fn budgets_prove_what_tolerances_prove() {
     for name in ["cup", "teddy", "bunny"] {
         let control = model(name);
+        let reference = limit_reference(&control, &Loop, 5).unwrap();
+        let reference = Bvh::new(reference.as_triangles()).unwrap();
         let mut last = f64::INFINITY;
         for tolerance in [2e-3, 7e-4] {
             let tolerance = tolerance * control.diagonal();
@@ -91,9 +93,9 @@ fn budgets_prove_what_tolerances_prove() {
             assert!(budget.error.upper <= 1.15 * tolerance, "{name}: {:?} of {tolerance}", budget.error);
             assert!(budget.error.upper <= last, "{name}");
             last = budget.error.upper;
-            let reference = limit_reference(&control, &Loop, 5).unwrap();
             let samples = SamplingOptions::default().samples(60_000);
-            let found = hausdorff(budget.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+            let output = Bvh::new(budget.mesh.as_triangles()).unwrap();
+            let found = hausdorff_between(&output, &reference, &samples);
             assert!(found.symmetric() <= budget.error.upper + 0.03 * tolerance, "{name}");
         }
     }
@@ -201,9 +203,10 @@ fn never_worse_than_uniform_refinement_at_equal_triangles() {
     for name in ["sphere", "torus", "bunny", "cup"] {
         let control = model(name);
         let reference = limit_reference(&control, &Loop, 5).unwrap();
+        let reference = Bvh::new(reference.as_triangles()).unwrap();
         let distance = |mesh: &Mesh| {
             let samples = SamplingOptions::default().samples(60_000);
-            hausdorff(mesh.as_triangles(), reference.as_triangles(), &samples).unwrap().symmetric()
+            hausdorff_between(&Bvh::new(mesh.as_triangles()).unwrap(), &reference, &samples).symmetric()
         };
         for levels in [1, 2] {
             let uniform = limit_reference(&control, &Loop, levels).unwrap();
