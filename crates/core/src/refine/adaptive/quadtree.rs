@@ -231,6 +231,10 @@ impl Trees {
             let first = if word & LEAF == 0 {
                 word
             } else {
+                // Even nodes stay whole as long as they hold the node.
+                if even_depth(word).is_some_and(|depth| depth >= place.level - level) {
+                    return true;
+                }
                 if !is_split(word) {
                     fresh(Place { level, path: place.path >> (2 * (place.level - level)), ..place });
                 }
