@@ -9,7 +9,9 @@ mod few_parts;
 
 use core::array::from_fn;
 
-use super::quartic_cell::{CUBIC, CURVE_CUBIC, Domain, QUARTIC, QuarticJet, quadratic};
+use super::quartic_cell::{
+    CUBIC, CURVE_CUBIC, DIRECTIONS, Domain, NEARLY_ONE, QUARTIC, QuarticJet, quadratic,
+};
 use crate::patch::Quartic;
 use crate::vector::DVec3;
 use few_parts::{FEW, FEW_DIVISIONS, FewParts};
@@ -141,8 +143,8 @@ struct Remainder {
     /// Of the distance of curves from their edges, and of the slope towards their ends.
     curve: f64,
     steep: f64,
-    /// Of second derivatives.
-    bend: f64,
+    /// Of first derivatives along edges.
+    first: f64,
 }
 
 /// A node of a regular piece, and what bounds derivatives all over it.
@@ -213,7 +215,7 @@ impl<'a> RowBlock<'a> {
             height: self.height[0] * cube + self.height[1] * cube * step,
             curve: CURVE_CUBIC * third + fourth / 384.0,
             steep: third / 12.0 + fourth / 48.0,
-            bend: third + fourth,
+            first: 0.5 * third + fourth,
         }
     }
 
@@ -388,10 +390,15 @@ fn measure(count: usize, parts: &Parts<'_>, rest: &Remainder, target: &RowTarget
         let is_roomy = (ra >= 0.0) & (rb >= 0.0) & (rc >= 0.0);
         let reach = out[0].max(out[1]).max(out[2]).max(0.0);
         let drift = 0.125 * (reach * reach / la.min(lb).min(lc)).sqrt() + rest.curve;
-        // No two points in one place: see `quartic_cell`.
-        let most = dot(wa, wa).max(dot(wb, wb)).max(dot(wc, wc));
-        let bend = 2.0 * (most + rest.bend * rest.bend);
-        let is_apart = square > 16.0 * bend * la.max(lb);
+        // No two points in one place: see `quartic_cell`. Changes of barycentric coordinates times the area.
+        let (oa, ob) = (cross(a, normal), cross(b, normal));
+        let stretched = |w: [f64; 3]| {
+            let (x, y) = (dot(w, oa), dot(w, ob));
+            x * x + y * y - x * y
+        };
+        let most = stretched(wa).max(stretched(wb)).max(stretched(wc)).sqrt();
+        let stretch = (0.5 * (la + lb + lc)).sqrt();
+        let is_apart = most + DIRECTIONS * rest.first * stretch < NEARLY_ONE * area;
         let is_plain =
             is_roomy & is_apart & (drift_slope <= (share * slope).min(allowed)) & (chord * chord <= SHARPEST);
         let value = (height + rest.height) * (1.0 + 0.5 * chord * chord) + chord * drift;

@@ -89,6 +89,11 @@ impl Deviation {
         can_help.then_some(self.height * (1.0 + 0.5 * chord * chord) + chord * self.drift)
     }
 
+    /// The height for which that would be no more than this.
+    pub(crate) fn height_within(&self, limit: f64, chord: f64) -> f64 {
+        (limit - chord * self.drift) / (1.0 + 0.5 * chord * chord)
+    }
+
     /// The bounds with and without neighbours, and which part of the former is along normals.
     ///
     /// That is all that stems from heights over the planes of the triangle and its neighbours and from drifts over

@@ -15,12 +15,24 @@
 //!
 //! **Beside the edges.** Along an edge the curve of S differs from its chord by −½τ(1 − τ)W + (T/6)(x³ − x/4) + (F/24)(x⁴ − 1/16),
 //! x = τ − ½, W, T and F being the second, third and fourth derivatives along the edge in its middle. Its distance from the
-//! chord and its slope towards the chord's ends follow term by term. Let M bound second derivatives along edges all over D.
-//! Derivatives of S along an edge differ from the chord by 2M at most (½M on the edge itself, where both ends
-//! agree, and 3/2 M for the way from there, mixed derivatives being at most that). Where such a difference is less than the
-//! change of the point on T, whatever the direction, the projection of S on the plane of T takes no two points to one
-//! place, and its rim is the three curves: then nothing of S reaches over an edge farther than the edge's own curve.
-//! Otherwise all that is known is |S − T| ≤ ½ Σ λᵢλⱼ M ≤ M/6.
+//! chord and its slope towards the chord's ends follow term by term.
+//!
+//! **No two points in one place.** Let A be the derivative of the projection of S on the plane of T less that of the point of T,
+//! both over the domain, in the metric of the plane in which T has three edges of length 1. Where ‖A‖ < 1 all over D the
+//! projection takes no two points to one place, since from one point of D to another it changes by the change on T and the mean of A
+//! along the way; its rim is the three curves, so nothing of S reaches over an edge farther than the edge's own curve. With
+//! f = q + c + r as above, now within the plane ([`is_folding`]):
+//!
+//! * the part of q is linear over D: greatest in a corner. There it is ½Wᵢ and −½Wⱼ along the edges that end and start
+//!   in the corner, so ‖A‖² ≤ ⅔ · ¼(|Wᵢ|² + |Wⱼ|² + |Wᵢ − Wⱼ|²) ≤ max |W|², ⅔ Σ|Aeᵢ|² being the square of the Frobenius norm;
+//! * along an edge the derivative of c is at most 3 · 1/12 + ¼|B|, and |B| ≤ 11/12, times the greatest third derivative: less than ½;
+//! * with fourth derivatives up to F, third ones of r are at most ⅔F, second ones along edges ⅔F and on their edges ⅓F, first
+//!   ones on their edges F/6, being 0 on the average, and as much more as second derivatives ½|Wⱼ − Wₖ| on the way from the
+//!   edge along its median come to: less than F in all;
+//! * a unit vector is the sum of two edges times factors of 2/√3 together, so c and r add 2/√3 (½T + F) times what the metric
+//!   stretches lengths by at most.
+//!
+//! Otherwise all that is known is |S − T| ≤ ½ Σ λᵢλⱼ M ≤ M/6, M bounding second derivatives along edges all over D.
 
 use super::deviation::Deviation;
 use super::triangle_frame::TriangleFrame;
@@ -37,6 +49,13 @@ pub(super) const QUARTIC: f64 = 0.0052;
 
 /// The greatest of |x³ − x/4|/6 for |x| ≤ 1/2, √3/216, rounded up.
 pub(super) const CURVE_CUBIC: f64 = 0.00802;
+
+/// A unit vector is the sum of two edges of a triangle with edges of length 1 times factors that come to this together at most: 2/√3,
+/// rounded up.
+pub(super) const DIRECTIONS: f64 = 1.154_701;
+
+/// What is less than 1 for all that rounding may do.
+pub(super) const NEARLY_ONE: f64 = 1.0 - 1e-6;
 
 /// A direction or a place in a piece's domain.
 pub(crate) type Domain = [f64; 2];
@@ -138,7 +157,7 @@ impl QuarticJet {
         let most = bends.iter().map(|bend| bend.length_squared()).fold(0.0, f64::max).sqrt();
         let most = most + third + fourth;
         let mut found = BesideEdges { side: 0.0, open: 0.0, drift: 0.0, slope: 0.0, loose: None };
-        let mut is_plain = !frame.is_flat() && keeps_apart(frame, 2.0 * most);
+        let mut is_plain = !frame.is_flat() && !is_folding(frame, &bends, 0.5 * third + fourth);
         for edge in 0..3 {
             // Outwards where the derivative points inwards.
             let outward = -bends[edge].dot(frame.outward(edge));
@@ -237,17 +256,15 @@ impl BesideEdges {
     }
 }
 
-/// Whether a map that differs from the triangle's own by derivatives of at most `difference` along edges takes no two points
-/// to one place.
-fn keeps_apart(frame: &TriangleFrame, difference: f64) -> bool {
-    // A unit vector is a combination of two unit vectors with sizes of at most √(2/(1 − |cos|)) in all.
-    let pairs = [0, 1, 2].map(|edge| {
-        let next = (edge + 1) % 3;
-        let cosine = frame.along(edge).dot(frame.along(next)).abs();
-        (1.0 - cosine) * frame.length(edge).min(frame.length(next)).powi(2)
-    });
-    let best = pairs.into_iter().fold(0.0, f64::max);
-    2.0 * difference * difference < best
+/// Whether a map over the triangle may take two points to one place, by its second derivatives along the edges in their middles,
+/// and what third and fourth ones may change in the first derivatives along edges.
+#[inline]
+fn is_folding(frame: &TriangleFrame, bends: &[DVec3; 3], rest: f64) -> bool {
+    let most = bends.iter().map(|&bend| frame.stretched_squared(bend)).fold(0.0, f64::max).sqrt();
+    let difference = most + DIRECTIONS * rest * frame.stretch();
+    // Fails for what is not a number.
+    let is_apart = difference < NEARLY_ONE;
+    !is_apart
 }
 
 /// The heights of a quartic over the plane of its corners: coefficients of sⁱrʲ, s and r running from the first corner
@@ -330,9 +347,10 @@ impl Heights {
         ((quadratic - rest).max(0.0), quadratic + rest)
     }
 
-    /// A bound for the greatest height by Bernstein coefficients over the parts that `levels` divisions into four give.
-    pub(crate) fn refined(&self, levels: u32) -> f64 {
-        self.lifted([0.0; 3], levels)
+    /// A bound for the greatest height by Bernstein coefficients over the parts that `levels` divisions into four give; parts that
+    /// are no higher than is good enough are not divided.
+    pub(crate) fn refined(&self, levels: u32, enough: f64) -> f64 {
+        self.lifted([0.0; 3], levels, enough)
     }
 
     /// The least and the greatest height in a few places, where the surface's corners stand at the given ones over the plane.
@@ -352,7 +370,7 @@ impl Heights {
     }
 
     /// The same where the surface's corners stand at these heights over the plane.
-    pub(crate) fn lifted(&self, [first, second, third]: [f64; 3], levels: u32) -> f64 {
+    pub(crate) fn lifted(&self, [first, second, third]: [f64; 3], levels: u32, enough: f64) -> f64 {
         let mut coefficients = self.bernstein();
         let (along, across) = (0.25 * (second - first), 0.25 * (third - first));
         for (k, row) in ROWS.iter().enumerate() {
@@ -360,7 +378,7 @@ impl Heights {
                 coefficients[row + j] += first + along * j as f64 + across * k as f64;
             }
         }
-        divided(&coefficients, levels)
+        halved(&coefficients, 2 * levels, enough)
     }
 
     /// The coefficients in Bernstein's basis, in rows of constant power of r.
@@ -413,34 +431,41 @@ const WEIGHTS: [[f64; 5]; 5] = [
 /// Where each row of a net starts.
 const ROWS: [usize; 5] = [0, 5, 9, 12, 14];
 
-/// The greatest size of a coefficient after dividing into four so many times.
-fn divided(net: &[f64; 15], levels: u32) -> f64 {
-    if levels == 0 {
-        return net.iter().fold(0.0, |most, x| most.max(x.abs()));
+/// The greatest size of a coefficient after so many halvings, but for parts with none above what is good enough.
+fn halved(net: &[f64; 15], halvings: u32, enough: f64) -> f64 {
+    let most = net.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    if halvings == 0 || most <= enough {
+        return most;
     }
-    // Halves by the middle of the edge between the first two corners, and each of those by its other two edges' middles.
-    let [first, second] = halves(net);
-    [first, second].iter().flat_map(halves).fold(0.0, |most, part| most.max(divided(&part, levels - 1)))
+    halves(net).iter().fold(0.0, |most, half| most.max(halved(half, halvings - 1, enough)))
 }
 
 /// The halves of a net, each with the middle of its first edge between the corner that it keeps and the third, so that
-/// the next halving cuts another edge.
+/// the next halving cuts another edge, and two of them divide into four.
 fn halves(net: &[f64; 15]) -> [[f64; 15]; 2] {
     let mut halves = [[0.0; 15]; 2];
-    for k in 0..5 {
-        let degree = 4 - k;
-        let mut row = [0.0; 5];
-        row[..=degree].copy_from_slice(&net[ROWS[k]..=ROWS[k] + degree]);
-        for step in 0..=degree {
-            // Number of the coefficient in the half: `step` towards the middle, k towards the third corner.
-            halves[0][ROWS[step] + degree - step] = row[0];
-            halves[1][ROWS[step] + k] = row[degree - step];
-            for j in 0..degree - step {
-                row[j] = 0.5 * (row[j] + row[j + 1]);
-            }
+    halved_row::<0>(net, &mut halves);
+    halved_row::<1>(net, &mut halves);
+    halved_row::<2>(net, &mut halves);
+    halved_row::<3>(net, &mut halves);
+    halved_row::<4>(net, &mut halves);
+    halves
+}
+
+/// What the K-th row of a net gives. (With K known no index needs a check.)
+#[inline(always)]
+fn halved_row<const K: usize>(net: &[f64; 15], halves: &mut [[f64; 15]; 2]) {
+    let degree = 4 - K;
+    let mut row = [0.0; 5];
+    row[..=degree].copy_from_slice(&net[ROWS[K]..=ROWS[K] + degree]);
+    for step in 0..=degree {
+        // Number of the coefficient in the half: `step` towards the middle, K towards the third corner.
+        halves[0][ROWS[step] + degree - step] = row[0];
+        halves[1][ROWS[step] + K] = row[degree - step];
+        for j in 0..degree - step {
+            row[j] = 0.5 * (row[j] + row[j + 1]);
         }
     }
-    halves
 }
 
 /// The greatest height of a quadratic that is 0 at the corners, by its second derivatives along the edges from the first

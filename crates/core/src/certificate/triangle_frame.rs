@@ -175,6 +175,30 @@ impl TriangleFrame {
         self.least_slope
     }
 
+    /// The squared length of a vector's part within the plane, in the metric in which the triangle has three edges of length 1: half
+    /// the sum of the squares by which the vector changes barycentric coordinates.
+    #[inline]
+    pub(super) fn stretched_squared(&self, vector: DVec3) -> f64 {
+        let changes = [0, 1, 2].map(|edge| self.outward[edge].dot(vector) * self.lengths[edge]);
+        0.5 * changes.iter().map(|change| change * change).sum::<f64>() / self.parallelogram().powi(2)
+    }
+
+    /// What that metric stretches lengths within the plane by at most. With the barycentric gradients' squares, whose sum is twice the
+    /// trace of the metric, and the areas of both triangles, whose ratio is its determinant's root.
+    #[inline]
+    pub(super) fn stretch(&self) -> f64 {
+        let square = self.parallelogram().powi(2);
+        let half_trace = 0.25 * self.lengths.iter().map(|length| length * length).sum::<f64>() / square;
+        let determinant = 0.75 / square;
+        (half_trace + (half_trace * half_trace - determinant).max(0.0).sqrt()).sqrt()
+    }
+
+    /// Twice the area.
+    #[inline]
+    fn parallelogram(&self) -> f64 {
+        self.offsets[1] * self.lengths[1]
+    }
+
     /// What is no farther outside an edge than this stands on it, but for rounding.
     pub(crate) fn on_edge(&self) -> f64 {
         self.on_edge

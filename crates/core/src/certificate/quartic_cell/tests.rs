@@ -67,7 +67,7 @@ fn dense_samples_lie_within_the_bounds() {
         }
         let heights = jet.heights(&cell, frame.normal());
         let (low, high) = heights.range();
-        let refined = heights.refined(2);
+        let refined = heights.refined(2, 0.0);
         let deviation = jet.beside(&cell, &frame, [false, true, false]).deviation(high.min(refined));
         let (mut highest, mut farthest, mut outside) = (0.0f64, 0.0f64, [0.0f64; 3]);
         for weights in grid(GRID) {
@@ -119,7 +119,7 @@ fn triangles_off_the_surface_are_bounded() {
         }
         let heights = jet.heights(&cell, frame.normal());
         let lifts = steps.map(|step| -frame.normal().dot(step));
-        let bound = heights.lifted(lifts, 2);
+        let bound = heights.lifted(lifts, 2, 0.0);
         let aside = steps.map(|step| (step - frame.normal().dot(step) * frame.normal()).length());
         let aside = aside.into_iter().fold(0.0, f64::max);
         let moved = steps.map(DVec3::length).into_iter().fold(0.0, f64::max);
@@ -177,7 +177,7 @@ fn the_cubic_constant_holds() {
         let turned = sum([u / 3.0 + 0.5 * v + w, u / 3.0, u / 3.0 + 0.5 * v]);
         assert!((turned - sixth([u, v, w])).abs() < 1e-15);
     }
-    let most = divided(&net, DIVISIONS);
+    let most = halved(&net, 2 * DIVISIONS, 0.0);
     let greatest = grid(200).map(sum).fold(0.0, f64::max);
     assert!(greatest <= most && most + SLACK <= CUBIC, "{greatest} {most}");
 }
@@ -234,7 +234,7 @@ fn the_quartic_constant_holds() {
     assert!(vertices.len() >= 20, "{}", vertices.len());
     let (mut most, mut greatest) = (0.0f64, 0.0f64);
     for &f in &vertices {
-        most = most.max(divided(&net(|place| rest(f, place)), DIVISIONS));
+        most = most.max(halved(&net(|place| rest(f, place)), 2 * DIVISIONS, 0.0));
         greatest = grid(60).map(|place| rest(f, place).abs()).fold(greatest, f64::max);
     }
     assert!(greatest <= most + SLACK && most + SLACK <= QUARTIC, "{greatest} {most}");
@@ -251,7 +251,7 @@ fn nets_are_of_their_polynomials() {
             x[0] * a * a * b * c + x[1] * b.powi(4) + x[2] * a * c.powi(3) + x[3] * b * c + x[4] * a
         };
         let greatest = grid(64).map(|place| value(place).abs()).fold(0.0, f64::max);
-        let most = divided(&net(value), DIVISIONS);
+        let most = halved(&net(value), 2 * DIVISIONS, 0.0);
         assert!(greatest <= most + SLACK && most <= 1.02 * greatest, "{greatest} {most}");
     }
 }

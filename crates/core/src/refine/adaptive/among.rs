@@ -36,9 +36,8 @@ impl Engine<'_> {
         let mut bulges = Bulges::default();
         let mut measured: Vec<Measured> = Vec::new();
         loop {
-            let mut emission = self.emit_all(&plan)?;
-            let count = plan.closed.len();
-            let touched = core::mem::replace(&mut plan.is_touched, vec![false; count]);
+            let touched = plan.is_touched.clone();
+            let mut emission = self.emit_all(&mut plan)?;
             if self.is_balanced {
                 bulges.look(&self.sources(&plan, &emission), &marked(&touched));
                 let offsets = bulges.offsets(self.control, &emission);
@@ -54,7 +53,7 @@ impl Engine<'_> {
             let Some(is_dirty) = self.divide(&mut plan, &measured, (most, is_budget))? else {
                 return Ok(Some(Outcome { plan, emission, measured: Some(measured) }));
             };
-            drop(emission);
+            plan.emission = Some(emission);
             if !self.carry_out(&mut plan, is_dirty, most)? {
                 return Ok(None);
             }

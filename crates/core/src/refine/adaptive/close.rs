@@ -7,10 +7,10 @@ use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
 use super::leaf::leaf_triangles;
 use super::quadtree::{Edges, Place, Trees};
 use super::rim::Rim;
-use super::surface::{Ground, Spot, Surface, with_patch};
+use super::surface::{GeneralPiece, Ground, Spot, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
 use crate::certificate::{Cell, Pieces, SubTriangle};
-use crate::patch::{LimitPoint, Patch};
+use crate::patch::LimitPoint;
 
 /// What the walk over a control face found.
 #[derive(Clone, Debug, Default)]
@@ -57,7 +57,7 @@ struct Lister {
 }
 
 impl Visitor for Lister {
-    fn chain(&mut self, _: &[Knot], _: usize, _: Spot, _: &Surface<'_>) {}
+    fn chain(&mut self, _: &[Knot], _: usize, _: Spot, _: Surface<'_>) {}
 
     fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
         self.triangles += node.triangles();
@@ -107,13 +107,13 @@ pub(super) fn close(
     face: u32,
     knots: &mut Vec<Knot>,
 ) -> Closed {
-    let mut walk = Walk { trees, rules: control.rules, knots: core::mem::take(knots), next: 0 };
+    let mut walk = Walk { trees, knots: core::mem::take(knots), next: 0 };
     walk.knots.clear();
     let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
     let at = (Place::root(face), Spot::WHOLE);
     let mut lister =
         Lister { triangles: 0, open: control.open(face), rim: Rim::default(), leaves: Vec::new() };
-    walk.node(trees.root(face), at, sides, &Surface::Unknown, &mut lister);
+    walk.node(trees.root(face), at, sides, Surface::Unknown, &mut lister);
     *knots = walk.knots;
     let Lister { triangles, mut leaves, .. } = lister;
     let mut closed = Closed { vertices: walk.next, triangles: triangles as u32, ..Closed::default() };
@@ -123,9 +123,7 @@ pub(super) fn close(
     recall(known, &mut leaves);
     if leaves.iter().any(|leaf| leaf.verdict.is_none()) {
         let closer = Closer { judge: goal.judge(control, max_levels, face), allowance };
-        with_patch(&control.patch(face), control.corners(face), 0, &mut |surface| {
-            closer.judge(surface, 0, &mut leaves);
-        });
+        closer.judge(control.piece(face).surface(control.rules), 0, &mut leaves);
     }
     closed.take(&leaves, max_levels);
     if is_kept {
@@ -185,30 +183,31 @@ struct Closer<'a> {
 
 impl Closer<'_> {
     /// Judges those of a node's leaves that nobody has judged, over its surface.
-    fn judge(&self, surface: &Surface<'_>, level: u32, leaves: &mut [Judged]) {
+    fn judge(&self, surface: Surface<'_>, level: u32, leaves: &mut [Judged]) {
         let mut wanting = leaves.iter_mut().filter(|leaf| leaf.verdict.is_none()).peekable();
         if wanting.peek().is_none() {
             return;
         }
         match surface {
             Surface::Unknown => {}
-            Surface::Regular(ground, spot) => {
+            Surface::Regular(piece, spot) => {
+                let ground = piece.ground();
                 for leaf in wanting {
                     let levels = level..leaf.place.level;
-                    let spot = levels.fold(*spot, |spot, level| spot.child(leaf.place.digit(level)));
+                    let spot = levels.fold(spot, |spot, level| spot.child(leaf.place.digit(level)));
                     leaf.verdict = Some(self.regular(ground, spot, leaf));
                 }
             }
-            Surface::General { patch, corners, .. } => match leaves {
+            Surface::General(piece, rules) => match leaves {
                 [leaf] if leaf.place.level == level => {
-                    leaf.verdict = Some(self.general(patch, *corners, leaf));
+                    leaf.verdict = Some(self.general(piece, piece.middles(rules), leaf))
                 }
-                _ => surface.with_parts(self.judge.rules, |part| {
+                _ => {
                     for of_child in leaves.chunk_by_mut(|a, b| a.place.digit(level) == b.place.digit(level)) {
                         let child = of_child[0].place.digit(level);
-                        part(child, &mut |surface| self.judge(surface, level + 1, of_child));
+                        self.judge(surface.child(child), level + 1, of_child);
                     }
-                }),
+                }
             },
         }
     }
@@ -227,10 +226,10 @@ impl Closer<'_> {
     }
 
     /// The triangles of a leaf over any piece.
-    fn general(&self, patch: &Patch, [a, b, c]: [LimitPoint; 3], leaf: &Judged) -> (Verdict, bool) {
-        let mut pieces = Pieces::of(patch);
-        let refined = pieces.refined(self.judge.rules);
-        let points = [a, b, c, refined.middle(0), refined.middle(1), refined.middle(2)];
+    fn general(&self, piece: &GeneralPiece, middles: [LimitPoint; 3], leaf: &Judged) -> (Verdict, bool) {
+        let mut pieces = Pieces::of(&piece.patch);
+        let ([a, b, c], [d, e, f]) = (piece.corners, middles);
+        let points = [a, b, c, d, e, f];
         best(leaf, |part, labels, open| {
             let corners = labels.map(|label| points[label]);
             let at = (leaf.place.level, part);

@@ -10,7 +10,7 @@ use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
 use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, Piece, Place, Trees, UNJUDGED};
-use super::surface::{Ground, Spot, child_corners};
+use super::surface::{Ground, Spot, SurfacePiece, child_corners};
 use crate::certificate::{CellRows, Marks, Pieces, SubTriangle};
 use crate::criterion::Criteria;
 use crate::index::{FaceId, HalfEdgeId};
@@ -54,6 +54,11 @@ pub(super) struct Control<'a> {
 impl Control<'_> {
     pub(super) fn patch(&self, face: u32) -> Patch {
         root_patch(self.mesh, self.sharpness, &self.large, FaceId(face), self.rules)
+    }
+
+    /// The surface over a face.
+    pub(super) fn piece(&self, face: u32) -> SurfacePiece {
+        SurfacePiece::of(self.patch(face), self.corners(face))
     }
 
     /// The limits of a face's corners, normals on its side.
@@ -173,11 +178,11 @@ impl Decision {
         self.rounds += 1;
         let count = Count { leaves: AtomicUsize::new(0), most };
         let again = parallel::pieces_of(wanting.len(), BLOCK, |block| {
+            let mut decider = Decider::new(control, edges, goal, max_levels, &count);
             let again = wanting[block].iter().map(|&(face, ..)| {
-                let mut decider = Decider::new(control, edges, goal, max_levels, &count);
                 let found = decider.face(face, Some(self.allowances[face as usize]));
                 decider.tell();
-                (face, decider.piece, found)
+                (face, core::mem::take(&mut decider.piece), found)
             });
             again.collect::<Vec<_>>()
         });

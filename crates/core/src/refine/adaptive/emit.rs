@@ -2,8 +2,10 @@
 //!
 //! Vertices stand in this order: those of the control mesh, those on its edges, those inside its faces; triangles face
 //! by face, in the order of the walk. Where each face's begin follows from the counts, so faces are written at once
-//! by as many threads as there are, each into its own parts of the arrays.
+//! by as many threads as there are, each into its own parts of the arrays. Faces that were emitted before and have not changed
+//! since are taken over ([`kept`]).
 
+mod kept;
 mod leaf_writer;
 
 use super::chains::{Chains, first_of};
@@ -12,13 +14,14 @@ use super::decide::{Control, Decision};
 use super::judge::Condition;
 use super::quadtree::{Edges, FULL, Place, is_split};
 use super::rim::Rim;
-use super::surface::{Spot, Surface, with_patch};
+use super::surface::{Spot, Surface};
 use super::walk::Walk;
 use crate::mesh::{Junctions, MAX_FACES, MeshError, NONE};
 use crate::parallel;
 use crate::patch::LimitPoint;
 use crate::refine::exact_result::Origin;
 use crate::vector::{DVec3, unit_or_zero, vector};
+use kept::Kept;
 use leaf_writer::{Vertices, Writer, split_off};
 
 /// Triangles that one call writes, about.
@@ -42,8 +45,21 @@ pub(super) struct Emission {
     pub(super) sharp: Vec<(u32, Vec<[f64; 3]>)>,
     /// Copies of vertices and edges of cut sheets.
     pub(super) junctions: Junctions,
-    /// Leaves that pass on conditions, with their first triangles, and one past the last.
+    /// Leaves that pass on conditions, with their first triangles, and one past the last, by control face.
     pub(super) conditions: Vec<(Condition, u32, u32)>,
+    /// Where the vertices lay before they were moved; empty where none was.
+    feet: Vec<[f64; 3]>,
+    numbers: Numbers,
+    /// By control face, whether everything of it is here.
+    is_whole: Vec<bool>,
+}
+
+/// The numbers of vertices.
+struct Numbers {
+    /// By half-edge, the first of its own.
+    on_edges: Vec<u32>,
+    /// By control face, the first inside it.
+    inside: Vec<u32>,
 }
 
 impl Emission {
@@ -52,9 +68,15 @@ impl Emission {
         self.starts[face as usize] as usize..self.starts[face as usize + 1] as usize
     }
 
+    /// Whether everything is here, and no control face has changed since.
+    pub(super) fn is_complete(&self, is_changed: &[bool]) -> bool {
+        self.is_whole.iter().zip(is_changed).all(|(&is_whole, &is_changed)| is_whole && !is_changed)
+    }
+
     /// Moves the vertices along their normals.
     pub(super) fn shift(&mut self, offsets: Vec<f64>) {
         self.offsets = offsets;
+        self.feet.clone_from(&self.positions);
         for vertex in 0..self.positions.len() {
             let moved = vector(self.positions[vertex]) + self.step(vertex as u32);
             self.positions[vertex] = moved.to_array();
@@ -90,19 +112,23 @@ pub(super) enum Extend {
     Nothing,
     /// The vertices on its edges that are its own.
     Edges,
+    /// Everything, as it was emitted before.
+    Kept,
     /// Everything.
     All,
 }
 
-/// Emits all leaves, or those of some control faces only. `closed` is what the walks over the faces found.
+/// Emits all leaves, or those of some control faces only. `closed` is what the walks over the faces found, `before` what was
+/// emitted last and the control faces that were walked over since: others are taken over as they are.
 ///
-/// With some faces only the arrays are as long, since numbers stay the same, but nothing else of them is written or touched.
+/// With some faces only the arrays are as long, since numbers stay the same, but nothing else of them is written.
 pub(super) fn emit(
     control: &Control<'_>,
     edges: &Edges<'_>,
     (decision, chains): (&Decision, &Chains),
     closed: &[Closed],
     only: Option<&[Extend]>,
+    before: Option<(Emission, &[bool])>,
 ) -> Result<Emission, MeshError> {
     let faces = control.mesh.face_count();
     let too_many = |what, count| MeshError::TooMany { what, count, limit: MAX_FACES };
@@ -125,7 +151,7 @@ pub(super) fn emit(
     let mut emission = Emission {
         positions: vec![[0.0; 3]; on_edges + inside],
         normals: vec![[0.0; 3]; on_edges + inside],
-        origins: vec![NOWHERE; if only.is_some() { 0 } else { on_edges + inside }],
+        origins: vec![NOWHERE; on_edges + inside],
         triangles: vec![[0; 3]; total],
         twins: vec![0; 3 * total],
         parents: vec![0; total],
@@ -135,17 +161,42 @@ pub(super) fn emit(
         sharp: Vec::new(),
         junctions: Junctions::default(),
         conditions: Vec::new(),
+        feet: Vec::new(),
+        numbers: Numbers::of(control, chains, closed),
+        is_whole: Vec::new(),
     };
     corners(control, &mut emission);
-    let extend = |face: u32| only.map_or(Extend::All, |only| only[face as usize]);
-    let is_wanted = |face: u32| extend(face) == Extend::All;
+    let is_kept = |face: u32| {
+        let (before, is_changed) = before.as_ref()?;
+        let is_kept = before.is_whole[face as usize] && !is_changed[face as usize];
+        // Normals on sharp edges are averages by now.
+        (is_kept && control.open(face) == [false; 3]).then_some(Extend::Kept)
+    };
+    let wanted = |face: u32| only.map_or(Extend::All, |only| only[face as usize]);
+    let extend: Vec<Extend> =
+        (0..faces as u32).map(|face| is_kept(face).unwrap_or_else(|| wanted(face))).collect();
     let jobs = jobs(control, edges, chains, (closed, &extend), &mut emission);
-    let conditions =
-        parallel::for_each_job(jobs, |job| write(control, edges, (decision, chains), closed, job));
+    let kept = before.as_ref().map(|(before, _)| Kept { before, mesh: control.mesh, edges, chains });
+    let conditions = parallel::for_each_job(jobs, |job| {
+        write(control, edges, (decision, chains), (closed, kept.as_ref()), job)
+    });
     emission.conditions = conditions.concat();
-    join(edges, &is_wanted, &mut emission);
-    sharp_edges(control, edges, chains, &is_wanted, &mut emission);
+    emission.is_whole = extend.into_iter().map(|extend| extend >= Extend::Kept).collect();
+    join(edges, &mut emission);
+    sharp_edges(control, edges, chains, &mut emission);
     Ok(emission)
+}
+
+impl Numbers {
+    fn of(control: &Control<'_>, chains: &Chains, closed: &[Closed]) -> Self {
+        let mut next = (control.mesh.vertex_count() + chains.count()) as u32;
+        let inside = closed.iter().map(|face| {
+            next += face.vertices;
+            next - face.vertices
+        });
+        let on_edges = (0..3 * closed.len() as u32).map(|h| chains.own(h).0);
+        Self { on_edges: on_edges.collect(), inside: inside.collect() }
+    }
 }
 
 /// The control vertices.
@@ -153,9 +204,6 @@ fn corners(control: &Control<'_>, emission: &mut Emission) {
     let count = control.mesh.vertex_count();
     emission.positions[..count].copy_from_slice(&control.positions);
     emission.normals[..count].copy_from_slice(control.sided.by_vertex());
-    if emission.origins.is_empty() {
-        return;
-    }
     for (face, triangle) in (0..).zip(control.mesh.triangles()) {
         for (corner, &vertex) in triangle.iter().enumerate() {
             let origin = &mut emission.origins[vertex as usize];
@@ -170,8 +218,7 @@ fn corners(control: &Control<'_>, emission: &mut Emission) {
 
 /// Consecutive control faces, and the parts of the arrays that are theirs.
 struct Job<'a> {
-    /// Whether more than the vertices on edges is written.
-    has_inside: bool,
+    extend: Extend,
     faces: core::ops::Range<u32>,
     on_edges: Vertices<'a>,
     inside: Vertices<'a>,
@@ -186,15 +233,14 @@ fn jobs<'a>(
     control: &Control<'_>,
     edges: &Edges<'_>,
     chains: &Chains,
-    (closed, extend): (&[Closed], &impl Fn(u32) -> Extend),
+    (closed, extend): (&[Closed], &[Extend]),
     emission: &'a mut Emission,
 ) -> Vec<Job<'a>> {
     let count = control.mesh.vertex_count();
     let Emission { positions, normals, origins, triangles, twins, parents, borders, .. } = emission;
     let first = count as u32;
-    let known = count.min(origins.len());
     let (positions, normals, origins) =
-        (&mut positions[count..], &mut normals[count..], &mut origins[known..]);
+        (&mut positions[count..], &mut normals[count..], &mut origins[count..]);
     let mut inside = Vertices { first, positions, normals, origins };
     let mut on_edges = inside.take(chains.count());
     let mut rest = (&mut triangles[..], &mut twins[..], &mut parents[..], &mut borders.half_edges[..]);
@@ -208,10 +254,11 @@ fn jobs<'a>(
             own += chains.own(h).1.len();
             segments += chains.along(edges, h) + 1;
         }
-        let is_last = face + 1 == faces || extend(face) != extend(face + 1);
+        let own_extend = extend[face as usize];
+        let is_last = face + 1 == faces || own_extend != extend[face as usize + 1];
         if triangles >= JOB || is_last {
             let job = Job {
-                has_inside: extend(face) == Extend::All,
+                extend: own_extend,
                 faces: from..face + 1,
                 on_edges: on_edges.take(own),
                 inside: inside.take(vertices),
@@ -221,7 +268,7 @@ fn jobs<'a>(
                 parents: split_off(&mut rest.2, triangles as usize),
                 borders: split_off(&mut rest.3, segments),
             };
-            if extend(face) != Extend::Nothing {
+            if own_extend != Extend::Nothing {
                 jobs.push(job);
             }
             first_triangle += triangles;
@@ -237,20 +284,25 @@ fn write(
     control: &Control<'_>,
     edges: &Edges<'_>,
     (decision, chains): (&Decision, &Chains),
-    closed: &[Closed],
+    (closed, kept): (&[Closed], Option<&Kept<'_>>),
     mut job: Job<'_>,
 ) -> Vec<(Condition, u32, u32)> {
     let trees = &decision.trees;
-    if !job.has_inside {
-        for face in job.faces.clone() {
-            own_edges(control, chains, face, &mut job.on_edges);
+    match (job.extend, kept) {
+        (Extend::All, _) => {}
+        (Extend::Kept, Some(kept)) => {
+            return kept.take_over(closed, job);
         }
-        return Vec::new();
+        _ => {
+            for face in job.faces.clone() {
+                own_edges(control, chains, face, &mut job.on_edges);
+            }
+            return Vec::new();
+        }
     }
     job.twins.fill(NONE);
-    let mut walk = Walk { trees, rules: control.rules, knots: Vec::new(), next: job.inside.first };
+    let mut walk = Walk { trees, knots: Vec::new(), next: job.inside.first };
     let mut writer = Writer {
-        rules: control.rules,
         face: 0,
         diagonals: &[],
         conditions: [&[], &[]],
@@ -274,16 +326,16 @@ fn write(
         let own = [0, 1, 2].map(|edge| chains.own(3 * face + edge));
         if !is_split(trees.root(face)) && own.iter().all(|(_, places)| places.is_empty()) {
             // No vertex is its own.
-            walk.node(trees.root(face), at, sides, &Surface::Unknown, &mut writer);
+            walk.node(trees.root(face), at, sides, Surface::Unknown, &mut writer);
         } else {
-            with_patch(&control.patch(face), control.corners(face), 0, &mut |surface| {
-                for (edge, (number, places)) in own.into_iter().enumerate() {
-                    on_edge(control, face, edge, places, surface, |i, point, origin| {
-                        job.on_edges.set(number + i as u32, point, origin);
-                    });
-                }
-                walk.node(trees.root(face), at, sides, surface, &mut writer);
-            });
+            let piece = control.piece(face);
+            let surface = piece.surface(control.rules);
+            for (edge, (number, places)) in own.into_iter().enumerate() {
+                on_edge(face, edge, places, surface, |i, point, origin| {
+                    job.on_edges.set(number + i as u32, point, origin);
+                });
+            }
+            walk.node(trees.root(face), at, sides, surface, &mut writer);
         }
         writer.end();
         let after = writer.next_triangle - job.first_triangle;
@@ -304,29 +356,28 @@ fn own_edges(control: &Control<'_>, chains: &Chains, face: u32, vertices: &mut V
     if own.iter().all(|(_, places)| places.is_empty()) {
         return;
     }
-    with_patch(&control.patch(face), control.corners(face), 0, &mut |surface| {
-        for (edge, (number, places)) in own.into_iter().enumerate() {
-            on_edge(control, face, edge, places, surface, |i, point, origin| {
-                vertices.set(number + i as u32, point, origin);
-            });
-        }
-    });
+    let piece = control.piece(face);
+    let surface = piece.surface(control.rules);
+    for (edge, (number, places)) in own.into_iter().enumerate() {
+        on_edge(face, edge, places, surface, |i, point, origin| {
+            vertices.set(number + i as u32, point, origin);
+        });
+    }
 }
 
 /// Evaluates the vertices at the given places along an edge of a control face.
 fn on_edge(
-    control: &Control<'_>,
     face: u32,
     edge: usize,
     places: &[u32],
-    surface: &Surface<'_>,
+    surface: Surface<'_>,
     mut found: impl FnMut(usize, LimitPoint, Origin),
 ) {
     if places.is_empty() {
         return;
     }
     let places: Vec<f64> = places.iter().map(|&at| fraction(at)).collect();
-    surface.along(control.rules, edge, &places, &mut |i, point| {
+    surface.along(edge, &places, &mut |i, point| {
         let mut barycentric = [0.0; 3];
         (barycentric[edge], barycentric[(edge + 1) % 3]) = (1.0 - places[i], places[i]);
         found(i, point, Origin { face, barycentric });
@@ -338,10 +389,11 @@ fn fraction(at: u32) -> f64 {
 }
 
 /// Makes the half-edges on both sides of control edges twins.
-fn join(edges: &Edges<'_>, is_wanted: &impl Fn(u32) -> bool, emission: &mut Emission) {
-    let Emission { borders, twins, .. } = emission;
+fn join(edges: &Edges<'_>, emission: &mut Emission) {
+    let Emission { borders, twins, is_whole, .. } = emission;
+    let is_whole = |h: u32| is_whole[h as usize / 3];
     for h in 0..borders.starts.len() as u32 - 1 {
-        let twin = edges.twin(h).filter(|&twin| h < twin && is_wanted(h / 3) && is_wanted(twin / 3));
+        let twin = edges.twin(h).filter(|&twin| h < twin && is_whole(h) && is_whole(twin));
         if let Some(twin) = twin {
             for (&a, &b) in borders.along(h).iter().zip(borders.along(twin).iter().rev()) {
                 twins[a as usize] = b;
@@ -352,18 +404,12 @@ fn join(edges: &Edges<'_>, is_wanted: &impl Fn(u32) -> bool, emission: &mut Emis
 }
 
 /// Normals on both sides of sharp edges: a vertex has their average.
-fn sharp_edges(
-    control: &Control<'_>,
-    edges: &Edges<'_>,
-    chains: &Chains,
-    is_wanted: &impl Fn(u32) -> bool,
-    emission: &mut Emission,
-) {
+fn sharp_edges(control: &Control<'_>, edges: &Edges<'_>, chains: &Chains, emission: &mut Emission) {
     if control.lasting.is_empty() {
         return;
     }
-    for face in (0..control.mesh.face_count() as u32).filter(|&face| is_wanted(face)) {
-        let open = control.open(face);
+    for face in 0..control.mesh.face_count() as u32 {
+        let open = if emission.is_whole[face as usize] { control.open(face) } else { [false; 3] };
         for edge in (0..3).filter(|&edge| open[edge]) {
             let h = 3 * face + edge as u32;
             let Some(twin) = edges.twin(h) else { continue };
@@ -373,10 +419,9 @@ fn sharp_edges(
                 normals.copy_from_slice(&emission.normals[number as usize..number as usize + places.len()]);
             } else {
                 let turned: Vec<u32> = places.iter().rev().map(|&at| FULL - at).collect();
-                with_patch(&control.patch(face), control.corners(face), 0, &mut |surface| {
-                    on_edge(control, face, edge, &turned, surface, |i, point, _| {
-                        normals[i] = point.normal.to_array();
-                    });
+                let piece = control.piece(face);
+                on_edge(face, edge, &turned, piece.surface(control.rules), |i, point, _| {
+                    normals[i] = point.normal.to_array();
                 });
             }
             emission.sharp.push((h, normals));

@@ -7,7 +7,7 @@ use super::emit::Emission;
 use super::leaf::leaf_triangles;
 use super::quadtree::{Edges, Place, Trees};
 use super::rim::{Rim, bits};
-use super::surface::{Ground, Spot, Surface, with_patch};
+use super::surface::{Ground, Spot, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
 use crate::certificate::{Cell, Pieces, SubTriangle};
 use crate::emit::{Diagonal, closure};
@@ -56,7 +56,7 @@ impl Sources<'_> {
     /// Shows the triangles of a control face, in the order in which they stand.
     pub(super) fn show(&self, face: u32, beholder: &mut impl Beholder) {
         let Self { control, edges, trees, chains, closed, emission } = *self;
-        let mut walk = Walk { trees, rules: control.rules, knots: Vec::new(), next: 0 };
+        let mut walk = Walk { trees, knots: Vec::new(), next: 0 };
         let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
         let mut leaves = Leaves {
             rules: control.rules,
@@ -68,9 +68,7 @@ impl Sources<'_> {
             beholder,
         };
         let at = (Place::root(face), Spot::WHOLE);
-        with_patch(&control.patch(face), control.corners(face), 0, &mut |surface| {
-            walk.node(trees.root(face), at, sides, surface, &mut leaves);
-        });
+        walk.node(trees.root(face), at, sides, control.piece(face).surface(control.rules), &mut leaves);
     }
 }
 
@@ -88,7 +86,7 @@ struct Leaves<'a, B> {
 }
 
 impl<B: Beholder> Visitor for Leaves<'_, B> {
-    fn chain(&mut self, _: &[Knot], _: usize, _: Spot, _: &Surface<'_>) {}
+    fn chain(&mut self, _: &[Knot], _: usize, _: Spot, _: Surface<'_>) {}
 
     fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
         self.rim.set(node, knots);
@@ -140,7 +138,8 @@ impl<B: Beholder> Leaves<'_, B> {
         let triangles = leaf_triangles([0, 1, 2], middles, from_end);
         match node.surface {
             Surface::Unknown => {}
-            Surface::Regular(ground, spot) => {
+            Surface::Regular(piece, spot) => {
+                let ground = piece.ground();
                 let spot = spot.leaf(node.depth, i, j);
                 let [a, b, c] = spot.corners();
                 let domain = [a, b, c, spot.along(0, 0.5), spot.along(1, 0.5), spot.along(2, 0.5)];
@@ -150,14 +149,11 @@ impl<B: Beholder> Leaves<'_, B> {
                     self.beholder.triangle(&emitted, Over::Regular(ground, cell, spot), self.rules);
                 }
             }
-            Surface::General { patch, corners, .. } => {
-                let mut pieces = Pieces::of(patch);
-                let [a, b, c] = *corners;
-                let mut points = [a, b, c, a, b, c];
-                if bits != 0 {
-                    let refined = pieces.refined(self.rules);
-                    (0..3).for_each(|edge| points[3 + edge] = refined.middle(edge));
-                }
+            Surface::General(piece, rules) => {
+                let mut pieces = Pieces::of(&piece.patch);
+                let [a, b, c] = piece.corners;
+                let [d, e, f] = if bits == 0 { piece.corners } else { piece.middles(rules) };
+                let points = [a, b, c, d, e, f];
                 for triangle in triangles {
                     let emitted = emitted(triangle.part, triangle.corners, triangle.borders);
                     let limits = triangle.corners.map(|label| points[label]);
@@ -171,12 +167,12 @@ impl<B: Beholder> Leaves<'_, B> {
     fn headlong(&mut self, node: &Node<'_>, (i, j): (usize, usize)) {
         let number = self.next;
         self.next += 1;
-        let Surface::Regular(ground, spot) = node.surface else { return };
+        let Surface::Regular(piece, spot) = node.surface else { return };
         let [a, b, c] = self.triangles[number as usize];
         let place = node.place.leaf(node.depth, (i, j), true);
         let emitted =
             Emitted { number, vertices: [b, c, a], place, part: SubTriangle::Whole, open: [false; 3] };
         let spot = spot.row(node.depth, i, j, true);
-        self.beholder.triangle(&emitted, Over::Regular(ground, spot.cell(), spot), self.rules);
+        self.beholder.triangle(&emitted, Over::Regular(piece.ground(), spot.cell(), spot), self.rules);
     }
 }

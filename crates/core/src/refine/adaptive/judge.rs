@@ -249,11 +249,11 @@ impl Judge<'_> {
             let test = Trial::of(criteria, self.limit, &seen, corners);
             return test.regular(ground, net, cell, open, self.rules);
         }
-        let heights = ground.jet.heights(cell, seen.frame.normal());
+        let heights = ground.jet().heights(cell, seen.frame.normal());
         let (low, high) = heights.range();
         if self.is_lenient {
-            let beside = ground.jet.beside(cell, &seen.frame, open);
-            let by_derivatives = beside.deviation(heights.refined(DIVISIONS).min(high));
+            let beside = ground.jet().beside(cell, &seen.frame, open);
+            let by_derivatives = beside.deviation(heights.refined(DIVISIONS, 0.0).min(high));
             let by_net = net().deviation(&seen.frame, self.rules, self.effort(&seen, open));
             let (chord, slope) = seen.expected();
             let is_less = by_derivatives.bound(chord, slope) <= by_net.bound(chord, slope);
@@ -262,7 +262,7 @@ impl Judge<'_> {
         if exceeds(low, self.limit) && !self.is_kept(&seen) {
             return Verdict { outcome: Outcome::Fails, extent: Extent { bound: low, ..seen.extent() } };
         }
-        let beside = ground.jet.beside(cell, &seen.frame, open);
+        let beside = ground.jet().beside(cell, &seen.frame, open);
         if beside.is_loose() {
             // Drifts by the net, heights by the derivatives: those of a net are a third too great.
             let net = net();
@@ -275,7 +275,8 @@ impl Judge<'_> {
             if at_once.passes() {
                 return at_once;
             }
-            deviation.height = deviation.height.min(heights.refined(DIVISIONS));
+            let enough = deviation.height_within(self.limit, seen.allowed(allowance).0);
+            deviation.height = deviation.height.min(heights.refined(DIVISIONS, enough));
             let refined = self.decided(&seen, deviation, allowance);
             if refined.passes() {
                 return refined;
@@ -290,7 +291,8 @@ impl Judge<'_> {
         // Higher than that it is not; or what fails is not the height.
         let least = self.decided(&seen, beside.deviation(low), allowance);
         if !least.fails() {
-            let high = heights.refined(DIVISIONS).min(high);
+            let enough = beside.deviation(low).height_within(self.limit, seen.allowed(allowance).0);
+            let high = heights.refined(DIVISIONS, enough).min(high);
             return self.decided(&seen, beside.deviation(high), allowance);
         }
         // Wide parts are better seen by their points.

@@ -98,12 +98,12 @@ impl Beholder for Measuring<'_> {
         };
         match over {
             Over::Regular(ground, cell, spot) => {
-                let heights = ground.jet.heights(&cell, among.frame.normal());
-                let beside = ground.jet.beside(&cell, &among.frame, emitted.open);
+                let heights = ground.jet().heights(&cell, among.frame.normal());
+                let beside = ground.jet().beside(&cell, &among.frame, emitted.open);
                 let first =
-                    if among.moved > 0.0 { heights.lifted(among.lifts, 1) } else { heights.range().1 };
+                    if among.moved > 0.0 { heights.lifted(among.lifts, 1, 0.0) } else { heights.range().1 };
                 let off = |height| beside.deviation_off(height, among.moved, among.aside);
-                if !is_enough(off(first)) && !is_enough(off(heights.lifted(among.lifts, DIVISIONS))) {
+                if !is_enough(off(first)) && !is_enough(off(heights.lifted(among.lifts, DIVISIONS, 0.0))) {
                     let net = ground.net(spot, emitted.part);
                     let deviation = net.deviation(&among.frame, rules, self.effort(&among, emitted));
                     is_enough(deviation.off(among.moved, among.aside));
@@ -160,7 +160,7 @@ impl Measuring<'_> {
         }
         let height = match over {
             Over::Regular(ground, cell, _) => {
-                let (low, high) = ground.jet.heights(cell, among.frame.normal()).sampled(among.lifts);
+                let (low, high) = ground.jet().heights(cell, among.frame.normal()).sampled(among.lifts);
                 high.max(-low)
             }
             Over::General(pieces, _) if emitted.part == SubTriangle::Whole => {

@@ -51,7 +51,7 @@ use balance::{Pending, balance};
 use chains::Chains;
 use close::{Closed, Verdicts, close};
 use decide::{Control, Decision, decide};
-use emit::Emission;
+use emit::{Emission, Extend};
 use judge::Goal;
 use quadtree::{Edges, Place, Trees};
 use result::Outcome;
@@ -180,9 +180,9 @@ pub(super) struct Plan {
     has_failed: bool,
     /// By control face whose leaves that pass on conditions do so, the greatest bound of one, and the leaf.
     settled: Vec<Option<(f64, Place)>>,
-    /// Control faces that were walked over since somebody last looked at what is emitted.
+    /// Control faces that were walked over since the last emission.
     is_touched: Vec<bool>,
-    /// What was emitted to look at conditions, if that is all of it.
+    /// What was emitted last, as far as it was.
     emission: Option<Emission>,
 }
 
@@ -277,10 +277,7 @@ impl Engine<'_> {
             return self.emit_among(plan, &goal, (most, is_budget));
         }
         let mut plan = plan;
-        let emission = match plan.emission.take() {
-            Some(emission) => emission,
-            None => self.emit_all(&plan)?,
-        };
+        let emission = self.emit_all(&mut plan)?;
         Ok(Some(Outcome { plan, emission, measured: None }))
     }
 
@@ -292,10 +289,20 @@ impl Engine<'_> {
         }
     }
 
-    /// Emits all of a plan.
-    fn emit_all(&self, plan: &Plan) -> Result<Emission, RefineError> {
+    /// Emits all of a plan, or some control faces, but for what was emitted before and is the same.
+    fn emit_some(&self, plan: &mut Plan, only: Option<&[Extend]>) -> Result<Emission, RefineError> {
+        let is_touched = core::mem::replace(&mut plan.is_touched, vec![false; plan.closed.len()]);
+        let before = plan.emission.take().map(|emission| (emission, &is_touched[..]));
         let chains = (&plan.decision, &plan.chains);
-        let mut emission = emit::emit(self.control, &self.edges, chains, &plan.closed, None)?;
+        Ok(emit::emit(self.control, &self.edges, chains, &plan.closed, only, before)?)
+    }
+
+    /// Emits all of a plan.
+    fn emit_all(&self, plan: &mut Plan) -> Result<Emission, RefineError> {
+        let mut emission = match plan.emission.take_if(|emission| emission.is_complete(&plan.is_touched)) {
+            Some(emission) => emission,
+            None => self.emit_some(plan, None)?,
+        };
         let junctions = sides::junctions(self.control, &self.edges, &plan.chains, &emission);
         join_copies(&mut emission.positions, &junctions.vertices);
         emission.junctions = junctions;

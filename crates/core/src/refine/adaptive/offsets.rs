@@ -83,7 +83,7 @@ impl Beholder for Looking<'_> {
         let corners = emitted.vertices.map(|vertex| vector(self.emission.positions[vertex as usize]));
         let frame = TriangleFrame::new(corners);
         let (low, high) = match over {
-            Over::Regular(ground, cell, _) => ground.jet.heights(&cell, frame.normal()).sampled([0.0; 3]),
+            Over::Regular(ground, cell, _) => ground.jet().heights(&cell, frame.normal()).sampled([0.0; 3]),
             Over::General(pieces, _) => {
                 let points = pieces.points(SAMPLED_LEVELS, rules).into_iter();
                 let inside =

@@ -9,13 +9,12 @@ use super::emit::Emission;
 use super::judge::Goal;
 use super::measure::{Measured, measure};
 use super::quadtree::Place;
-use super::surface::{Surface, child_corners, with_patch};
+use super::surface::{Surface, child_corners};
 use super::{Engine, Plan};
 use crate::certificate::TriangleFrame;
 use crate::geometry::closest_to_origin;
 use crate::index::VertexId;
 use crate::mesh::Mesh;
-use crate::patch::LimitPoint;
 use crate::refine::exact_result::ErrorBounds;
 use crate::vector::{DVec3, vector};
 
@@ -181,9 +180,7 @@ fn estimated(
         let trees = &plan.decision.trees;
         let levels = trees.depth(trees.root(face)) as usize + SAMPLED_LEVELS;
         let mut points = Vec::new();
-        with_patch(&control.patch(face), control.corners(face), 0, &mut |surface| {
-            sample(engine, surface, levels.min(MOST_SAMPLED_LEVELS), &mut points);
-        });
+        sample(control.piece(face).surface(control.rules), levels.min(MOST_SAMPLED_LEVELS), &mut points);
         for point in points {
             let distance = mesh.distance(point, face);
             if distance > best.lower {
@@ -216,54 +213,32 @@ impl Plan {
 /// highest and lowest, and the corners.
 fn highest(engine: &Engine<'_>, emission: &Emission, place: Place) -> Vec<DVec3> {
     let control = engine.control;
-    let mut found = Vec::new();
-    with_patch(&control.patch(place.face), control.corners(place.face), 0, &mut |surface| {
-        descend(engine, surface, control.corners(place.face), place, 0, &mut |surface, corners| {
-            let frame = TriangleFrame::new(corners.map(|corner| corner.position));
-            let mut points = Vec::new();
-            sample(engine, surface, SAMPLED_LEVELS, &mut points);
-            let height = |point: &DVec3| frame.height(*point);
-            let by_height = |a: &&DVec3, b: &&DVec3| height(a).total_cmp(&height(b));
-            let by_distance = |a: &&DVec3, b: &&DVec3| height(a).abs().total_cmp(&height(b).abs());
-            if emission.offsets.is_empty() {
-                found.extend(points.iter().max_by(by_distance));
-            } else {
-                found.extend(points.iter().max_by(by_height));
-                found.extend(points.iter().min_by(by_height));
-                found.extend(corners.map(|corner| corner.position));
-            }
-        });
-    });
-    found
-}
-
-/// Goes down to a place.
-fn descend(
-    engine: &Engine<'_>,
-    surface: &Surface<'_>,
-    corners: [LimitPoint; 3],
-    place: Place,
-    level: u32,
-    take: &mut dyn FnMut(&Surface<'_>, [LimitPoint; 3]),
-) {
-    if level == place.level {
-        return take(surface, corners);
+    let piece = control.piece(place.face);
+    let (mut surface, mut corners) = (piece.surface(control.rules), control.corners(place.face));
+    for level in 0..place.level {
+        let child = place.digit(level);
+        corners = child_corners(corners, surface.middles(), child);
+        surface = surface.child(child);
     }
-    let child = place.digit(level);
-    let middles = surface.middles(engine.control.rules);
-    let own = child_corners(corners, middles, child);
-    surface.with_parts(engine.control.rules, |part| {
-        part(child, &mut |surface| descend(engine, surface, own, place, level + 1, take));
-    });
+    let frame = TriangleFrame::new(corners.map(|corner| corner.position));
+    let mut points = Vec::new();
+    sample(surface, SAMPLED_LEVELS, &mut points);
+    let height = |point: &DVec3| frame.height(*point);
+    let by_height = |a: &&DVec3, b: &&DVec3| height(a).total_cmp(&height(b));
+    let by_distance = |a: &&DVec3, b: &&DVec3| height(a).abs().total_cmp(&height(b).abs());
+    if emission.offsets.is_empty() {
+        return points.iter().max_by(by_distance).into_iter().copied().collect();
+    }
+    let ends = [points.iter().max_by(by_height), points.iter().min_by(by_height)];
+    let corners = corners.map(|corner| corner.position);
+    ends.into_iter().flatten().copied().chain(corners).collect()
 }
 
 /// Points of a surface.
-fn sample(engine: &Engine<'_>, surface: &Surface<'_>, levels: usize, points: &mut Vec<DVec3>) {
-    points.extend(surface.middles(engine.control.rules).map(|middle| middle.position));
+fn sample(surface: Surface<'_>, levels: usize, points: &mut Vec<DVec3>) {
+    points.extend(surface.middles().map(|middle| middle.position));
     if levels > 1 {
-        surface.with_parts(engine.control.rules, |part| {
-            (0..4).for_each(|child| part(child, &mut |surface| sample(engine, surface, levels - 1, points)));
-        });
+        (0..4).for_each(|child| sample(surface.child(child), levels - 1, points));
     }
 }
 

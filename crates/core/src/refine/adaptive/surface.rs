@@ -1,7 +1,8 @@
 //! The limit surface over a node, as far as a walk needs it: regular pieces stay what they are all the way down, others are
-//! refined on the way.
+//! refined on the way, once.
 
 use core::array::from_fn;
+use core::cell::OnceCell;
 
 use crate::certificate::{Cell, NetPart, QuarticJet, SubTriangle};
 use crate::patch::bezier_triangle::BezierTriangle;
@@ -15,13 +16,18 @@ const LANES: usize = 4;
 #[derive(Clone, Debug)]
 pub(super) struct Ground {
     pub(super) piece: Quartic,
-    pub(super) jet: QuarticJet,
+    jet: OnceCell<QuarticJet>,
 }
 
 impl Ground {
     pub(super) fn of(net: &BezierTriangle) -> Self {
-        let piece = Quartic::of(net, 0);
-        Self { jet: QuarticJet::of(&piece), piece }
+        Self { piece: Quartic::of(net, 0), jet: OnceCell::new() }
+    }
+
+    /// What bounds parts of it.
+    #[inline]
+    pub(super) fn jet(&self) -> &QuarticJet {
+        self.jet.get_or_init(|| QuarticJet::of(&self.piece))
     }
 
     /// The net of a part of a node.
@@ -109,21 +115,83 @@ impl Spot {
     }
 }
 
+/// A piece of the limit surface, and what was derived from it so far: walks ask for some of it several times, and for much of it
+/// never.
+pub(super) enum SurfacePiece {
+    Regular(RegularPiece),
+    General(GeneralPiece),
+}
+
+/// A regular piece.
+pub(super) struct RegularPiece {
+    points: [DVec3; 12],
+    ground: OnceCell<Box<Ground>>,
+}
+
+/// Any other, with its corners' limits, normals on this side.
+pub(super) struct GeneralPiece {
+    pub(super) patch: Patch,
+    pub(super) corners: [LimitPoint; 3],
+    refined: OnceCell<Box<Refinement>>,
+}
+
+/// A piece refined once.
+struct Refinement {
+    middles: [LimitPoint; 3],
+    children: [SurfacePiece; 4],
+}
+
+impl SurfacePiece {
+    pub(super) fn of(patch: Patch, corners: [LimitPoint; 3]) -> Self {
+        match patch {
+            Patch::Regular(points) => Self::Regular(RegularPiece { points, ground: OnceCell::new() }),
+            patch => Self::General(GeneralPiece { patch, corners, refined: OnceCell::new() }),
+        }
+    }
+
+    /// All of it.
+    pub(super) fn surface<'a>(&'a self, rules: &'a Rules<'a>) -> Surface<'a> {
+        match self {
+            Self::Regular(piece) => Surface::Regular(piece, Spot::WHOLE),
+            Self::General(piece) => Surface::General(piece, rules),
+        }
+    }
+}
+
+impl RegularPiece {
+    pub(super) fn ground(&self) -> &Ground {
+        self.ground.get_or_init(|| Box::new(Ground::of(&BezierTriangle::of(&self.points))))
+    }
+}
+
+impl GeneralPiece {
+    fn refined(&self, rules: &Rules<'_>) -> &Refinement {
+        self.refined.get_or_init(|| {
+            let refined = self.patch.refined(rules);
+            let middles = [0, 1, 2].map(|edge| refined.middle(edge));
+            let children = from_fn(|child| {
+                let own = child_corners(self.corners, middles, child);
+                SurfacePiece::of(refined.part(child), own)
+            });
+            Box::new(Refinement { middles, children })
+        })
+    }
+
+    /// The limits in the middles of the edges.
+    pub(super) fn middles(&self, rules: &Rules<'_>) -> [LimitPoint; 3] {
+        self.refined(rules).middles
+    }
+}
+
 /// The surface over a node.
+#[derive(Clone, Copy)]
 pub(super) enum Surface<'a> {
     /// Nobody asks.
     Unknown,
     /// Part of a regular piece.
-    Regular(&'a Ground, Spot),
-    /// Any other, with its corners' limits.
-    General {
-        /// The piece.
-        patch: &'a Patch,
-        /// The limits of its corners, normals on this side.
-        corners: [LimitPoint; 3],
-        /// Its level below the control face.
-        level: u32,
-    },
+    Regular(&'a RegularPiece, Spot),
+    /// Any other piece.
+    General(&'a GeneralPiece, &'a Rules<'a>),
 }
 
 /// The corners of a node's child.
@@ -137,59 +205,32 @@ pub(super) fn child_corners<T: Copy>(corners: [T; 3], middles: [T; 3], child: us
     own
 }
 
-impl Surface<'_> {
-    /// Calls `run` with a function that hands out the surfaces over the children, by their numbers.
-    pub(super) fn with_parts(
-        &self,
-        rules: &Rules<'_>,
-        run: impl FnOnce(&mut dyn FnMut(usize, &mut dyn FnMut(&Surface<'_>))),
-    ) {
+impl<'a> Surface<'a> {
+    /// The surface over a child.
+    pub(super) fn child(self, child: usize) -> Self {
         match self {
-            Surface::Unknown => run(&mut |_, take| take(&Surface::Unknown)),
-            Surface::Regular(ground, spot) => {
-                run(&mut |child, take| take(&Surface::Regular(ground, spot.child(child))));
-            }
-            Surface::General { patch, corners, level } => {
-                let refined = patch.refined(rules);
-                let middles = [0, 1, 2].map(|edge| refined.middle(edge));
-                run(&mut |child, take| {
-                    with_patch(
-                        &refined.part(child),
-                        child_corners(*corners, middles, child),
-                        *level + 1,
-                        take,
-                    );
-                });
-            }
+            Surface::Unknown => Surface::Unknown,
+            Surface::Regular(piece, spot) => Surface::Regular(piece, spot.child(child)),
+            Surface::General(piece, rules) => piece.refined(rules).children[child].surface(rules),
         }
     }
 
     /// The limits in the middles of the edges.
-    pub(super) fn middles(&self, rules: &Rules<'_>) -> [LimitPoint; 3] {
+    pub(super) fn middles(self) -> [LimitPoint; 3] {
         match self {
             Surface::Unknown => [LimitPoint { position: DVec3::ZERO, normal: DVec3::ZERO }; 3],
-            Surface::Regular(ground, spot) => ground.at([0, 1, 2].map(|edge| spot.along(edge, 0.5))),
-            Surface::General { patch, .. } => {
-                let refined = patch.refined(rules);
-                [0, 1, 2].map(|edge| refined.middle(edge))
-            }
+            Surface::Regular(piece, spot) => piece.ground().at([0, 1, 2].map(|edge| spot.along(edge, 0.5))),
+            Surface::General(piece, rules) => piece.middles(rules),
         }
     }
 
     /// Evaluates the points at the given places along an edge, from 0 to 1 and ascending.
-    pub(super) fn along(
-        &self,
-        rules: &Rules<'_>,
-        edge: usize,
-        places: &[f64],
-        found: &mut impl FnMut(usize, LimitPoint),
-    ) {
-        self.part_along(rules, edge, (0.0, 1.0), (0, places.len()), places, found);
+    pub(super) fn along(self, edge: usize, places: &[f64], found: &mut impl FnMut(usize, LimitPoint)) {
+        self.part_along(edge, (0.0, 1.0), (0, places.len()), places, found);
     }
 
     fn part_along(
-        &self,
-        rules: &Rules<'_>,
+        self,
         edge: usize,
         (from, length): (f64, f64),
         (first, last): (usize, usize),
@@ -201,7 +242,8 @@ impl Surface<'_> {
         }
         match self {
             Surface::Unknown => {}
-            Surface::Regular(ground, spot) => {
+            Surface::Regular(piece, spot) => {
+                let ground = piece.ground();
                 let place = |at: usize| spot.along(edge, (places[at] - from) / length);
                 let mut at = first;
                 while at < last {
@@ -217,43 +259,20 @@ impl Surface<'_> {
                     at += count;
                 }
             }
-            Surface::General { patch, corners, level } => {
-                let refined = patch.refined(rules);
-                let middles = [0, 1, 2].map(|edge| refined.middle(edge));
+            Surface::General(piece, rules) => {
                 let half = 0.5 * length;
                 let middle = first + places[first..last].partition_point(|&place| place < from + half);
                 let mut next = middle;
                 if middle < last && places[middle] == from + half {
-                    found(middle, middles[edge]);
+                    found(middle, piece.middles(rules)[edge]);
                     next += 1;
                 }
                 for (child, from, first, last) in
                     [(edge, from, first, middle), ((edge + 1) % 3, from + half, next, last)]
                 {
-                    if first < last {
-                        let own = child_corners(*corners, middles, child);
-                        with_patch(&refined.part(child), own, *level + 1, &mut |surface| {
-                            surface.part_along(rules, edge, (from, half), (first, last), places, found);
-                        });
-                    }
+                    self.child(child).part_along(edge, (from, half), (first, last), places, found);
                 }
             }
         }
-    }
-}
-
-/// Calls `take` with the surface of a patch, `level` levels below its control face.
-pub(super) fn with_patch(
-    patch: &Patch,
-    corners: [LimitPoint; 3],
-    level: u32,
-    take: &mut dyn FnMut(&Surface<'_>),
-) {
-    match patch {
-        Patch::Regular(points) => {
-            let ground = Ground::of(&BezierTriangle::of(points));
-            take(&Surface::Regular(&ground, Spot::WHOLE));
-        }
-        _ => take(&Surface::General { patch, corners, level }),
     }
 }

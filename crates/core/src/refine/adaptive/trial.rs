@@ -62,19 +62,19 @@ impl<'a> Trial<'a> {
         if !self.criteria.has_distances() {
             return self.verdict(self.cone);
         }
-        let heights = ground.jet.heights(cell, self.seen.frame.normal());
+        let heights = ground.jet().heights(cell, self.seen.frame.normal());
         let (low, high) = heights.range();
         if self.is_lost(low) {
             let least = Apart { own: low, height: low, across: 0.0 };
             return self.verdict(self.cone.max(self.criteria.distance_ratio(&least, &self.region)));
         }
-        let beside = ground.jet.beside(cell, &self.seen.frame, open);
+        let beside = ground.jet().beside(cell, &self.seen.frame, open);
         let verdict = self.verdict(self.value(&beside.deviation(high)));
         if !verdict.fails() {
             return verdict;
         }
         if !self.verdict(self.value(&beside.deviation(low))).fails() {
-            let high = heights.refined(DIVISIONS).min(high);
+            let high = heights.refined(DIVISIONS, 0.0).min(high);
             return self.verdict(self.value(&beside.deviation(high)));
         }
         let deviation = net().deviation(&self.seen.frame, rules, self.effort(open));

@@ -10,7 +10,6 @@ use super::quadtree::{
 };
 use super::surface::{Spot, Surface};
 use crate::mesh::NONE;
-use crate::patch::Rules;
 
 /// A vertex on a chain, and the half-edge that was met first between it and the next one.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +76,7 @@ impl Side {
 pub(super) trait Visitor {
     /// A chain inside the face was made; `knots` runs from its first to its last, `edge` is the edge of the middle child
     /// that it runs against, whose place in the face and surface are given.
-    fn chain(&mut self, knots: &[Knot], edge: usize, spot: Spot, middle: &Surface<'_>);
+    fn chain(&mut self, knots: &[Knot], edge: usize, spot: Spot, middle: Surface<'_>);
 
     /// A node whose leaves lie `depth` levels below it. `interior` is the first of the numbers kept for the vertices inside, in
     /// rows from edge 0 on. Surfaces that are not regular have depth 0.
@@ -99,7 +98,7 @@ pub(super) struct Node<'a> {
     pub(super) is_conditional: bool,
     pub(super) sides: [Side; 3],
     pub(super) interior: u32,
-    pub(super) surface: &'a Surface<'a>,
+    pub(super) surface: Surface<'a>,
 }
 
 impl Node<'_> {
@@ -118,7 +117,6 @@ impl Node<'_> {
 /// A walk and what it keeps.
 pub(super) struct Walk<'a> {
     pub(super) trees: &'a Trees,
-    pub(super) rules: &'a Rules<'a>,
     pub(super) knots: Vec<Knot>,
     /// The next vertex's number.
     pub(super) next: u32,
@@ -131,7 +129,7 @@ impl Walk<'_> {
         word: u32,
         (place, spot): (Place, Spot),
         sides: [Side; 3],
-        surface: &Surface<'_>,
+        surface: Surface<'_>,
         visitor: &mut V,
     ) {
         if let Some(depth) = even_depth(word) {
@@ -159,28 +157,23 @@ impl Walk<'_> {
             Side { first, last: self.knots.len() - 1, reversed: false }
         });
         let halves = [0, 1, 2].map(|edge| sides[edge].halves(middles[edge]));
-        surface.with_parts(self.rules, |part| {
-            // The middle one first: it knows the chains' points.
-            part(3, &mut |surface| {
-                for (edge, chain) in chains.iter().enumerate() {
-                    visitor.chain(&self.knots[chain.first..=chain.last], edge, spot.child(3), surface);
-                }
-            });
-            for child in 0..4 {
-                let own = if child == 3 {
-                    chains.map(|chain| Side { reversed: true, ..chain })
-                } else {
-                    let mut own = chains;
-                    own[child] = halves[child][0];
-                    own[(child + 2) % 3] = halves[(child + 2) % 3][1];
-                    own
-                };
-                part(child, &mut |surface| {
-                    let at = (place.child(child), spot.child(child));
-                    self.node(children[child], at, own, surface, visitor);
-                });
-            }
-        });
+        // The middle one knows the chains' points.
+        for (edge, chain) in chains.iter().enumerate() {
+            let knots = &self.knots[chain.first..=chain.last];
+            visitor.chain(knots, edge, spot.child(3), surface.child(3));
+        }
+        for child in 0..4 {
+            let own = if child == 3 {
+                chains.map(|chain| Side { reversed: true, ..chain })
+            } else {
+                let mut own = chains;
+                own[child] = halves[child][0];
+                own[(child + 2) % 3] = halves[(child + 2) % 3][1];
+                own
+            };
+            let at = (place.child(child), spot.child(child));
+            self.node(children[child], at, own, surface.child(child), visitor);
+        }
         self.knots.truncate(floor);
     }
 }

@@ -34,7 +34,7 @@ impl Decider<'_> {
     /// Divides a part of a regular piece by testing all nodes of some levels at once, where that is worth while.
     pub(super) fn rows(&mut self, ground: &Ground, spot: Spot, place: Place) -> AtOnce {
         let target = self.judge.row_target(&self.allowance);
-        let block = RowBlock::of(&ground.piece, &ground.jet, [spot.u, spot.v], spot.size);
+        let block = RowBlock::of(&ground.piece, ground.jet(), [spot.u, spot.v], spot.size);
         let (least, most) = block.levels(target.distance);
         let fails = least > 0;
         if !fails {
@@ -49,12 +49,11 @@ impl Decider<'_> {
             return AtOnce::NotHere { fails, may_be_below: false };
         }
         let mut levels = core::mem::take(&mut self.marks);
-        let mut rows = core::mem::take(&mut self.cell_rows);
         let mut extent = RowExtent::NONE;
         let mut tested = 0;
         for divisions in least..=last {
             let marks = &mut levels[tested];
-            rows.test(&block, divisions, &target, &mut extent, marks);
+            self.cell_rows.test(&block, divisions, &target, &mut extent, marks);
             tested += 1;
             if marks.are_all_passing() {
                 break;
@@ -68,7 +67,7 @@ impl Decider<'_> {
             let found = Rows { ground, place, spot, marks: &levels[..tested], first: least };
             self.row_node(&found, (0, 0, false), 0)
         };
-        (self.marks, self.cell_rows) = (levels, rows);
+        self.marks = levels;
         AtOnce::Decided(word)
     }
 

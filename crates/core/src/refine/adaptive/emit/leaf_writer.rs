@@ -9,7 +9,7 @@ use super::super::walk::{Knot, Node, Visitor};
 use super::fraction;
 use crate::emit::{Diagonal, closure};
 use crate::mesh::NONE;
-use crate::patch::{LimitPoint, Rules};
+use crate::patch::LimitPoint;
 use crate::refine::exact_result::Origin;
 
 /// A run of vertices to be written: the first's number, then positions, normals, origins.
@@ -23,11 +23,10 @@ pub(super) struct Vertices<'a> {
 impl<'a> Vertices<'a> {
     /// Takes the first `count` off.
     pub(super) fn take(&mut self, count: usize) -> Vertices<'a> {
-        let originating = count.min(self.origins.len());
         let (positions, normals, origins) = (
             split_off(&mut self.positions, count),
             split_off(&mut self.normals, count),
-            split_off(&mut self.origins, originating),
+            split_off(&mut self.origins, count),
         );
         let first = self.first;
         self.first += count as u32;
@@ -38,9 +37,7 @@ impl<'a> Vertices<'a> {
         let at = (vertex - self.first) as usize;
         self.positions[at] = point.position.to_array();
         self.normals[at] = point.normal.to_array();
-        if let Some(slot) = self.origins.get_mut(at) {
-            *slot = origin;
-        }
+        self.origins[at] = origin;
     }
 }
 
@@ -56,7 +53,6 @@ const CLOSING: usize = 1;
 
 /// Writes the leaves of control faces.
 pub(super) struct Writer<'a> {
-    pub(super) rules: &'a Rules<'a>,
     pub(super) face: u32,
     /// Those of the face that have not come yet.
     pub(super) diagonals: &'a [bool],
@@ -76,7 +72,7 @@ pub(super) struct Writer<'a> {
 }
 
 impl Visitor for Writer<'_> {
-    fn chain(&mut self, knots: &[Knot], edge: usize, spot: Spot, middle: &Surface<'_>) {
+    fn chain(&mut self, knots: &[Knot], edge: usize, spot: Spot, middle: Surface<'_>) {
         let last = knots.len() - 1;
         if last < 2 {
             return;
@@ -85,7 +81,7 @@ impl Visitor for Writer<'_> {
         places.clear();
         // The middle child's edge runs the other way.
         places.extend(knots[1..last].iter().rev().map(|knot| 1.0 - fraction(knot.at)));
-        middle.along(self.rules, edge, &places, &mut |i, point| {
+        middle.along(edge, &places, &mut |i, point| {
             let origin = self.origin(spot.along(edge, places[i]));
             self.inside.set(knots[last - 1 - i].vertex, point, origin);
         });
@@ -107,24 +103,22 @@ impl Writer<'_> {
     /// The vertices inside a node, row by row.
     fn interior(&mut self, node: &Node<'_>) {
         let n = 1usize << node.depth;
-        let Surface::Regular(ground, spot) = node.surface else { return };
+        let Surface::Regular(piece, spot) = node.surface else { return };
         let mut at = (node.interior - self.inside.first) as usize;
         let (step, own) = (spot.size / n as f64, node.spot);
         for j in 1..n.max(2) - 1 {
             let count = n - 1 - j;
             let row = at..at + count;
-            ground.piece.points_and_normals_along(
+            piece.ground().piece.points_and_normals_along(
                 spot.v + step * j as f64,
                 spot.u + step,
                 step,
                 &mut self.inside.positions[row.clone()],
                 &mut self.inside.normals[row],
             );
-            if !self.inside.origins.is_empty() {
-                for i in 1..=count {
-                    let leaf = own.leaf(node.depth, i, j);
-                    self.inside.origins[at + i - 1] = self.origin([leaf.u, leaf.v]);
-                }
+            for i in 1..=count {
+                let leaf = own.leaf(node.depth, i, j);
+                self.inside.origins[at + i - 1] = self.origin([leaf.u, leaf.v]);
             }
             at += count;
         }
