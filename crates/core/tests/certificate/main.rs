@@ -28,6 +28,9 @@ const MOST_REFERENCE_TRIANGLES: usize = 40_000;
 /// Triangles of a result at most.
 const MOST_TRIANGLES: usize = 5_000;
 
+/// The same where edges of a mesh sixteen times as fine are collapsed.
+const MOST_OPTIMISED: usize = 600;
+
 /// Vertices of the reference and points of the result that are measured.
 const MOST_SAMPLES: usize = 8_000;
 
@@ -67,7 +70,9 @@ fn goal(control: &Mesh, random: &mut Random) -> Goal<'static> {
             what += ", balanced";
         }
         3 => {
-            options = options.optimize(true);
+            let most = MOST_OPTIMISED.max(faces);
+            options.triangles = options.triangles.map(|count| count.min(most));
+            options = options.optimize(true).max_triangles(Some(most));
             what += ", optimised";
         }
         _ => {}
