@@ -199,7 +199,10 @@ pub(super) fn merged<const N: usize>(
     length: u32,
     found: &mut impl FnMut(u32),
 ) {
-    if members.iter().all(|&(word, ..)| !is_split(word)) {
+    let deepest =
+        members.iter().try_fold(0, |deepest: u32, &(word, ..)| Some(deepest.max(even_depth(word)?)));
+    if let Some(depth) = deepest {
+        (1..1 << depth).for_each(|i| found(from + i * (length >> depth)));
         return;
     }
     let half = |second: bool| {
