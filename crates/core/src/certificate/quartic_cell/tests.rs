@@ -13,6 +13,10 @@ impl Numbers {
 
     /// A piece whose points are the unit triangle's, stirred and bent.
     fn piece(&mut self, noise: f64) -> Quartic {
+        Quartic::of(&self.net(noise), 0)
+    }
+
+    fn net(&mut self, noise: f64) -> BezierTriangle {
         let mut points = [DVec3::ZERO; 15];
         let mut at = 0;
         for k in 0..5 {
@@ -22,7 +26,7 @@ impl Numbers {
                 at += 1;
             }
         }
-        Quartic::of(&BezierTriangle(points), 0)
+        BezierTriangle(points)
     }
 
     fn cell(&mut self) -> Cell {
@@ -99,6 +103,57 @@ fn dense_samples_lie_within_the_bounds() {
         tight += usize::from(refined.min(high) <= 1.06 * highest + 1e-9);
     }
     assert!(counted > 2500 && tight * 10 > counted * 9, "{tight} of {counted}");
+}
+
+/// Where a part is said not to fold, its projection on the triangle's plane keeps its orientation everywhere, for slim triangles too;
+/// and where it does not keep it, the part is said to fold.
+#[test]
+fn parts_that_do_not_fold_keep_their_orientation() {
+    let mut numbers = Numbers(23);
+    let (mut plain, mut bent, mut folding) = (0, 0, 0);
+    for round in 0..4000 {
+        let BezierTriangle(points) = numbers.net([0.0, 0.002, 0.01, 0.1][round % 4]);
+        let slim = [1.0, 0.3, 0.05][round % 3];
+        // Bends that keep their size all over the piece, beside what is stirred.
+        let bend: [[f64; 3]; 3] = core::array::from_fn(|_| core::array::from_fn(|_| 0.6 * numbers.next()));
+        let points = points.map(|point| {
+            let squares = [point.x * point.x, point.x * point.y, point.y * point.y];
+            let along = |axis: usize| (0..3).map(|i| bend[axis][i] * squares[i]).sum::<f64>();
+            DVec3::new(point.x + along(0), slim * (point.y + along(1)), point.z + along(2))
+        });
+        let piece = Quartic::of(&BezierTriangle(points), 0);
+        let (jet, cell) = (QuarticJet::of(&piece), numbers.cell());
+        let frame = TriangleFrame::new(cell.0.map(|[u, v]| piece.point(u, v)));
+        if frame.is_flat() {
+            continue;
+        }
+        // Upright parts and those on their heads turn alike.
+        let least = grid(24).map(|weights| {
+            let [u, v] = place(&cell, weights);
+            let [by_u, by_v] = piece.tangents(u, v);
+            by_u.cross(by_v).dot(frame.normal())
+        });
+        let Cell([at, second, last]) = cell;
+        let (s, r) = (minus(second, at), minus(last, at));
+        let turn = (s[0] * r[1] - s[1] * r[0]).signum();
+        let least = least.map(|area| turn * area).fold(f64::INFINITY, f64::min);
+        let edges = [0, 1, 2].map(|edge| (cell.0[edge], cell.0[(edge + 1) % 3]));
+        let bends = edges.map(|(from, to)| jet.bend(halfway(from, to), minus(to, from)));
+        let reach = s.iter().chain(&r).fold(0.0f64, |reach, x| reach.max(x.abs()));
+        let (third, fourth) = jet.most(reach.max((s[0] - r[0]).abs()).max((s[1] - r[1]).abs()));
+        let is_plain = !is_folding(&frame, &bends, 0.5 * third + fourth);
+        assert!(!is_plain || least > 0.0, "round {round}: {least}");
+        plain += usize::from(is_plain);
+        folding += usize::from(least <= 0.0);
+        let [a, b, c] = cell.0.map(|[u, v]| piece.point(u, v));
+        let even = (b - a).cross(c - a).length() / (s[0] * r[1] - s[1] * r[0]).abs();
+        bent += usize::from(is_plain && least < 0.6 * even);
+    }
+    // Many of each kind, and many that are told apart though they are far from even.
+    assert!(
+        plain > 800 && folding > 400 && bent > 40,
+        "{plain} plain, {bent} of them bent, {folding} folding"
+    );
 }
 
 /// Triangles whose corners were moved off the surface: heights over their planes, and how far the surface is from them, against
