@@ -28,11 +28,44 @@ const COARSEST: f64 = 1e12;
 /// What is found is at most so many times a distance that is known not to fit.
 const PROMISED: f64 = 1.1;
 
+/// The part of the budget that a guess aims at: what is left then is enough.
+const AIM: f64 = 0.996;
+
+/// From one guess to the next distances fall by this much at most.
+const MOST_APART: f64 = 8.0;
+
+/// Plans beyond the budget are counted to the end up to so many more triangles (one in so many): then the next guess is better.
+const COUNTED_BEYOND: usize = 4;
+
 /// Plans that are made to spend what is left.
 const MOST_FILLS: usize = 9;
 
 /// Budgets below this are spent to the last face.
 const EXACT: usize = 20_000;
+
+/// How triangles grow: those beyond the undivided faces with a power of the reciprocal of the distance.
+struct Growth {
+    undivided: f64,
+}
+
+impl Growth {
+    fn divided(&self, triangles: f64) -> f64 {
+        (triangles - self.undivided).max(0.02 * self.undivided)
+    }
+
+    /// The distance at which so many are wanted, where there are some at another.
+    fn distance(&self, from: f64, triangles: usize, wanted: f64, power: f64) -> f64 {
+        let times = self.divided(wanted) / self.divided(triangles as f64);
+        from / times.max(1.0 + NEAR).powf(1.0 / power).min(MOST_APART)
+    }
+
+    /// The power between two distances with their triangles.
+    fn power(&self, (coarse, few): (f64, usize), (fine, many): (f64, usize)) -> f64 {
+        let times = self.divided(many as f64) / self.divided(few as f64);
+        let power = times.ln() / (coarse / fine).ln();
+        if power > 0.0 { power.clamp(0.4, 3.0) } else { 1.0 }
+    }
+}
 
 /// The finest plan within distances down to `floor` that has at most `most` triangles, and why it is not finer.
 pub(super) fn search(
@@ -54,21 +87,27 @@ pub(super) fn search(
     // Criteria may have no answer to undivided faces but that they are as bad as can be.
     let most_value = if engine.control.criteria.is_some() { COARSEST } else { f64::INFINITY };
     let (mut high, mut low) = (best.worst().min(most_value), floor);
+    let growth = Growth { undivided: best.triangles as f64 };
+    // Triangles at the lesser distance, where they were counted to the end.
+    let mut beyond = None;
     let mut power = 1.0f64;
     let enough = most - (most / LEFT).max(LEFT_AT_LEAST).min(most);
-    let mut bisects = false;
+    let aim = AIM * most as f64;
+    let (mut fitted, mut moved_twice) = (true, 0);
     let is_near = |high: f64, low: f64, triangles: usize| {
         high <= low * if triangles < enough { 1.0 + NEAR } else { PROMISED }
     };
     while !is_near(high, low, best.triangles) && high > f64::MIN_POSITIVE {
-        let wanted = (most as f64 / best.triangles as f64).min(STEP);
-        let mut next = high / wanted.max(1.0 + NEAR).powf(1.0 / power);
+        let mut next = growth.distance(high, best.triangles, aim.min(STEP * best.triangles as f64), power);
         if low > 0.0 {
+            // Between two counts a power; but counts come in steps, so the middle where the same end was moved twice.
             let span = (high / low).ln();
-            // A guess, but never next to what is known already; every other time the middle.
+            let guess = beyond.filter(|_| moved_twice < 2).map(|beyond| {
+                power = growth.power((high, best.triangles), (low, beyond));
+                growth.distance(high, best.triangles, aim, power)
+            });
             let edge = (0.05 * span).exp();
-            next = if bisects { (high.ln() - 0.5 * span).exp() } else { next.clamp(low * edge, high / edge) };
-            bisects = !bisects;
+            next = guess.map_or((high * low).sqrt(), |guess| guess.clamp(low * edge, high / edge));
         }
         if best.triangles >= enough {
             // Where many triangles pass at once much less may take hardly more.
@@ -77,15 +116,16 @@ pub(super) fn search(
         if !(next < high && next > low) {
             break;
         }
-        match engine.plan(Goal::Within(next), most)? {
-            Some(plan) => {
-                let grown = plan.triangles as f64 / best.triangles as f64;
-                if grown > 1.05 {
-                    power = (grown.ln() / (high / next).ln()).clamp(0.5, 3.0);
-                }
+        let plan = engine.plan(Goal::Within(next), most + most / COUNTED_BEYOND)?;
+        let fits = plan.as_ref().is_some_and(|plan| plan.triangles <= most);
+        moved_twice = if fits == fitted && moved_twice < 2 { moved_twice + 1 } else { 1 };
+        fitted = fits;
+        match plan {
+            Some(plan) if fits => {
+                power = growth.power((high, best.triangles), (next, plan.triangles));
                 (high, best) = (next, plan);
             }
-            None => low = next,
+            plan => (low, beyond) = (next, plan.map(|plan| plan.triangles)),
         }
     }
     if most < EXACT && low > 0.0 {
