@@ -43,6 +43,9 @@ const MOST_FILLS: usize = 9;
 /// Budgets below this are spent to the last face.
 const EXACT: usize = 20_000;
 
+/// Greater ones are divided evenly only where that takes all of them but for so many (one in so many).
+const NEARLY_ALL: usize = 16;
+
 /// How triangles grow: those beyond the undivided faces with a power of the reciprocal of the distance.
 struct Growth {
     undivided: f64,
@@ -184,8 +187,10 @@ fn filled(
 pub(super) fn even(engine: &Engine<'_>, most: usize) -> Result<Option<Plan>, RefineError> {
     let faces = engine.control.mesh.face_count();
     let levels = levels(engine, most);
-    // With twice the triangles the worst places come first in any case.
-    if most >= EXACT || levels == 0 || most / 2 > faces << (2 * levels) {
+    let triangles = faces << (2 * levels);
+    // With twice the triangles the worst places come first in any case; and what is tried has to be looked at all over.
+    let least = if most < EXACT { most / 2 } else { most - most / NEARLY_ALL };
+    if levels == 0 || triangles < least {
         return Ok(None);
     }
     let Some(even) = engine.plan(Goal::Even(levels, vec![false; faces]), most)? else { return Ok(None) };
