@@ -7,6 +7,7 @@
 //! * `against-paper`, `against-uniform`, `against-optimum`, `against-simplified`, `certificate`: how good exact refinement
 //!   is, over many models; `quality` runs all of these;
 //! * `throughput`: its triangles per second and bytes per triangle;
+//! * `gaps`: how long observers of long functions wait at most;
 //! * `scaling`: exact refinement of ever larger meshes, larger in one way each; needs no models;
 //! * `figures FOLDER`: the pictures of the README, from built-in models;
 //! * `all`: all but the figures.
@@ -16,6 +17,7 @@
 mod clock;
 mod distance;
 mod figures;
+mod gaps;
 mod load;
 mod peers;
 mod quality;
@@ -78,8 +80,9 @@ fn measure(work: &str, folder: &Path) -> Result<()> {
         "against-simplified" => quality::against_simplified(folder),
         "certificate" => quality::certificate(folder),
         "throughput" => quality::throughput(folder),
+        "gaps" => gaps::gaps(folder),
         other => bail!(
-            "no benchmark is called {other}: {}, speed, {}, quality, throughput, figures, all",
+            "no benchmark is called {other}: {}, speed, {}, quality, throughput, gaps, figures, all",
             SPEED.join(", "),
             QUALITY.join(", ")
         ),

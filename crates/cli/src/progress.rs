@@ -6,6 +6,7 @@ use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::time::Duration;
 
+use crate::format::counted;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// How often the spinner turns.
@@ -42,10 +43,14 @@ impl Progress {
     pub(crate) fn observer(&self) -> impl FnMut(&limitmesh::progress::Progress) -> ControlFlow<()> {
         let mut shown = None;
         move |at| {
-            let now = (at.stage, at.total.map(|total| 100 * at.done / total.max(1)));
+            let percent = at.total.map(|total| 100 * at.done / total.max(1));
+            let now = (at.stage, percent.ok_or(at.triangles));
             if shown.replace(now) != Some(now) {
-                let percent = now.1.map_or_else(String::new, |percent| format!(": {percent} %"));
-                self.stage(format!("{}{percent}", at.stage));
+                let far = match now.1 {
+                    Ok(percent) => format!("{percent} %"),
+                    Err(triangles) => counted(triangles, "triangle", "triangles"),
+                };
+                self.stage(format!("{}: {far}", at.stage));
             }
             ControlFlow::Continue(())
         }

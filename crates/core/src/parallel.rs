@@ -1,7 +1,10 @@
 //! Loops over elements that give the same bytes for any number of threads: every slot is computed from the
 //! input alone and written by exactly one call; sums are taken over pieces of fixed length, in order.
 
+use core::cell::RefCell;
+use core::cmp::Ordering;
 use core::ops::Range;
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 #[cfg(feature = "parallel")]
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
@@ -42,6 +45,9 @@ pub(crate) fn for_each_chunk<T: Send, F: Fn(usize, &mut [T]) + Sync + Send>(
     }
     slots.chunks_mut(piece).enumerate().for_each(|(i, chunk)| f(i, chunk));
 }
+
+/// Elements that are sorted together where that can be cancelled.
+const SORTED_AT_ONCE: usize = 1 << 15;
 
 /// Number of elements that one piece of a sum or search covers: fixed, so that results do not depend on threads.
 const PIECE: usize = 1 << 14;
@@ -130,22 +136,37 @@ pub(crate) fn for_each_run<A: Send, B: Send, F: Fn(usize, &mut [A], &mut [B]) + 
             f(i, &mut a[run.clone()], &mut b[run]);
         }
     };
-    hand_out(pieces.into_iter(), &mut |pieces| poll((pieces * PIECE).min(n)), work)?;
+    hand_out(pieces.into_iter(), &mut |pieces| poll((pieces * PIECE).min(n)), |piece, _| work(piece))?;
     Ok(())
-}
-
-/// Calls `f` with each block; `poll` is told how many are done. A block should take a few milliseconds at most.
-pub(crate) fn for_each_block_polled<B: Send, R: Send, F: Fn(B) -> R + Sync>(
-    blocks: Vec<B>,
-    poll: &mut Poll<'_>,
-    f: F,
-) -> Result<Vec<R>, Cancelled> {
-    hand_out(blocks.into_iter(), poll, f)
 }
 
 /// What a loop that can be cancelled calls between its blocks, always on the calling thread, with the number of elements
 /// done by then.
 pub(crate) type Poll<'a> = dyn FnMut(usize) -> Result<(), Cancelled> + 'a;
+
+/// What blocks ask now and then that may take longer than some milliseconds: whether what they do is of no use any more, so that
+/// they may leave it as it is. On the calling thread it polls.
+pub(crate) type IsStopped<'a> = dyn Fn() -> bool + 'a;
+
+/// [`pieces_polled`] for pieces that may take long.
+pub(crate) fn long_pieces_polled<T: Send, F: Fn(Range<usize>, &IsStopped<'_>) -> T + Sync>(
+    n: usize,
+    length: usize,
+    poll: &mut Poll<'_>,
+    f: F,
+) -> Result<Vec<T>, Cancelled> {
+    let pieces = (0..n.div_ceil(length)).map(|piece| piece * length..((piece + 1) * length).min(n));
+    hand_out(pieces, &mut |blocks| poll((blocks * length).min(n)), f)
+}
+
+/// [`each_polled`] for items that may take long.
+pub(crate) fn each_long_polled<B: Send, T: Send, F: Fn(B, &IsStopped<'_>) -> T + Sync>(
+    items: Vec<B>,
+    poll: &mut Poll<'_>,
+    f: F,
+) -> Result<Vec<T>, Cancelled> {
+    hand_out(items.into_iter(), poll, f)
+}
 
 /// [`pieces_of`] that can be cancelled; a piece should take a few milliseconds at most.
 pub(crate) fn pieces_polled<T: Send, F: Fn(Range<usize>) -> T + Sync>(
@@ -154,8 +175,7 @@ pub(crate) fn pieces_polled<T: Send, F: Fn(Range<usize>) -> T + Sync>(
     poll: &mut Poll<'_>,
     f: F,
 ) -> Result<Vec<T>, Cancelled> {
-    let pieces = (0..n.div_ceil(length)).map(|piece| piece * length..((piece + 1) * length).min(n));
-    hand_out(pieces, &mut |blocks| poll((blocks * length).min(n)), f)
+    long_pieces_polled(n, length, poll, |piece, _| f(piece))
 }
 
 /// [`for_each_chunk`] that can be cancelled; a piece should take a few milliseconds at most.
@@ -167,7 +187,7 @@ pub(crate) fn for_each_chunk_polled<T: Send, F: Fn(usize, &mut [T]) + Sync>(
 ) -> Result<(), Cancelled> {
     let n = slots.len();
     let chunks = slots.chunks_mut(piece).enumerate();
-    hand_out(chunks, &mut |blocks| poll((blocks * piece).min(n)), |(i, chunk)| f(i, chunk))?;
+    hand_out(chunks, &mut |blocks| poll((blocks * piece).min(n)), |(i, chunk), _| f(i, chunk))?;
     Ok(())
 }
 
@@ -177,7 +197,29 @@ pub(crate) fn each_polled<B: Send, T: Send, F: Fn(B) -> T + Sync>(
     poll: &mut Poll<'_>,
     f: F,
 ) -> Result<Vec<T>, Cancelled> {
-    hand_out(items.into_iter(), poll, f)
+    hand_out(items.into_iter(), poll, |item, _| f(item))
+}
+
+/// Sorts by an order in which no two items are equal; can be cancelled, and then leaves them in any order.
+pub(crate) fn sort_polled<T: Send + Sync>(
+    items: &mut [T],
+    poll: &mut Poll<'_>,
+    order: impl Fn(&T, &T) -> Ordering + Sync,
+) -> Result<(), Cancelled> {
+    let mut parts = vec![items];
+    while parts.iter().any(|part| part.len() > SORTED_AT_ONCE) {
+        let halves = each_polled(parts, poll, |part| {
+            let middle = part.len() / 2;
+            if part.len() > SORTED_AT_ONCE {
+                part.select_nth_unstable_by(middle, &order);
+            }
+            let (lower, upper) = part.split_at_mut(middle);
+            [lower, upper]
+        })?;
+        parts = halves.into_iter().flatten().collect();
+    }
+    each_polled(parts, poll, |part| part.sort_unstable_by(&order))?;
+    Ok(())
 }
 
 /// [`map`] that can be cancelled.
@@ -195,15 +237,10 @@ pub(crate) fn map_polled<T: Send + Clone + Default, F: Fn(usize) -> T + Sync>(
     Ok(slots)
 }
 
-/// The results of `work` on every job, in order.
-pub(crate) fn for_each_job<J: Send, R: Send, F: Fn(J) -> R + Sync>(jobs: Vec<J>, work: F) -> Vec<R> {
-    // Nobody cancels.
-    hand_out(jobs.into_iter(), &mut |_| Ok(()), work).unwrap_or_default()
-}
-
 /// Runs `work` on every block and gives the results in order. `poll` is called after each block that the calling thread
-/// does, with the number of blocks done, and while it waits for others; once it fails no further block is begun.
-fn hand_out<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send, F: Fn(B) -> R + Sync>(
+/// does, with the number of blocks done, and while it waits for others, and by blocks that ask for it; once it fails it is not called
+/// again and no further block is begun.
+fn hand_out<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send, F: Fn(B, &IsStopped<'_>) -> R + Sync>(
     blocks: I,
     poll: &mut Poll<'_>,
     work: F,
@@ -216,11 +253,31 @@ fn hand_out<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send, F: Fn(B) ->
         }
     }
     let mut results = Vec::with_capacity(blocks.len());
+    let is_cancelled = AtomicBool::new(false);
     for block in blocks {
-        results.push(work(block));
+        let result = led(block, results.len(), poll, &is_cancelled, &work)?;
+        results.push(result);
         poll(results.len())?;
     }
     Ok(results)
+}
+
+/// One block on the calling thread, with `done` before it.
+fn led<B, R>(
+    block: B,
+    done: usize,
+    poll: &mut Poll<'_>,
+    is_cancelled: &AtomicBool,
+    work: &impl Fn(B, &IsStopped<'_>) -> R,
+) -> Result<R, Cancelled> {
+    let poll = RefCell::new(poll);
+    let result = work(block, &|| {
+        if !is_cancelled.load(Relaxed) && (poll.borrow_mut())(done).is_err() {
+            is_cancelled.store(true, Relaxed);
+        }
+        is_cancelled.load(Relaxed)
+    });
+    if is_cancelled.load(Relaxed) { Err(Cancelled) } else { Ok(result) }
 }
 
 /// Blocks that several threads take one after the other, the calling one among them.
@@ -229,6 +286,7 @@ struct Blocks<I, R> {
     state: Mutex<BlocksState<I, R>>,
     /// Told when a thread has ended.
     ended: Condvar,
+    is_cancelled: AtomicBool,
 }
 
 #[cfg(feature = "parallel")]
@@ -239,7 +297,6 @@ struct BlocksState<I, R> {
     results: Vec<(usize, R)>,
     /// Threads at work beside the calling one.
     working: usize,
-    cancelled: bool,
 }
 
 /// How long the calling thread waits for the others between two calls of the observer.
@@ -250,22 +307,22 @@ const WAIT: core::time::Duration = core::time::Duration::from_millis(20);
 impl<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send> Blocks<I, R> {
     fn new(blocks: I) -> Self {
         let results = Vec::with_capacity(blocks.len());
-        let state = BlocksState { left: blocks.enumerate(), results, working: 0, cancelled: false };
-        Self { state: Mutex::new(state), ended: Condvar::new() }
+        let state = BlocksState { left: blocks.enumerate(), results, working: 0 };
+        Self { state: Mutex::new(state), ended: Condvar::new(), is_cancelled: AtomicBool::new(false) }
     }
 
     fn run(
         self,
         threads: usize,
         poll: &mut Poll<'_>,
-        work: &(impl Fn(B) -> R + Sync),
+        work: &(impl Fn(B, &IsStopped<'_>) -> R + Sync),
     ) -> Result<Vec<R>, Cancelled> {
         rayon::in_place_scope(|scope| {
             for _ in 1..threads {
                 scope.spawn(|_| self.help(work));
             }
             let result = self.lead(poll, work);
-            self.lock().cancelled |= result.is_err();
+            self.is_cancelled.fetch_or(result.is_err(), Relaxed);
             result
         })?;
         let state = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -279,10 +336,14 @@ impl<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send> Blocks<I, R> {
     }
 
     /// The calling thread: works as long as there are blocks, then waits for the others.
-    fn lead(&self, poll: &mut Poll<'_>, work: &impl Fn(B) -> R) -> Result<(), Cancelled> {
+    fn lead(&self, poll: &mut Poll<'_>, work: &impl Fn(B, &IsStopped<'_>) -> R) -> Result<(), Cancelled> {
         loop {
-            let Some((number, block)) = self.lock().next() else { break };
-            let result = work(block);
+            let (next, done) = {
+                let mut state = self.lock();
+                (state.left.next(), state.results.len())
+            };
+            let Some((number, block)) = next else { break };
+            let result = led(block, done, poll, &self.is_cancelled, work)?;
             let done = self.lock().put(number, result);
             poll(done)?;
         }
@@ -297,23 +358,20 @@ impl<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send> Blocks<I, R> {
     }
 
     /// Another thread: works until nothing is left.
-    fn help(&self, work: &impl Fn(B) -> R) {
+    fn help(&self, work: &impl Fn(B, &IsStopped<'_>) -> R) {
         self.lock().working += 1;
         let _ended = Ended(self);
-        loop {
-            let Some((number, block)) = self.lock().next() else { return };
-            let result = work(block);
+        let is_stopped = || self.is_cancelled.load(Relaxed);
+        while !is_stopped() {
+            let Some((number, block)) = self.lock().left.next() else { return };
+            let result = work(block, &is_stopped);
             self.lock().put(number, result);
         }
     }
 }
 
 #[cfg(feature = "parallel")]
-impl<B, R, I: Iterator<Item = B>> BlocksState<I, R> {
-    fn next(&mut self) -> Option<(usize, B)> {
-        if self.cancelled { None } else { self.left.next() }
-    }
-
+impl<I, R> BlocksState<I, R> {
     /// Takes a result in; says how many there are.
     fn put(&mut self, number: usize, result: R) -> usize {
         self.results.push((number, result));

@@ -25,8 +25,11 @@
 //! # Ok::<(), limitmesh::mesh::MeshError>(())
 //! ```
 
+use core::cell::{Cell, RefCell};
 use core::fmt;
-use core::ops::ControlFlow;
+use core::ops::{ControlFlow, Range};
+
+use crate::parallel::{self, IsStopped};
 
 /// How far a long function has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +49,7 @@ pub struct Progress {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Faces are being divided; the units are levels or steps.
+    /// Faces are being divided; the units are levels or steps, of exact refinement rounds over what has changed.
     Refining,
     /// Vertices are being moved to the limit surface; the units are vertices.
     Limits,
@@ -133,5 +136,88 @@ impl<'a> Watch<'a> {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(Cancelled),
         }
+    }
+}
+
+/// A watch of functions that know each other by `&` alone. It stays on the calling thread: other threads cannot hold it.
+pub(crate) struct SharedWatch<'a> {
+    watch: RefCell<Watch<'a>>,
+    rounds: Cell<usize>,
+}
+
+/// Steps of a serial loop between two calls of the observer: some milliseconds at most.
+const STEPS: usize = 1 << 12;
+
+impl<'a> SharedWatch<'a> {
+    pub(crate) fn new(observer: &'a mut Observer<'a>, stage: Stage) -> Self {
+        Self { watch: RefCell::new(Watch::new(observer, stage)), rounds: Cell::new(0) }
+    }
+
+    /// [`Watch::stage`].
+    pub(crate) fn stage(&self, stage: Stage, total: Option<usize>) -> Result<(), Cancelled> {
+        self.watch.borrow_mut().stage(stage, total)
+    }
+
+    /// [`Watch::triangles`].
+    pub(crate) fn triangles(&self, triangles: usize) {
+        self.watch.borrow_mut().triangles(triangles);
+    }
+
+    /// [`Watch::done`].
+    pub(crate) fn done(&self, done: usize) -> Result<(), Cancelled> {
+        self.watch.borrow_mut().done(done)
+    }
+
+    /// One more round of refinement came to its end, with so many triangles.
+    pub(crate) fn round(&self, triangles: usize) -> Result<(), Cancelled> {
+        self.rounds.set(self.rounds.get() + 1);
+        self.triangles(triangles);
+        self.stage(Stage::Refining, None)?;
+        self.done(self.rounds.get())
+    }
+
+    /// [`Watch::poll`].
+    pub(crate) fn poll(&self) -> Result<(), Cancelled> {
+        self.watch.borrow_mut().poll()
+    }
+
+    /// Goes through items one after the other, polling now and then.
+    pub(crate) fn each<I: IntoIterator>(
+        &self,
+        items: I,
+        mut step: impl FnMut(I::Item),
+    ) -> Result<(), Cancelled> {
+        let mut items = items.into_iter();
+        loop {
+            let mut left = STEPS;
+            for item in items.by_ref().take(STEPS) {
+                step(item);
+                left -= 1;
+            }
+            if left > 0 {
+                return Ok(());
+            }
+            self.poll()?;
+        }
+    }
+
+    /// [`parallel::pieces_polled`].
+    pub(crate) fn pieces<T: Send, F: Fn(Range<usize>) -> T + Sync>(
+        &self,
+        n: usize,
+        length: usize,
+        f: F,
+    ) -> Result<Vec<T>, Cancelled> {
+        parallel::pieces_polled(n, length, &mut |_| self.poll(), f)
+    }
+
+    /// [`parallel::long_pieces_polled`].
+    pub(crate) fn long_pieces<T: Send, F: Fn(Range<usize>, &IsStopped<'_>) -> T + Sync>(
+        &self,
+        n: usize,
+        length: usize,
+        f: F,
+    ) -> Result<Vec<T>, Cancelled> {
+        parallel::long_pieces_polled(n, length, &mut |_| self.poll(), f)
     }
 }

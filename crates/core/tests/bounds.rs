@@ -25,7 +25,7 @@ fn true_distance(control: &Mesh, result: &Exact) -> (f64, f64) {
     (found.lower(), found.upper())
 }
 
-fn goals(control: &Mesh) -> Vec<(&'static str, ExactStop, ExactOptions<'static>)> {
+fn goals(control: &Mesh) -> Vec<(&'static str, ExactStop, ExactOptions)> {
     let diagonal = control.diagonal();
     let [low, high] = control.as_triangles().bounding_box().unwrap();
     let centre: [f64; 3] = std::array::from_fn(|i| 0.5 * (low[i] + high[i]));

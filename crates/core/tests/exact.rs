@@ -321,25 +321,6 @@ fn depths_have_limits() {
     assert!(ExactOptions::default().max_triangles.is_some());
 }
 
-#[test]
-fn observers_are_told_and_may_cancel() {
-    use std::ops::ControlFlow;
-    use std::sync::atomic::{AtomicUsize, Ordering};
-    let control = model("cup");
-    let calls = AtomicUsize::new(0);
-    let count = |_: &limitmesh::refine::ExactProgress| {
-        calls.fetch_add(1, Ordering::Relaxed);
-        ControlFlow::Continue(())
-    };
-    let options = ExactOptions::default().tolerance(0.001 * control.diagonal());
-    let watched = exact(&control, &Loop, &options.clone().observer(&count)).unwrap();
-    assert!(calls.load(Ordering::Relaxed) > 0);
-    assert_eq!(watched.mesh, exact(&control, &Loop, &options).unwrap().mesh);
-    let cancel = |_: &limitmesh::refine::ExactProgress| ControlFlow::Break(());
-    let error = exact(&control, &Loop, &options.observer(&cancel)).unwrap_err();
-    assert!(matches!(error, limitmesh::refine::RefineError::Cancelled(_)), "{error}");
-}
-
 /// The bytes of results, whatever the build: these are those of a release build of one code generation unit. Elsewhere the
 /// mathematics library may round sines and cosines in another way.
 #[test]

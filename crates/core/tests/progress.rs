@@ -7,11 +7,12 @@ mod support;
 
 use std::ops::ControlFlow;
 
-use limitmesh::criterion::LimitNormal;
+use limitmesh::criterion::{Camera, LimitNormal};
 use limitmesh::measure::*;
-use limitmesh::progress::{Observer, Progress};
+use limitmesh::progress::{Observer, Progress, Stage};
 use limitmesh::refine::{
-    RefineError, StepwiseOptions, UniformOptions, stepwise, stepwise_observed, uniform, uniform_observed,
+    ExactOptions, RefineError, StepwiseOptions, UniformOptions, exact, exact_estimate,
+    exact_estimate_observed, exact_observed, stepwise, stepwise_observed, uniform, uniform_observed,
 };
 use limitmesh::scheme::Loop;
 use limitmesh::{Mesh, Triangles};
@@ -97,4 +98,128 @@ fn watertightness_is_observed() {
     let plain = watertightness(open);
     assert_eq!(plain.boundary_edges, 3);
     watch("watertightness", plain, |_| true, |o| watertightness_observed(open, o));
+}
+
+/// A stage, its rounds, and triangles.
+type Event = (Stage, usize, usize);
+
+/// What is told of a run but for how often, which depends on how threads share the work: stages, rounds, triangles.
+fn event(told: &Progress) -> Event {
+    (told.stage, if told.stage == Stage::Refining { told.done } else { 0 }, told.triangles)
+}
+
+/// A run, and how often each event was told, in order.
+fn calls_by_event<T: std::fmt::Debug>(
+    run: &mut impl FnMut(&mut Observer<'_>) -> Result<T, RefineError>,
+) -> (T, Vec<(Event, usize)>) {
+    let mut calls: Vec<(Event, usize)> = Vec::new();
+    let result = run(&mut |told: &Progress| {
+        assert!(told.total.is_none_or(|total| told.done <= total), "more than all is done: {told:?}");
+        match calls.last_mut() {
+            Some((last, count)) if *last == event(told) => *count += 1,
+            _ => calls.push((event(told), 1)),
+        }
+        ControlFlow::Continue(())
+    });
+    (result.unwrap(), calls)
+}
+
+/// Cancels a run at a call within an event, both counted from 0, and checks that this is the end of it.
+fn cancel_at<T: std::fmt::Debug>(
+    name: &str,
+    (last_event, last_call): (usize, usize),
+    run: &mut impl FnMut(&mut Observer<'_>) -> Result<T, RefineError>,
+) {
+    let (mut at, mut calls, mut is_over, mut known) = (0, 0, false, None);
+    let result = run(&mut |told: &Progress| {
+        assert!(!is_over, "{name}: called again after it said stop");
+        match known.replace(event(told)) {
+            Some(last) if last == event(told) => calls += 1,
+            Some(_) => (at, calls) = (at + 1, 0),
+            None => {}
+        }
+        is_over = at == last_event && calls == last_call;
+        if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    let is_cancelled = matches!(result, Err(RefineError::Cancelled(_)));
+    assert!(is_over && is_cancelled, "{name}: call {last_call} of event {last_event}");
+}
+
+fn model(name: &str) -> Mesh {
+    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+}
+
+/// Every goal of exact refinement gives the same bytes observed, and ends wherever in its course the observer says so.
+#[test]
+fn exact_refinement_is_observed_and_cancelled_everywhere() {
+    let options = ExactOptions::default;
+    for name in ["cup", "sheet", "cube"] {
+        let control = model(name);
+        let eye = [0.3, 0.2, 3.0].map(|x| x * control.diagonal());
+        let (target, up) = ([0.0; 3], [0.0, 1.0, 0.0]);
+        let camera = Camera { eye, target, up, fov_degrees: 40.0, width: 640, height: 480 };
+        let within = options().tolerance(1e-3 * control.diagonal());
+        let goals = [
+            ("tolerance", within.clone()),
+            ("balance", within.clone().balance(true)),
+            ("optimise", within.optimize(true)),
+            ("triangles", options().triangles(4 * control.face_count() + 100)),
+            ("angle", options().angle(0.2)),
+            ("pixels", options().pixels(1.0, vec![camera])),
+        ];
+        for (goal, options) in goals {
+            let name = format!("{name}, {goal}");
+            let plain = exact(&control, &Loop, &options).unwrap();
+            let mut run = |observer: &mut Observer<'_>| exact_observed(&control, &Loop, &options, observer);
+            let (watched, calls) = calls_by_event(&mut run);
+            assert_eq!((&watched.mesh, &watched.normals), (&plain.mesh, &plain.normals), "{name}");
+            assert_eq!(watched.error, plain.error, "{name}");
+            assert!(calls.len() >= 5, "{name}: {calls:?}");
+            for i in 0..8 {
+                cancel_at(&name, (i * (calls.len() - 1) / 7, 0), &mut run);
+            }
+        }
+    }
+}
+
+/// Also where very few faces are divided very deeply, the observer is called in proportion to the work, in each stage, and is heard
+/// in the middle of a face. Calls at the ends of blocks of faces would be a dozen.
+#[test]
+fn single_faces_that_take_long_are_observed() {
+    let control = model("tetrahedron");
+    let balanced = ExactOptions::default().tolerance(3e-6 * control.diagonal()).balance(true);
+    for options in [balanced.clone().balance(false), balanced] {
+        let mut run = |observer: &mut Observer<'_>| exact_observed(&control, &Loop, &options, observer);
+        let (result, calls) = calls_by_event(&mut run);
+        let triangles = result.mesh.face_count();
+        assert!(triangles > 100_000);
+        // Only what is balanced is bounded all over again.
+        let bounded = options.balance.then_some(Stage::Bounding);
+        for stage in [Stage::Refining, Stage::Assembling].into_iter().chain(bounded) {
+            let count: usize = calls.iter().filter(|(event, _)| event.0 == stage).map(|(_, n)| n).sum();
+            assert!(count >= triangles / 10_000, "{stage:?}: {count} calls for {triangles} triangles");
+        }
+        let mut most: Vec<(usize, usize)> = calls.iter().map(|(_, count)| *count).enumerate().collect();
+        most.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
+        for &(i, count) in most.iter().take(4) {
+            // How many there are within an event depends on how threads share the work.
+            cancel_at("tetrahedron", (i, count / 10), &mut run);
+        }
+    }
+}
+
+#[test]
+fn estimates_are_observed() {
+    let control = model("cup");
+    let tolerance = ExactOptions::default().tolerance(1e-4 * control.diagonal());
+    for options in [tolerance.clone(), tolerance.optimize(true)] {
+        let plain = exact_estimate(&control, &Loop, &options).unwrap();
+        let mut run =
+            |observer: &mut Observer<'_>| exact_estimate_observed(&control, &Loop, &options, observer);
+        let (watched, calls) = calls_by_event(&mut run);
+        assert_eq!(watched, plain);
+        for i in [0, calls.len() / 2, calls.len() - 1] {
+            cancel_at("estimate", (i, 0), &mut run);
+        }
+    }
 }

@@ -14,11 +14,11 @@ fn model(name: &str) -> Mesh {
     Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
 }
 
-fn simplified(control: &Mesh, options: ExactOptions<'_>) -> Exact {
+fn simplified(control: &Mesh, options: ExactOptions) -> Exact {
     exact(control, &Loop, &options.optimize(true)).unwrap()
 }
 
-fn within(tolerance: f64) -> ExactOptions<'static> {
+fn within(tolerance: f64) -> ExactOptions {
     ExactOptions::default().tolerance(tolerance)
 }
 

@@ -6,7 +6,7 @@
 //! distance to the limit surface (the triangle inequality, in either direction).
 
 use limitmesh::measure::{Bvh, CertifiedHausdorff, CertifiedOptions, certified_hausdorff_between_observed};
-use limitmesh::refine::{ExactOptions, ExactStop, exact, is_certified};
+use limitmesh::refine::{ExactOptions, ExactStop, exact_observed, is_certified};
 use limitmesh::{Mesh, Triangles};
 
 use crate::arguments::MeasureArguments;
@@ -66,7 +66,7 @@ pub(super) fn measure(
     loop {
         progress.stage(format!("refining to within {} of the limit surface", number(tolerance)));
         let goals = ExactOptions::default().tolerance(tolerance).max_triangles(Some(MOST_TRIANGLES));
-        let stands = exact(control, scheme, &goals)?;
+        let stands = exact_observed(control, scheme, &goals, &mut progress.observer())?;
         let triangles = stands.mesh.face_count();
         progress.stage(format!("measuring against {}", counted(triangles, "triangle", "triangles")));
         let mut observer = progress.observer();

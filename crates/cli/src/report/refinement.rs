@@ -4,7 +4,7 @@ use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
 use limitmesh::measure::{triangle_quality, watertightness};
 use limitmesh::mesh::Weld;
-use limitmesh::refine::{ErrorBounds, ExactProgress, ExactStop, StepReport, Stop};
+use limitmesh::refine::{ErrorBounds, ExactStop, StepReport, Stop};
 use serde::Serialize;
 
 use super::InputReport;
@@ -210,15 +210,8 @@ pub(crate) struct EstimateReport {
 #[derive(Debug, Serialize)]
 pub(crate) struct RoundEntry {
     pub(crate) round: usize,
+    /// What it came to.
     pub(crate) triangles: usize,
-    /// How many times over the worst place looked at in this round failed the goals; null where that is not bounded.
-    pub(crate) worst: Option<f64>,
-}
-
-impl From<&ExactProgress> for RoundEntry {
-    fn from(progress: &ExactProgress) -> Self {
-        Self { round: progress.round, triangles: progress.triangles, worst: finite(progress.worst) }
-    }
 }
 
 /// An interval for the symmetric Hausdorff distance between the mesh and the limit surface of the control mesh.

@@ -15,7 +15,8 @@ use super::{LimitError, LimitTable};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::masks::Masks;
 use crate::mesh::{Mesh, RingShapes, Sharpness, Topology};
-use crate::parallel;
+use crate::parallel::{self, Poll};
+use crate::progress::{Cancelled, uncancelled};
 use crate::scheme::Support;
 use crate::vector::{DVec3, unit_or_zero, vector};
 
@@ -26,6 +27,9 @@ const LEAST_SINE: f64 = 1e-12;
 /// A tangent shorter than this fraction of the longest difference that entered it is what rounding left of zero.
 const LEAST_LENGTH: f64 = 1e-14;
 
+/// Vertices beside sharp edges that are looked at together.
+const TAGGED: usize = 256;
+
 /// Squared lengths whose product, even times [`LEAST_SINE`] twice, neither vanishes nor overflows.
 const SAFE_SQUARES: core::ops::Range<f64> = 1e-130..1e150;
 
@@ -35,15 +39,28 @@ impl LimitTable<'_> {
     /// # Errors
     /// The scheme has no limit at the shape of some ring.
     pub fn positions(&self, mesh: &Mesh) -> Result<Vec<[f64; 3]>, LimitError> {
-        let stencils = Stencils::of(self, mesh)?;
-        let refined = self.refined_for(mesh, stencils.any_moves());
-        Ok(parallel::map(mesh.vertex_count(), |v| {
+        uncancelled(|_| self.positions_polled(mesh, &mut |_| Ok(())))
+    }
+
+    /// [`Self::positions`] that can be cancelled.
+    pub(crate) fn positions_polled(
+        &self,
+        mesh: &Mesh,
+        poll: &mut Poll<'_>,
+    ) -> Result<Result<Vec<[f64; 3]>, LimitError>, Cancelled> {
+        let stencils = match Stencils::of(self, mesh, poll)? {
+            Ok(stencils) => stencils,
+            Err(error) => return Ok(Err(error)),
+        };
+        let refined = self.refined_for(mesh, stencils.any_moves(), poll)?;
+        let positions = parallel::map_polled(mesh.vertex_count(), poll, |v| {
             let (vertex, weights) = (VertexId(v as u32), stencils.at(v).position());
             match &refined {
                 Some(refined) => two_ring_position(mesh, vertex, weights, refined),
                 None => one_ring_position(mesh, vertex, weights),
             }
-        }))
+        });
+        Ok(Ok(positions?))
     }
 
     /// Unit limit normal of every vertex of `mesh`, pointing outside; where the limit surface has no tangent
@@ -63,22 +80,39 @@ impl LimitTable<'_> {
     /// # Errors
     /// The scheme has no limit at the shape of some ring.
     pub fn sided_normals(&self, mesh: &Mesh) -> Result<SidedNormals, LimitError> {
-        self.normals_or(mesh, |vertex, side| face_average(mesh, vertex, side))
+        uncancelled(|_| self.sided_normals_polled(mesh, &mut |_| Ok(())))
+    }
+
+    /// [`Self::sided_normals`] that can be cancelled.
+    pub(crate) fn sided_normals_polled(
+        &self,
+        mesh: &Mesh,
+        poll: &mut Poll<'_>,
+    ) -> Result<Result<SidedNormals, LimitError>, Cancelled> {
+        self.normals_or(mesh, poll, |vertex, side| face_average(mesh, vertex, side))
     }
 
     /// Unit limit normals as in [`Self::sided_normals`], but zero where the limit surface has no tangent plane.
-    pub(crate) fn plane_normals(&self, mesh: &Mesh) -> Result<SidedNormals, LimitError> {
-        self.normals_or(mesh, |_, _| DVec3::ZERO)
+    pub(crate) fn plane_normals(
+        &self,
+        mesh: &Mesh,
+        poll: &mut Poll<'_>,
+    ) -> Result<Result<SidedNormals, LimitError>, Cancelled> {
+        self.normals_or(mesh, poll, |_, _| DVec3::ZERO)
     }
 
     /// Unit limit normals; `without_plane` says what stands where the limit surface has no tangent plane.
     fn normals_or(
         &self,
         mesh: &Mesh,
+        poll: &mut Poll<'_>,
         without_plane: impl Fn(VertexId, &Side<'_>) -> DVec3 + Sync + Send,
-    ) -> Result<SidedNormals, LimitError> {
-        let stencils = Stencils::of(self, mesh)?;
-        let refined = self.refined_for(mesh, true);
+    ) -> Result<Result<SidedNormals, LimitError>, Cancelled> {
+        let stencils = match Stencils::of(self, mesh, poll)? {
+            Ok(stencils) => stencils,
+            Err(error) => return Ok(Err(error)),
+        };
+        let refined = self.refined_for(mesh, true, poll)?;
         let normal = |vertex: VertexId, side: &Side<'_>| {
             let normal = match &refined {
                 Some(refined) => two_ring_normal(mesh, vertex, side, refined),
@@ -86,12 +120,15 @@ impl LimitTable<'_> {
             };
             normal.unwrap_or_else(|| without_plane(vertex, side))
         };
-        let by_vertex = parallel::map(mesh.vertex_count(), |v| {
+        let by_vertex = parallel::map_polled(mesh.vertex_count(), poll, |v| {
             let vertex = VertexId(v as u32);
             stencils.at(v).average(|side| normal(vertex, side)).to_array()
         });
-        let mut normals = SidedNormals::new(by_vertex);
-        for &vertex in &stencils.tagged {
+        let mut normals = SidedNormals::new(by_vertex?);
+        for (i, &vertex) in stencils.tagged.iter().enumerate() {
+            if i.is_multiple_of(TAGGED) {
+                poll(mesh.vertex_count())?;
+            }
             let stencil = stencils.at(vertex.index());
             if stencil.side_count() > 1 {
                 let outgoing: Vec<HalfEdgeId> = mesh.topology().outgoing_ring(vertex).collect();
@@ -101,7 +138,7 @@ impl LimitTable<'_> {
                 }
             }
         }
-        Ok(normals.finished())
+        Ok(Ok(normals.finished()))
     }
 
     /// Limit normal at the vertex that `corner` leaves, on the side of its face, as [`Self::sided_normals`] gives it.
@@ -168,8 +205,14 @@ impl LimitTable<'_> {
     }
 
     /// The mesh refined once where the scheme's stencils are for that.
-    fn refined_for(&self, mesh: &Mesh, needed: bool) -> Option<RefinedMesh> {
-        (needed && self.scheme().support() == Support::TwoRing).then(|| RefinedMesh::new(self.scheme(), mesh))
+    fn refined_for(
+        &self,
+        mesh: &Mesh,
+        needed: bool,
+        poll: &mut Poll<'_>,
+    ) -> Result<Option<RefinedMesh>, Cancelled> {
+        let is_needed = needed && self.scheme().support() == Support::TwoRing;
+        is_needed.then(|| RefinedMesh::new(self.scheme(), mesh, poll)).transpose()
     }
 }
 
@@ -238,16 +281,32 @@ struct Stencils {
 }
 
 impl Stencils {
-    fn of(table: &LimitTable<'_>, mesh: &Mesh) -> Result<Self, LimitError> {
-        let RingShapes { distinct, mut by_vertex } = RingShapes::of(mesh);
-        let plain = distinct.into_iter().map(|shape| Ok(Stencil::Plain(table.stencil(shape)?)));
-        let mut list = plain.collect::<Result<Vec<_>, LimitError>>()?;
+    fn of(
+        table: &LimitTable<'_>,
+        mesh: &Mesh,
+        poll: &mut Poll<'_>,
+    ) -> Result<Result<Self, LimitError>, Cancelled> {
+        let nowhere = &mut |_| poll(0);
+        let shapes = RingShapes::polled(mesh, nowhere)?;
         let sharpness = Sharpness::of(mesh);
         let tagged: Vec<VertexId> = sharpness.tagged_vertices().collect();
-        let sharp = parallel::map(tagged.len(), |i| table.stencil_at(mesh, &sharpness, tagged[i]));
+        let sharp = parallel::pieces_polled(tagged.len(), TAGGED, nowhere, |piece| {
+            tagged[piece].iter().map(|&v| table.stencil_at(mesh, &sharpness, v)).collect::<Vec<_>>()
+        });
+        let sharp = sharp?.into_iter().flatten().collect::<Result<_, _>>();
+        Ok(sharp.and_then(|sharp| Self::with_sharp(table, shapes, (tagged, sharp))))
+    }
+
+    fn with_sharp(
+        table: &LimitTable<'_>,
+        RingShapes { distinct, mut by_vertex }: RingShapes,
+        (tagged, sharp): (Vec<VertexId>, Vec<Stencil>),
+    ) -> Result<Self, LimitError> {
+        let plain = distinct.into_iter().map(|shape| Ok(Stencil::Plain(table.stencil(shape)?)));
+        let mut list = plain.collect::<Result<Vec<_>, LimitError>>()?;
         for (&vertex, stencil) in tagged.iter().zip(sharp) {
             by_vertex[vertex.index()] = list.len() as u32;
-            list.push(stencil?);
+            list.push(stencil);
         }
         Ok(Self { list, by_vertex, tagged })
     }

@@ -5,7 +5,8 @@
 use crate::index::{HalfEdgeId, VertexId};
 use crate::masks::Masks;
 use crate::mesh::Mesh;
-use crate::parallel;
+use crate::parallel::{self, Poll};
+use crate::progress::Cancelled;
 use crate::scheme::Scheme;
 use crate::vector::DVec3;
 
@@ -26,15 +27,18 @@ pub(super) struct RefinedMesh {
 }
 
 impl RefinedMesh {
-    pub(super) fn new(scheme: &dyn Scheme, mesh: &Mesh) -> Self {
+    pub(super) fn new(scheme: &dyn Scheme, mesh: &Mesh, poll: &mut Poll<'_>) -> Result<Self, Cancelled> {
+        let nowhere = &mut |_| poll(0);
         let topology = mesh.topology();
         let twins = topology.raw_twins().to_vec();
         let masks = Masks::new(mesh, scheme);
-        let moved = parallel::map(topology.vertex_count(), |v| masks.vertex_point(VertexId(v as u32)));
-        let on_edges = parallel::map(topology.half_edge_count(), |h| {
+        let moved = parallel::map_polled(topology.vertex_count(), nowhere, |v| {
+            masks.vertex_point(VertexId(v as u32))
+        })?;
+        let on_edges = parallel::map_polled(topology.half_edge_count(), nowhere, |h| {
             if twins[h] as usize > h { masks.edge_point(HalfEdgeId(h as u32)) } else { DVec3::ZERO }
-        });
-        Self { moved, on_edges, twins }
+        })?;
+        Ok(Self { moved, on_edges, twins })
     }
 }
 

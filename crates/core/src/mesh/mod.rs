@@ -23,7 +23,7 @@ pub(crate) use ring_shapes::RingShapes;
 pub use sharpness::{Sector, Sharpness};
 pub use soup::{PolygonFaces, PolygonSoup};
 pub use tags::{CornerTag, CreaseTag, Tags};
-pub(crate) use topology::{MAX_FACES, outgoing_half_edges};
+pub(crate) use topology::{MAX_FACES, outgoing_half_edges, outgoing_half_edges_polled};
 pub use topology::{RingNeighbours, Topology};
 
 use crate::index::{FaceId, HalfEdgeId, VertexId};

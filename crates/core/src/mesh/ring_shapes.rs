@@ -3,8 +3,12 @@
 
 use super::Mesh;
 use crate::index::VertexId;
-use crate::parallel;
+use crate::parallel::{self, Poll};
+use crate::progress::{Cancelled, uncancelled};
 use crate::ring::RingShape;
+
+/// Vertices that are looked at together.
+const PIECE: usize = 1 << 13;
 
 /// The distinct shapes of a mesh's rings, ascending, and for each vertex the place of its shape among them.
 #[derive(Default)]
@@ -15,17 +19,25 @@ pub(crate) struct RingShapes {
 
 impl RingShapes {
     pub(crate) fn of(mesh: &Mesh) -> Self {
-        let shapes = parallel::map(mesh.vertex_count(), |v| mesh.ring_shape(VertexId(v as u32)));
-        let distinct = parallel::pieces(shapes.len(), |piece| {
+        uncancelled(|_| Self::polled(mesh, &mut |_| Ok(())))
+    }
+
+    /// [`Self::of`] that can be cancelled.
+    pub(crate) fn polled(mesh: &Mesh, poll: &mut Poll<'_>) -> Result<Self, Cancelled> {
+        let shapes = parallel::pieces_polled(mesh.vertex_count(), PIECE, poll, |piece| {
+            piece.map(|v| mesh.ring_shape(VertexId(v as u32))).collect::<Vec<_>>()
+        });
+        let shapes = shapes?.concat();
+        let distinct = parallel::pieces_polled(shapes.len(), PIECE, poll, |piece| {
             // Neighbouring vertices mostly have the same shape: what is left to sort is little.
             let mut shapes = shapes[piece].to_vec();
             shapes.dedup();
             sorted_once(shapes)
         });
-        let distinct = sorted_once(distinct.concat());
+        let distinct = sorted_once(distinct?.concat());
         let place = |v: usize| distinct.binary_search(&shapes[v]).unwrap_or(0) as u32;
-        let by_vertex = parallel::map(shapes.len(), place);
-        Self { distinct, by_vertex }
+        let by_vertex = parallel::map_polled(shapes.len(), poll, place)?;
+        Ok(Self { distinct, by_vertex })
     }
 
     /// The shape of a vertex's ring.

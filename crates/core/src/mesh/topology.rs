@@ -9,6 +9,8 @@
 use super::MeshError;
 use crate::geometry::{EdgeSide, NONE, every_edge};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
+use crate::parallel::Poll;
+use crate::progress::{Cancelled, uncancelled};
 
 /// Faces that half-edge indices can number: 3·faces − 1 must stay below [`NONE`].
 pub(crate) const MAX_FACES: usize = (u32::MAX as usize) / 3 - 1;
@@ -351,15 +353,31 @@ fn match_twins(triangles: &[[u32; 3]], vertex_count: usize) -> Result<Vec<u32>, 
 
 /// One outgoing half-edge a vertex, the boundary one where there is one; [`NONE`] for isolated vertices.
 pub(crate) fn outgoing_half_edges(triangles: &[[u32; 3]], twins: &[u32], vertex_count: usize) -> Vec<u32> {
+    uncancelled(|_| outgoing_half_edges_polled(triangles, twins, vertex_count, &mut |_| Ok(())))
+}
+
+/// [`outgoing_half_edges`] that can be cancelled.
+pub(crate) fn outgoing_half_edges_polled(
+    triangles: &[[u32; 3]],
+    twins: &[u32],
+    vertex_count: usize,
+    poll: &mut Poll<'_>,
+) -> Result<Vec<u32>, Cancelled> {
     let mut outgoing = vec![NONE; vertex_count];
     for (h, &v) in triangles.as_flattened().iter().enumerate() {
+        if h.is_multiple_of(POLLED) {
+            poll(h / 3)?;
+        }
         let slot = &mut outgoing[v as usize];
         if *slot == NONE || twins[h] == NONE {
             *slot = h as u32;
         }
     }
-    outgoing
+    Ok(outgoing)
 }
+
+/// Half-edges that are looked at between two calls of an observer.
+const POLLED: usize = 1 << 18;
 
 /// The triangle's faces as ids, for callers that walk them.
 impl Topology {

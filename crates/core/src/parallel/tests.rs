@@ -92,3 +92,34 @@ fn a_cancelled_loop_begins_no_further_blocks() {
         }
     }
 }
+
+/// A block may take as long as it likes if it asks: it is polled for on the calling thread, and told to stop on all.
+#[test]
+fn long_blocks_are_polled_for_and_stopped() {
+    for threads in [1, 2, 4] {
+        let mut calls = 0;
+        let result = with_threads(threads, || {
+            let poll = &mut |_| {
+                calls += 1;
+                if calls < 1000 { Ok(()) } else { Err(Cancelled) }
+            };
+            // Without being stopped no block would ever end.
+            long_pieces_polled(threads, 1, poll, |_, is_stopped| while !is_stopped() {})
+        });
+        assert_eq!((result, calls), (Err(Cancelled), 1000));
+    }
+}
+
+#[test]
+fn what_is_sorted_in_parts_is_sorted() {
+    for n in [0, 1, 40_000, 200_001] {
+        let mut items: Vec<usize> = (0..n).map(|i: usize| i.wrapping_mul(0x9E37_79B9_7F4A_7C15)).collect();
+        let mut plain = items.clone();
+        plain.sort_unstable();
+        for threads in [1, 3] {
+            with_threads(threads, || sort_polled(&mut items, &mut |_| Ok(()), usize::cmp)).unwrap();
+            assert_eq!(items, plain);
+            items.reverse();
+        }
+    }
+}

@@ -72,8 +72,11 @@ impl Driver<'_> {
         if self.limit || self.normals {
             watch.stage(Stage::Limits, Some(mesh.vertex_count()))?;
         }
-        let normals = if self.normals { Some(table.sided_normals(&mesh)?) } else { None };
-        let mesh = if self.limit { at_limit(mesh, &table)? } else { mesh };
+        let normals = match self.normals {
+            true => Some(table.sided_normals_polled(&mesh, &mut |done| watch.done(done))??),
+            false => None,
+        };
+        let mesh = if self.limit { at_limit(mesh, &table, &mut watch)? } else { mesh };
         // Coordinates near the greatest number may overflow in a weighted sum.
         check_finite(mesh.positions())?;
         Ok(Refinement { mesh, normals, steps, stop })
@@ -81,8 +84,9 @@ impl Driver<'_> {
 }
 
 /// The mesh with its vertices moved to its limit surface.
-fn at_limit(mesh: Mesh, table: &LimitTable<'_>) -> Result<Mesh, RefineError> {
-    let mut positions = table.positions(&mesh)?;
+fn at_limit(mesh: Mesh, table: &LimitTable<'_>, watch: &mut Watch<'_>) -> Result<Mesh, RefineError> {
+    watch.stage(Stage::Limits, Some(mesh.vertex_count()))?;
+    let mut positions = table.positions_polled(&mesh, &mut |done| watch.done(done))??;
     join_copies(&mut positions, &mesh.junctions().vertices);
     Ok(mesh.with_positions(positions)?)
 }

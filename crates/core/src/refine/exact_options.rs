@@ -1,7 +1,5 @@
 //! Goals and caps of exact refinement.
 
-use core::ops::ControlFlow;
-
 use super::RefineError;
 use super::exact_result::ExactStop;
 use crate::criterion::{Camera, View};
@@ -13,7 +11,7 @@ use crate::mesh::MeshError;
 /// the refinement early, with the worst places refined first.
 #[derive(Clone)]
 #[non_exhaustive]
-pub struct ExactOptions<'a> {
+pub struct ExactOptions {
     /// Greatest distance between mesh and limit surface, either way, as a length. Default: none.
     pub tolerance: Option<f64>,
     /// Greatest angle between a triangle's normal and the limit normals of its corners (the paper's equation 2), in
@@ -45,8 +43,6 @@ pub struct ExactOptions<'a> {
     pub max_triangles: Option<usize>,
     /// Bytes that the refinement and its result may take, about. Default: no limit.
     pub max_memory: Option<usize>,
-    /// Called after each round; may cancel. Default: none.
-    pub observer: Option<ExactObserver<'a>>,
 }
 
 /// Levels that are tried where none are given: edges are divided by more than ten million then.
@@ -61,7 +57,7 @@ const USUAL_TRIANGLES: usize = 50_000_000;
 /// Memory for a triangle and what belongs to it while the mesh grows, the result included: measured, with a margin.
 pub(super) const BYTES_PER_TRIANGLE: usize = 320;
 
-impl Default for ExactOptions<'_> {
+impl Default for ExactOptions {
     fn default() -> Self {
         Self {
             tolerance: None,
@@ -75,12 +71,11 @@ impl Default for ExactOptions<'_> {
             max_levels: USUAL_LEVELS,
             max_triangles: Some(USUAL_TRIANGLES),
             max_memory: None,
-            observer: None,
         }
     }
 }
 
-impl<'a> ExactOptions<'a> {
+impl ExactOptions {
     /// Sets [`Self::tolerance`].
     pub fn tolerance(mut self, length: f64) -> Self {
         self.tolerance = Some(length);
@@ -141,12 +136,6 @@ impl<'a> ExactOptions<'a> {
         self
     }
 
-    /// Sets [`Self::observer`].
-    pub fn observer(mut self, observer: ExactObserver<'a>) -> Self {
-        self.observer = Some(observer);
-        self
-    }
-
     /// Triangles that must not be exceeded, and why.
     pub(super) fn budget(&self) -> (usize, ExactStop) {
         let by_memory = self.max_memory.map(|bytes| bytes / BYTES_PER_TRIANGLE);
@@ -197,18 +186,3 @@ impl<'a> ExactOptions<'a> {
         Ok(())
     }
 }
-
-/// What a round did.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct ExactProgress {
-    /// 1 for the first round; 0 while edges are collapsed, which goes without rounds.
-    pub round: usize,
-    /// Triangles that would be emitted now.
-    pub triangles: usize,
-    /// How many times over the worst place evaluated in this round fails the goals.
-    pub worst: f64,
-}
-
-/// Called after each round; may cancel.
-pub type ExactObserver<'a> = &'a (dyn Fn(&ExactProgress) -> ControlFlow<()> + Sync);

@@ -15,8 +15,8 @@ mod stepwise;
 mod tags;
 mod uniform;
 
-pub use exact::{exact, exact_estimate, is_certified};
-pub use exact_options::{ExactObserver, ExactOptions, ExactProgress};
+pub use exact::{exact, exact_estimate, exact_estimate_observed, exact_observed, is_certified};
+pub use exact_options::ExactOptions;
 pub use exact_result::{ErrorBounds, Estimate, Exact, ExactStop, Origin};
 pub use stepwise::{SeamRule, StepwiseOptions, stepwise, stepwise_observed};
 pub use uniform::{UniformOptions, uniform, uniform_observed};

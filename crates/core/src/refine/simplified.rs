@@ -3,13 +3,11 @@
 //! A mesh finer than asked for, certified against the limit surface, is collapsed with proof of how far the result is from
 //! it; both distances add up.
 
-use core::ops::ControlFlow;
-
 use super::adaptive::adaptive;
-use super::{ErrorBounds, Exact, ExactOptions, ExactProgress, ExactStop, RefineError};
-use crate::measure::distances_to;
+use super::{ErrorBounds, Exact, ExactOptions, ExactStop, RefineError};
+use crate::measure::{MeasureError, distances_to_observed};
 use crate::mesh::{Mesh, MeshError};
-use crate::progress::Progress;
+use crate::progress::{Cancelled, Observer};
 use crate::scheme::Scheme;
 use crate::simplify::{Features, Simplified, SimplifyOptions, simplify_observed};
 
@@ -30,7 +28,8 @@ const FEW: usize = 4;
 pub(super) fn simplified(
     control: &Mesh,
     scheme: &dyn Scheme,
-    options: &ExactOptions<'_>,
+    options: &ExactOptions,
+    observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
     let most = |count: Option<usize>| count.map(|count| count.saturating_mul(FINE_TIMES));
     let fine_options = ExactOptions {
@@ -43,37 +42,37 @@ pub(super) fn simplified(
             .map(|cap| cap.saturating_mul(FINE_TIMES).min(AFFORDABLE).max(cap)),
         ..options.clone()
     };
-    let fine = adaptive(control, scheme, &fine_options)?;
+    let fine = adaptive(control, scheme, &fine_options, observer)?;
     let allowance =
         options.tolerance.map(|tolerance| tolerance - fine.error.upper).filter(|&left| left > 0.0);
     let fewest = [options.triangles, options.max_triangles].into_iter().flatten().min();
     let mut collapsed = match (allowance, options.tolerance, fewest) {
-        (Some(_), ..) => collapse(&fine.mesh, allowance, options.triangles, options)?,
+        (Some(_), ..) => collapse(&fine.mesh, allowance, options.triangles, observer)?,
         // A cap ended the refinement before the tolerance left anything to collapse.
         (None, Some(_), None) => return Ok(fine),
-        (None, ..) => collapse(&fine.mesh, None, fewest, options)?,
+        (None, ..) => collapse(&fine.mesh, None, fewest, observer)?,
     };
     let over =
         |collapsed: &Simplified| options.max_triangles.is_some_and(|cap| collapsed.mesh.face_count() > cap);
     if over(&collapsed) {
-        collapsed = collapse(&fine.mesh, None, options.max_triangles, options)?;
+        collapsed = collapse(&fine.mesh, None, options.max_triangles, observer)?;
     }
-    let plainly = || adaptive(control, scheme, &ExactOptions { optimize: false, ..options.clone() });
+    let unoptimised = ExactOptions { optimize: false, ..options.clone() };
     // Where no more edges can go, refinement alone keeps the number of triangles; where nothing is proven, it proves.
     let asked = options.triangles.filter(|_| options.tolerance.is_none());
     let most = asked.into_iter().chain(options.max_triangles).min().unwrap_or(usize::MAX);
     let is_over = collapsed.mesh.face_count() > most;
     if is_over || collapsed.bound.is_none() {
-        let plain = plainly()?;
+        let plain = adaptive(control, scheme, &unoptimised, observer)?;
         if !is_over || plain.mesh.face_count() < collapsed.mesh.face_count() {
             return Ok(plain);
         }
     }
-    let error = error_bounds(&fine, &collapsed)?;
+    let error = error_bounds(&fine, &collapsed, observer)?;
     let is_met = options.tolerance.is_some_and(|tolerance| error.upper <= tolerance);
     if options.tolerance.is_some() && (!is_met || collapsed.mesh.face_count() > fine.mesh.face_count() / FEW)
     {
-        let plain = plainly()?;
+        let plain = adaptive(control, scheme, &unoptimised, observer)?;
         if plain.stop == ExactStop::Met && (!is_met || plain.mesh.face_count() <= collapsed.mesh.face_count())
         {
             return Ok(plain);
@@ -102,35 +101,36 @@ pub(super) fn simplified(
     })
 }
 
-/// Collapses edges of the fine mesh, and tells the observer.
+/// Collapses edges of the fine mesh.
 fn collapse(
     fine: &Mesh,
     tolerance: Option<f64>,
     triangles: Option<usize>,
-    options: &ExactOptions<'_>,
+    observer: &mut Observer<'_>,
 ) -> Result<Simplified, RefineError> {
     let goals = SimplifyOptions::default().tolerance(tolerance).triangles(triangles);
-    let mut observer = |progress: &Progress| {
-        let round = ExactProgress { round: 0, triangles: progress.triangles, worst: 0.0 };
-        options.observer.map_or(ControlFlow::Continue(()), |observer| observer(&round))
-    };
-    Ok(simplify_observed(fine, &Features::default(), &goals, &mut observer)?)
+    Ok(simplify_observed(fine, &Features::default(), &goals, observer)?)
 }
 
 /// How far the collapsed mesh can be from the limit surface, on which the fine mesh's vertices lie.
-fn error_bounds(fine: &Exact, collapsed: &Simplified) -> Result<ErrorBounds, RefineError> {
-    let (lower, at) = farthest(&fine.mesh, &collapsed.mesh)?;
+fn error_bounds(
+    fine: &Exact,
+    collapsed: &Simplified,
+    observer: &mut Observer<'_>,
+) -> Result<ErrorBounds, RefineError> {
+    let (lower, at) = farthest(&fine.mesh, &collapsed.mesh, observer)?;
     let upper = collapsed.bound.unwrap_or(f64::INFINITY) + fine.error.upper;
     Ok(ErrorBounds { lower, upper, at, certified: fine.error.certified })
 }
 
 /// The greatest distance of a fine mesh's vertices, which are points of the surface, to another mesh, and where.
-fn farthest(fine: &Mesh, coarse: &Mesh) -> Result<(f64, [f64; 3]), RefineError> {
-    let broken = |why: crate::measure::MeasureError| MeshError::Broken {
-        place: why.to_string(),
-        what: "an optimised mesh can be measured",
+fn farthest(fine: &Mesh, coarse: &Mesh, observer: &mut Observer<'_>) -> Result<(f64, [f64; 3]), RefineError> {
+    let broken = |why: MeasureError| match why {
+        MeasureError::Cancelled(_) => RefineError::Cancelled(Cancelled),
+        why => MeshError::Broken { place: why.to_string(), what: "an optimised mesh can be measured" }.into(),
     };
-    let distances = distances_to(fine.positions(), coarse.as_triangles()).map_err(broken)?;
+    let distances =
+        distances_to_observed(fine.positions(), coarse.as_triangles(), observer).map_err(broken)?;
     let farthest = distances.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
     Ok(farthest.map_or((0.0, [0.0; 3]), |(v, &distance)| (distance, fine.positions()[v])))
 }

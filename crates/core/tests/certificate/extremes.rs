@@ -11,7 +11,7 @@ use crate::support::{Point, octahedron, sheet};
 /// More than enough for each of these, for an unoptimised build on a busy machine too.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-fn refined(control: &Mesh, options: &ExactOptions<'_>) -> Exact {
+fn refined(control: &Mesh, options: &ExactOptions) -> Exact {
     let start = Instant::now();
     let result = exact(control, &Loop, options).unwrap();
     assert!(start.elapsed() < PATIENCE, "{:?} for {} faces", start.elapsed(), control.face_count());
@@ -48,7 +48,7 @@ fn scaled(control: &Mesh, factor: f64) -> Mesh {
     control.clone().with_positions(positions).unwrap()
 }
 
-fn both_balances(mut check: impl FnMut(ExactOptions<'static>)) {
+fn both_balances(mut check: impl FnMut(ExactOptions)) {
     [false, true].into_iter().for_each(|balance| check(ExactOptions::default().balance(balance)));
 }
 

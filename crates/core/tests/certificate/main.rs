@@ -35,12 +35,12 @@ const MOST_OPTIMISED: usize = 600;
 const MOST_SAMPLES: usize = 8_000;
 
 /// What one cage is refined to.
-struct Goal<'a> {
-    options: ExactOptions<'a>,
+struct Goal {
+    options: ExactOptions,
     what: String,
 }
 
-fn goal(control: &Mesh, random: &mut Random) -> Goal<'static> {
+fn goal(control: &Mesh, random: &mut Random) -> Goal {
     let diagonal = control.diagonal();
     let tolerance = diagonal * 10f64.powf(-1.6 + 1.4 * random.signed());
     let faces = control.face_count();
@@ -118,7 +118,7 @@ fn ensure(holds: bool, why: impl FnOnce() -> String) -> Result<(), String> {
 }
 
 /// What must hold without any measurement.
-fn check_form(control: &Mesh, result: &Exact, options: &ExactOptions<'_>) -> Result<(), String> {
+fn check_form(control: &Mesh, result: &Exact, options: &ExactOptions) -> Result<(), String> {
     result.mesh.validate().map_err(|error| error.to_string())?;
     let [before, after] = [control, &result.mesh].map(|mesh| mesh.topology().euler_characteristic());
     ensure(before == after, || format!("Euler characteristic {after}, not {before}"))?;
@@ -207,7 +207,7 @@ fn weights(random: &mut Random) -> [[f64; 3]; 6] {
 fn check_threads(
     control: &Mesh,
     scheme: &dyn Scheme,
-    options: &ExactOptions<'_>,
+    options: &ExactOptions,
     result: &Exact,
 ) -> Result<(), String> {
     for threads in [1, 3] {

@@ -1,7 +1,7 @@
 //! `limitmesh refine --dry-run`: what an exact refinement would come to, without doing it.
 
 use limitmesh::Mesh;
-use limitmesh::refine::{Estimate, exact_estimate};
+use limitmesh::refine::{Estimate, exact_estimate_observed};
 
 use super::exact::Goals;
 use crate::arguments::RefineArguments;
@@ -22,7 +22,8 @@ pub(super) fn run(
 ) -> anyhow::Result<()> {
     progress.stage("estimating");
     let options = goals.options(arguments);
-    let found = exact_estimate(control, arguments.scheme.scheme(), &options)?;
+    let found =
+        exact_estimate_observed(control, arguments.scheme.scheme(), &options, &mut progress.observer())?;
     progress.clear();
     // A report on standard output is not mixed with text for people.
     if arguments.report.as_deref().is_none_or(|path| path.as_os_str() != output::STANDARD_OUTPUT) {

@@ -1,11 +1,9 @@
 //! Exact refinement: from the goals on the command line to the mesh, its certified distance, and what is said of it.
 
-use std::ops::ControlFlow;
-use std::sync::{Mutex, PoisonError};
-
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
-use limitmesh::refine::{Exact, ExactOptions, ExactProgress, ExactStop, exact};
+use limitmesh::progress::Stage;
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_observed};
 
 use super::provenance::Provenance;
 use super::{Refined, cameras, view, view_report};
@@ -62,7 +60,7 @@ impl Goals {
         self.tolerance.map(|tolerance| tolerance.length(self.diagonal))
     }
 
-    pub(super) fn options<'a>(&self, arguments: &RefineArguments) -> ExactOptions<'a> {
+    pub(super) fn options(&self, arguments: &RefineArguments) -> ExactOptions {
         let mut options = ExactOptions::default()
             .max_triangles(Some(arguments.max_triangles()))
             .max_memory(arguments.exact.max_memory)
@@ -114,22 +112,19 @@ pub(super) fn run(
     arguments: &RefineArguments,
     progress: &Progress,
 ) -> anyhow::Result<Refined> {
-    let rounds = Mutex::new(Vec::new());
-    let observer = |round: &ExactProgress| {
-        progress.stage(format!("refining: {}", counted(round.triangles, "triangle", "triangles")));
-        if round.round == 0 {
-            return ControlFlow::Continue(());
-        }
-        let mut rounds = rounds.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut rounds: Vec<RoundEntry> = Vec::new();
+    let (mut last, mut show) = (0, progress.observer());
+    let mut observer = |at: &limitmesh::progress::Progress| {
         // Where refinement tries two ways, the second starts again; the report counts on.
-        let number = rounds.len() + 1;
-        rounds.push(RoundEntry { round: number, ..round.into() });
-        ControlFlow::Continue(())
+        if at.stage == Stage::Refining && at.done > 0 && at.done != last {
+            last = at.done;
+            rounds.push(RoundEntry { round: rounds.len() + 1, triangles: at.triangles });
+        }
+        show(at)
     };
     progress.stage(format!("refining {}", counted(control.face_count(), "triangle", "triangles")));
-    let options = goals.options(arguments).observer(&observer);
-    let found = exact(control, arguments.scheme.scheme(), &options)?;
-    let rounds = rounds.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let options = goals.options(arguments);
+    let found = exact_observed(control, arguments.scheme.scheme(), &options, &mut observer)?;
     let error = ErrorReport::new(&found.error, goals.diagonal);
     let outcome = outcome(&found, goals, &error, arguments);
     let achieved = achieved(&found, &error);

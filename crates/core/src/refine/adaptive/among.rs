@@ -8,6 +8,7 @@ use super::measure::{Measured, measure};
 use super::offsets::Bulges;
 use super::result::Outcome;
 use super::{ADDED, Engine, Plan, marked};
+use crate::progress::{Cancelled, Stage};
 use crate::refine::RefineError;
 use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{Exact, ExactStop};
@@ -39,16 +40,19 @@ impl Engine<'_> {
             let touched = plan.is_touched.clone();
             let mut emission = self.emit_all(&mut plan)?;
             if self.is_balanced {
-                bulges.look(&self.sources(&plan, &emission), &marked(&touched));
-                let offsets = bulges.offsets(self.control, &emission);
-                emission.shift(offsets);
+                bulges.look(&self.sources(&plan, &emission), self.watch, &marked(&touched))?;
+                let offsets = bulges.offsets(self.control, &emission, self.watch)?;
+                emission.shift(offsets, self.watch)?;
             }
-            let around = marked(&self.around(touched));
-            let found = measure(&self.sources(&plan, &emission), goal, f64::INFINITY, &around);
+            self.watch.stage(Stage::Bounding, None)?;
+            let around = marked(&self.around(touched)?);
+            let sources = self.sources(&plan, &emission);
+            let found = measure(&sources, self.watch, goal, f64::INFINITY, &around)?;
             if measured.is_empty() {
                 measured = found;
             } else {
-                around.iter().zip(found).for_each(|(&face, found)| measured[face as usize] = found);
+                let faces = around.iter().zip(found);
+                self.watch.each(faces, |(&face, found)| measured[face as usize] = found)?;
             }
             let Some(is_dirty) = self.divide(&mut plan, &measured, (most, is_budget))? else {
                 return Ok(Some(Outcome { plan, emission, measured: Some(measured) }));
@@ -62,19 +66,21 @@ impl Engine<'_> {
 
     /// The faces whose triangles may come to something else after changes in some: moved vertices depend on the triangles around
     /// them, triangles on those beside them.
-    fn around(&self, is_touched: Vec<bool>) -> Vec<bool> {
+    fn around(&self, is_touched: Vec<bool>) -> Result<Vec<bool>, Cancelled> {
         let triangles = self.control.mesh.triangles();
         let mut is_met = vec![false; self.control.mesh.vertex_count()];
-        for (triangle, _) in triangles.iter().zip(&is_touched).filter(|&(_, &is_touched)| is_touched) {
-            triangle.iter().for_each(|&vertex| is_met[vertex as usize] = true);
-        }
+        self.watch.each(triangles.iter().zip(&is_touched), |(triangle, &is_touched)| {
+            if is_touched {
+                triangle.iter().for_each(|&vertex| is_met[vertex as usize] = true);
+            }
+        })?;
         let mut is_around = is_touched;
-        for (face, triangle) in (0..).zip(triangles) {
+        self.watch.each((0..).zip(triangles), |(face, triangle)| {
             if triangle.iter().any(|&vertex| is_met[vertex as usize]) {
                 self.mark(face, &mut is_around);
             }
-        }
-        is_around
+        })?;
+        Ok(is_around)
     }
 
     /// Divides the leaves that fail, and marks the faces that this changes; `None` if there are none that may be.
@@ -96,6 +102,7 @@ impl Engine<'_> {
                 continue;
             }
             is_split = true;
+            self.watch.poll()?;
             self.mark(place.face, &mut is_dirty);
             self.split(&mut plan.decision.trees, place, |place| self.mark(place.face, &mut is_dirty))?;
         }
@@ -115,7 +122,7 @@ impl Engine<'_> {
         plain: Exact,
         floor: f64,
         (most, stop): (usize, ExactStop),
-        options: &ExactOptions<'_>,
+        options: &ExactOptions,
     ) -> Result<Exact, RefineError> {
         let mut high = if self.control.criteria.is_some() { plain.worst } else { plain.error.upper };
         let mut low = floor;

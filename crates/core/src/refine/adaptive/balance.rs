@@ -7,6 +7,10 @@
 use std::collections::HashSet;
 
 use super::quadtree::{Along, Beyond, Edges, Place, Trees, beyond, even_depth};
+use crate::progress::Cancelled;
+
+/// Nodes between two calls of the observer.
+const STEPS: usize = 1 << 12;
 
 /// Nodes with children whose neighbours must exist, by level.
 #[derive(Default)]
@@ -60,13 +64,19 @@ pub(super) fn balance(
     trees: &mut Trees,
     edges: &Edges<'_>,
     mut pending: Pending,
+    poll: &mut dyn FnMut() -> Result<(), Cancelled>,
     mut split: impl FnMut(Place),
-) -> bool {
+) -> Result<bool, Cancelled> {
     let mut asked = HashSet::new();
     let mut fresh = Vec::new();
+    let mut steps = 0usize;
     // Nothing is missing beside a control face.
     for level in (1..pending.0.len()).rev() {
         while let Some(place) = pending.0[level].pop() {
+            steps += 1;
+            if steps.is_multiple_of(STEPS) {
+                poll()?;
+            }
             for edge in 0..3 {
                 let mut ensure = |place: Place| trees.ensure(place, |place| fresh.push(place));
                 let fits = match beyond(place, edge) {
@@ -74,7 +84,7 @@ pub(super) fn balance(
                     Beyond::Control(along) => ensure_along(edges, along, &mut asked, ensure),
                 };
                 if !fits {
-                    return false;
+                    return Ok(false);
                 }
                 for place in fresh.drain(..) {
                     split(place);
@@ -83,7 +93,7 @@ pub(super) fn balance(
             }
         }
     }
-    true
+    Ok(true)
 }
 
 /// Asks for the nodes along a part of an edge, on all other faces there; of the copies of a cut edge once for all.
@@ -182,7 +192,7 @@ mod tests {
             let edges = Edges::of(&mesh);
             for _ in 0..20 {
                 let roots: Vec<u32> = (0..mesh.face_count()).map(|_| LEAF + random(3) as u32).collect();
-                let mut trees = Trees::of(&[Piece { roots, words: vec![] }]).unwrap();
+                let mut trees = Trees::of(&[Piece { roots, words: vec![] }], &mut || Ok(())).unwrap();
                 for _ in 0..3 {
                     let face = random(mesh.face_count() as u64) as u32;
                     let level = 3 + random(3) as u32;
@@ -193,7 +203,7 @@ mod tests {
                 brute_force(&mut expected, &edges, mesh.face_count() as u32);
                 let mut pending = Pending::default();
                 (0..mesh.face_count() as u32).for_each(|face| pending.push_tree(&trees, face));
-                assert!(balance(&mut trees, &edges, pending, |_| ()));
+                assert!(balance(&mut trees, &edges, pending, &mut || Ok(()), |_| ()).unwrap());
                 for face in 0..mesh.face_count() as u32 {
                     let (mut a, mut b) = (Vec::new(), Vec::new());
                     leaves(&trees, trees.root(face), Place::root(face), &mut a);

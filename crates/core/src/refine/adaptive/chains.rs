@@ -6,7 +6,7 @@
 use super::quadtree::{Edges, FULL, Trees};
 use super::walk::{Knot, Side, merged, merged_all};
 use crate::mesh::Mesh;
-use crate::parallel;
+use crate::progress::{Cancelled, SharedWatch};
 
 /// Control faces that one call takes together.
 const BLOCK: usize = 1024;
@@ -23,11 +23,16 @@ pub(super) struct Chains {
 }
 
 impl Chains {
-    pub(super) fn of(mesh: &Mesh, edges: &Edges<'_>, trees: &Trees) -> Self {
+    pub(super) fn of(
+        mesh: &Mesh,
+        edges: &Edges<'_>,
+        trees: &Trees,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Self, Cancelled> {
         let half_edges = 3 * mesh.face_count();
-        let groups: Vec<Vec<u32>> =
-            (0..edges.group_count()).map(|group| group_places(edges, trees, group)).collect();
-        let blocks = parallel::pieces_of(half_edges, 3 * BLOCK, |block| {
+        let mut groups = Vec::with_capacity(edges.group_count());
+        watch.each(0..edges.group_count(), |group| groups.push(group_places(edges, trees, group)))?;
+        let blocks = watch.pieces(half_edges, 3 * BLOCK, |block| {
             let (mut counts, mut at) = (Vec::with_capacity(block.len()), Vec::new());
             for h in block {
                 let before = at.len();
@@ -35,7 +40,7 @@ impl Chains {
                 counts.push((at.len() - before) as u32);
             }
             (counts, at)
-        });
+        })?;
         let mut chains = Self {
             starts: Vec::with_capacity(half_edges + 1),
             at: Vec::new(),
@@ -48,9 +53,10 @@ impl Chains {
                 start += count;
             }
             chains.at.append(&mut at);
+            watch.poll()?;
         }
         chains.starts.push(start);
-        chains
+        Ok(chains)
     }
 
     /// Vertices on edges.

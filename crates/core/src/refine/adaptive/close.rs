@@ -10,7 +10,11 @@ use super::rim::Rim;
 use super::surface::{GeneralPiece, Ground, Spot, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
 use crate::certificate::{Cell, Pieces, SubTriangle};
+use crate::parallel::IsStopped;
 use crate::patch::LimitPoint;
+
+/// Leaves that are judged between two questions whether that is still of use.
+const ASKED: usize = 256;
 
 /// What the walk over a control face found.
 #[derive(Clone, Debug, Default)]
@@ -104,10 +108,10 @@ pub(super) fn close(
     edges: &Edges<'_>,
     (trees, chains): (&Trees, &Chains),
     (allowance, known, is_kept): (&Allowance, &Verdicts, bool),
-    face: u32,
+    (face, is_stopped): (u32, &IsStopped<'_>),
     knots: &mut Vec<Knot>,
 ) -> Closed {
-    let mut walk = Walk { trees, knots: core::mem::take(knots), next: 0 };
+    let mut walk = Walk::new(trees, core::mem::take(knots), 0, is_stopped);
     walk.knots.clear();
     let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
     let at = (Place::root(face), Spot::WHOLE);
@@ -123,7 +127,7 @@ pub(super) fn close(
     recall(known, &mut leaves);
     if leaves.iter().any(|leaf| leaf.verdict.is_none()) {
         let closer = Closer { judge: goal.judge(control, max_levels, face), allowance };
-        closer.judge(control.piece(face).surface(control.rules), 0, &mut leaves);
+        closer.judge(control.piece(face).surface(control.rules), 0, &mut leaves, is_stopped);
     }
     closed.take(&leaves, max_levels);
     if is_kept {
@@ -183,7 +187,7 @@ struct Closer<'a> {
 
 impl Closer<'_> {
     /// Judges those of a node's leaves that nobody has judged, over its surface.
-    fn judge(&self, surface: Surface<'_>, level: u32, leaves: &mut [Judged]) {
+    fn judge(&self, surface: Surface<'_>, level: u32, leaves: &mut [Judged], is_stopped: &IsStopped<'_>) {
         let mut wanting = leaves.iter_mut().filter(|leaf| leaf.verdict.is_none()).peekable();
         if wanting.peek().is_none() {
             return;
@@ -192,12 +196,16 @@ impl Closer<'_> {
             Surface::Unknown => {}
             Surface::Regular(piece, spot) => {
                 let ground = piece.ground();
-                for leaf in wanting {
+                for (i, leaf) in wanting.enumerate() {
+                    if i % ASKED == ASKED - 1 && is_stopped() {
+                        return;
+                    }
                     let levels = level..leaf.place.level;
                     let spot = levels.fold(spot, |spot, level| spot.child(leaf.place.digit(level)));
                     leaf.verdict = Some(self.regular(ground, spot, leaf));
                 }
             }
+            Surface::General(..) if is_stopped() => {}
             Surface::General(piece, rules) => match leaves {
                 [leaf] if leaf.place.level == level => {
                     leaf.verdict = Some(self.general(piece, piece.middles(rules), leaf))
@@ -205,7 +213,7 @@ impl Closer<'_> {
                 _ => {
                     for of_child in leaves.chunk_by_mut(|a, b| a.place.digit(level) == b.place.digit(level)) {
                         let child = of_child[0].place.digit(level);
-                        self.judge(surface.child(child), level + 1, of_child);
+                        self.judge(surface.child(child), level + 1, of_child, is_stopped);
                     }
                 }
             },

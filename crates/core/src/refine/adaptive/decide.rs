@@ -16,10 +16,11 @@ use crate::criterion::Criteria;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::SidedNormals;
 use crate::mesh::{Mesh, Sharpness};
-use crate::parallel;
+use crate::parallel::IsStopped;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::large_rings::LargeRings;
 use crate::patch::{LimitPoint, Patch, RefinedPatch, Rules, root_patch};
+use crate::progress::SharedWatch;
 use crate::refine::RefineError;
 use crate::vector::{DVec3, vector};
 use even_parts::{AtOnce, MOST_TESTED};
@@ -108,7 +109,7 @@ struct Found {
 
 /// Divides all control faces; `None` if that takes more than `most` leaves.
 pub(super) fn decide(
-    control: &Control<'_>,
+    (control, watch): (&Control<'_>, &SharedWatch<'_>),
     goal: &Goal,
     edges: &Edges<'_>,
     max_levels: u32,
@@ -116,29 +117,29 @@ pub(super) fn decide(
 ) -> Result<Option<Decision>, RefineError> {
     let faces = control.mesh.face_count();
     let count = Count { leaves: AtomicUsize::new(0), most };
-    let blocks = parallel::pieces_of(faces, BLOCK, |block| {
-        let mut decider = Decider::new(control, edges, goal, max_levels, &count);
+    let blocks = watch.long_pieces(faces, BLOCK, |block, is_stopped| {
+        let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
         let found: Vec<Found> = block.map(|face| decider.face(face as u32, None)).collect();
         decider.tell();
         (decider.piece, found)
-    });
+    })?;
     if count.is_passed() {
         return Ok(None);
     }
     let (mut pieces, mut found) = (Vec::with_capacity(blocks.len()), Vec::with_capacity(faces));
-    for (piece, mut list) in blocks {
+    watch.each(blocks, |(piece, mut list)| {
         pieces.push(piece);
         found.append(&mut list);
-    }
+    })?;
     let mut decision = Decision {
-        trees: Trees::of(&pieces)?,
+        trees: Trees::of(&pieces, &mut || watch.poll())?,
         allowances: found.iter().map(|found| found.allowance).collect(),
         found,
         rounds: 0,
     };
     drop(pieces);
     loop {
-        match decision.settle(control, goal, edges, (max_levels, most), |_| None)? {
+        match decision.settle((control, watch), goal, edges, (max_levels, most), |_| None)? {
             Some(faces) if faces.is_empty() => return Ok(Some(decision)),
             Some(_) => {}
             None => return Ok(None),
@@ -151,7 +152,7 @@ impl Decision {
     /// face; gives their numbers, or `None` if that takes too many leaves.
     pub(super) fn settle<'c>(
         &mut self,
-        control: &Control<'_>,
+        (control, watch): (&Control<'_>, &SharedWatch<'_>),
         goal: &Goal,
         edges: &Edges<'_>,
         (max_levels, most): (u32, usize),
@@ -159,14 +160,14 @@ impl Decision {
     ) -> Result<Option<Vec<u32>>, RefineError> {
         let faces = self.found.len() as u32;
         let mut wanting = Vec::new();
-        for face in 0..faces {
+        watch.each(0..faces, |face| {
             let (Allowance { tilt, slope }, counted) = self.around(control, edges, face, &closing);
             let allowance = &self.allowances[face as usize];
             // What counts on nothing needs nothing.
             if *allowance != Allowance::NOTHING && !(tilt <= allowance.tilt && counted <= slope) {
                 wanting.push((face, tilt, slope));
             }
-        }
+        })?;
         for &(face, tilt, slope) in &wanting {
             let own = &mut self.allowances[face as usize];
             *own = if self.rounds >= MOST_ROUNDS {
@@ -177,15 +178,15 @@ impl Decision {
         }
         self.rounds += 1;
         let count = Count { leaves: AtomicUsize::new(0), most };
-        let again = parallel::pieces_of(wanting.len(), BLOCK, |block| {
-            let mut decider = Decider::new(control, edges, goal, max_levels, &count);
+        let again = watch.long_pieces(wanting.len(), BLOCK, |block, is_stopped| {
+            let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
             let again = wanting[block].iter().map(|&(face, ..)| {
                 let found = decider.face(face, Some(self.allowances[face as usize]));
                 decider.tell();
                 (face, core::mem::take(&mut decider.piece), found)
             });
             again.collect::<Vec<_>>()
-        });
+        })?;
         if count.is_passed() {
             return Ok(None);
         }
@@ -252,6 +253,11 @@ struct Count {
 }
 
 impl Count {
+    /// Makes it too many.
+    fn stop(&self) {
+        self.leaves.store(usize::MAX / 2, Ordering::Relaxed);
+    }
+
     fn is_passed(&self) -> bool {
         self.leaves.load(Ordering::Relaxed) > self.most
     }
@@ -282,6 +288,7 @@ struct Decider<'a> {
     /// Leaves that were not added to the count.
     leaves: usize,
     count: &'a Count,
+    is_stopped: &'a IsStopped<'a>,
 }
 
 impl<'a> Decider<'a> {
@@ -290,7 +297,7 @@ impl<'a> Decider<'a> {
         edges: &'a Edges<'a>,
         goal: &'a Goal,
         max_levels: u32,
-        count: &'a Count,
+        (count, is_stopped): (&'a Count, &'a IsStopped<'a>),
     ) -> Self {
         Self {
             control,
@@ -307,6 +314,7 @@ impl<'a> Decider<'a> {
             marks: Default::default(),
             leaves: 0,
             count,
+            is_stopped,
         }
     }
 
@@ -384,7 +392,8 @@ impl<'a> Decider<'a> {
         open: [bool; 3],
         place: Place,
     ) -> u32 {
-        if self.is_too_much() {
+        // Pieces that are not regular take long each.
+        if self.is_too_much() || place.level > 0 && (self.is_stopped)() {
             return LEAF;
         }
         let judge = self.judge;
@@ -458,6 +467,9 @@ impl<'a> Decider<'a> {
         self.leaves += count;
         if self.leaves >= COUNTED {
             self.tell();
+            if (self.is_stopped)() {
+                self.count.stop();
+            }
         }
     }
 

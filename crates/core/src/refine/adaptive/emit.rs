@@ -17,8 +17,10 @@ use super::rim::Rim;
 use super::surface::{Spot, Surface};
 use super::walk::Walk;
 use crate::mesh::{Junctions, MAX_FACES, MeshError, NONE};
-use crate::parallel;
+use crate::parallel::{self, IsStopped};
 use crate::patch::LimitPoint;
+use crate::progress::{Cancelled, SharedWatch};
+use crate::refine::RefineError;
 use crate::refine::exact_result::Origin;
 use crate::vector::{DVec3, unit_or_zero, vector};
 use kept::Kept;
@@ -26,6 +28,10 @@ use leaf_writer::{Vertices, Writer, split_off};
 
 /// Triangles that one call writes, about.
 const JOB: u32 = 8192;
+
+/// Origins that are written together, and control faces that are passed over together: some milliseconds.
+const FILLED: usize = 1 << 17;
+const POLLED: u32 = 1 << 12;
 
 /// What is emitted.
 pub(super) struct Emission {
@@ -74,13 +80,16 @@ impl Emission {
     }
 
     /// Moves the vertices along their normals.
-    pub(super) fn shift(&mut self, offsets: Vec<f64>) {
+    pub(super) fn shift(&mut self, offsets: Vec<f64>, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
         self.offsets = offsets;
-        self.feet.clone_from(&self.positions);
-        for vertex in 0..self.positions.len() {
+        let mut feet = Vec::with_capacity(self.positions.len());
+        watch.each(0..self.positions.len(), |vertex| {
+            feet.push(self.positions[vertex]);
             let moved = vector(self.positions[vertex]) + self.step(vertex as u32);
             self.positions[vertex] = moved.to_array();
-        }
+        })?;
+        self.feet = feet;
+        Ok(())
     }
 
     /// How far a vertex was moved, and in which direction.
@@ -123,25 +132,23 @@ pub(super) enum Extend {
 ///
 /// With some faces only the arrays are as long, since numbers stay the same, but nothing else of them is written.
 pub(super) fn emit(
-    control: &Control<'_>,
+    (control, watch): (&Control<'_>, &SharedWatch<'_>),
     edges: &Edges<'_>,
     (decision, chains): (&Decision, &Chains),
     closed: &[Closed],
     only: Option<&[Extend]>,
     before: Option<(Emission, &[bool])>,
-) -> Result<Emission, MeshError> {
+) -> Result<Emission, RefineError> {
     let faces = control.mesh.face_count();
     let too_many = |what, count| MeshError::TooMany { what, count, limit: MAX_FACES };
     let total: usize = closed.iter().map(|face| face.triangles as usize).sum();
     let inside: usize = closed.iter().map(|face| face.vertices as usize).sum();
     let on_edges = control.mesh.vertex_count() + chains.count();
     if total > MAX_FACES || on_edges + inside >= NONE as usize {
-        return Err(too_many("triangles", total));
+        return Err(too_many("triangles", total).into());
     }
     let mut starts = vec![0u32; 3 * faces + 1];
-    for h in 0..3 * faces {
-        starts[h + 1] = starts[h] + chains.along(edges, h as u32) as u32 + 1;
-    }
+    watch.each(0..3 * faces, |h| starts[h + 1] = starts[h] + chains.along(edges, h as u32) as u32 + 1)?;
     let mut next = 0;
     let first_triangles = closed.iter().map(|face| {
         next += face.triangles;
@@ -151,7 +158,7 @@ pub(super) fn emit(
     let mut emission = Emission {
         positions: vec![[0.0; 3]; on_edges + inside],
         normals: vec![[0.0; 3]; on_edges + inside],
-        origins: vec![NOWHERE; on_edges + inside],
+        origins: nowhere(on_edges + inside, watch)?,
         triangles: vec![[0; 3]; total],
         twins: vec![0; 3 * total],
         parents: vec![0; total],
@@ -165,7 +172,7 @@ pub(super) fn emit(
         numbers: Numbers::of(control, chains, closed),
         is_whole: Vec::new(),
     };
-    corners(control, &mut emission);
+    corners(control, &mut emission, watch)?;
     let is_kept = |face: u32| {
         let (before, is_changed) = before.as_ref()?;
         let is_kept = before.is_whole[face as usize] && !is_changed[face as usize];
@@ -175,16 +182,26 @@ pub(super) fn emit(
     let wanted = |face: u32| only.map_or(Extend::All, |only| only[face as usize]);
     let extend: Vec<Extend> =
         (0..faces as u32).map(|face| is_kept(face).unwrap_or_else(|| wanted(face))).collect();
-    let jobs = jobs(control, edges, chains, (closed, &extend), &mut emission);
+    let jobs = jobs(control, edges, chains, (closed, &extend), &mut emission, watch)?;
     let kept = before.as_ref().map(|(before, _)| Kept { before, mesh: control.mesh, edges, chains });
-    let conditions = parallel::for_each_job(jobs, |job| {
-        write(control, edges, (decision, chains), (closed, kept.as_ref()), job)
+    let conditions = parallel::each_long_polled(jobs, &mut |_| watch.poll(), |job, is_stopped| {
+        write(control, edges, (decision, chains), (closed, kept.as_ref()), job, is_stopped)
     });
-    emission.conditions = conditions.concat();
+    emission.conditions = conditions?.concat();
     emission.is_whole = extend.into_iter().map(|extend| extend >= Extend::Kept).collect();
-    join(edges, &mut emission);
-    sharp_edges(control, edges, chains, &mut emission);
+    join(edges, &mut emission, watch)?;
+    sharp_edges((control, watch), edges, chains, &mut emission)?;
     Ok(emission)
+}
+
+/// Origins of vertices that are not known yet: written piece by piece, since they are no zeros, which cost nothing.
+fn nowhere(count: usize, watch: &SharedWatch<'_>) -> Result<Vec<Origin>, Cancelled> {
+    let mut origins = Vec::with_capacity(count);
+    while origins.len() < count {
+        origins.resize(count.min(origins.len() + FILLED), NOWHERE);
+        watch.poll()?;
+    }
+    Ok(origins)
 }
 
 impl Numbers {
@@ -200,11 +217,11 @@ impl Numbers {
 }
 
 /// The control vertices.
-fn corners(control: &Control<'_>, emission: &mut Emission) {
+fn corners(control: &Control<'_>, emission: &mut Emission, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
     let count = control.mesh.vertex_count();
     emission.positions[..count].copy_from_slice(&control.positions);
     emission.normals[..count].copy_from_slice(control.sided.by_vertex());
-    for (face, triangle) in (0..).zip(control.mesh.triangles()) {
+    watch.each((0..).zip(control.mesh.triangles()), |(face, triangle)| {
         for (corner, &vertex) in triangle.iter().enumerate() {
             let origin = &mut emission.origins[vertex as usize];
             if origin.face == NONE {
@@ -213,7 +230,7 @@ fn corners(control: &Control<'_>, emission: &mut Emission) {
                 *origin = Origin { face, barycentric };
             }
         }
-    }
+    })
 }
 
 /// Consecutive control faces, and the parts of the arrays that are theirs.
@@ -235,7 +252,8 @@ fn jobs<'a>(
     chains: &Chains,
     (closed, extend): (&[Closed], &[Extend]),
     emission: &'a mut Emission,
-) -> Vec<Job<'a>> {
+    watch: &SharedWatch<'_>,
+) -> Result<Vec<Job<'a>>, Cancelled> {
     let count = control.mesh.vertex_count();
     let Emission { positions, normals, origins, triangles, twins, parents, borders, .. } = emission;
     let first = count as u32;
@@ -247,7 +265,7 @@ fn jobs<'a>(
     let (mut jobs, mut from, mut first_triangle) = (Vec::new(), 0u32, 0u32);
     let (mut triangles, mut own, mut vertices, mut segments) = (0u32, 0usize, 0usize, 0usize);
     let faces = closed.len() as u32;
-    for (face, found) in (0..).zip(closed) {
+    watch.each((0..).zip(closed), |(face, found)| {
         triangles += found.triangles;
         vertices += found.vertices as usize;
         for h in 3 * face..3 * face + 3 {
@@ -275,8 +293,8 @@ fn jobs<'a>(
             from = face + 1;
             (triangles, own, vertices, segments) = (0, 0, 0, 0);
         }
-    }
-    jobs
+    })?;
+    Ok(jobs)
 }
 
 /// Writes the faces of a job.
@@ -286,12 +304,13 @@ fn write(
     (decision, chains): (&Decision, &Chains),
     (closed, kept): (&[Closed], Option<&Kept<'_>>),
     mut job: Job<'_>,
+    is_stopped: &IsStopped<'_>,
 ) -> Vec<(Condition, u32, u32)> {
     let trees = &decision.trees;
     match (job.extend, kept) {
         (Extend::All, _) => {}
         (Extend::Kept, Some(kept)) => {
-            return kept.take_over(closed, job);
+            return kept.take_over(closed, job, is_stopped);
         }
         _ => {
             for face in job.faces.clone() {
@@ -301,7 +320,7 @@ fn write(
         }
     }
     job.twins.fill(NONE);
-    let mut walk = Walk { trees, knots: Vec::new(), next: job.inside.first };
+    let mut walk = Walk::new(trees, Vec::new(), job.inside.first, is_stopped);
     let mut writer = Writer {
         face: 0,
         diagonals: &[],
@@ -315,6 +334,7 @@ fn write(
         rim: Rim::default(),
         below: Vec::new(),
         places: Vec::new(),
+        is_stopped,
     };
     for face in job.faces {
         walk.knots.clear();
@@ -389,10 +409,10 @@ fn fraction(at: u32) -> f64 {
 }
 
 /// Makes the half-edges on both sides of control edges twins.
-fn join(edges: &Edges<'_>, emission: &mut Emission) {
+fn join(edges: &Edges<'_>, emission: &mut Emission, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
     let Emission { borders, twins, is_whole, .. } = emission;
     let is_whole = |h: u32| is_whole[h as usize / 3];
-    for h in 0..borders.starts.len() as u32 - 1 {
+    watch.each(0..borders.starts.len() as u32 - 1, |h| {
         let twin = edges.twin(h).filter(|&twin| h < twin && is_whole(h) && is_whole(twin));
         if let Some(twin) = twin {
             for (&a, &b) in borders.along(h).iter().zip(borders.along(twin).iter().rev()) {
@@ -400,16 +420,24 @@ fn join(edges: &Edges<'_>, emission: &mut Emission) {
                 twins[b as usize] = a;
             }
         }
-    }
+    })
 }
 
 /// Normals on both sides of sharp edges: a vertex has their average.
-fn sharp_edges(control: &Control<'_>, edges: &Edges<'_>, chains: &Chains, emission: &mut Emission) {
+fn sharp_edges(
+    (control, watch): (&Control<'_>, &SharedWatch<'_>),
+    edges: &Edges<'_>,
+    chains: &Chains,
+    emission: &mut Emission,
+) -> Result<(), Cancelled> {
     if control.lasting.is_empty() {
-        return;
+        return Ok(());
     }
     for face in 0..control.mesh.face_count() as u32 {
         let open = if emission.is_whole[face as usize] { control.open(face) } else { [false; 3] };
+        if open != [false; 3] || face.is_multiple_of(POLLED) {
+            watch.poll()?;
+        }
         for edge in (0..3).filter(|&edge| open[edge]) {
             let h = 3 * face + edge as u32;
             let Some(twin) = edges.twin(h) else { continue };
@@ -427,7 +455,7 @@ fn sharp_edges(control: &Control<'_>, edges: &Edges<'_>, chains: &Chains, emissi
             emission.sharp.push((h, normals));
         }
     }
-    for (h, normals) in &emission.sharp {
+    watch.each(&emission.sharp, |(h, normals)| {
         let owner = first_of(edges, *h);
         if owner != *h {
             let number = chains.own(owner).0;
@@ -437,5 +465,5 @@ fn sharp_edges(control: &Control<'_>, edges: &Edges<'_>, chains: &Chains, emissi
                 *known = unit_or_zero(sum).to_array();
             }
         }
-    }
+    })
 }

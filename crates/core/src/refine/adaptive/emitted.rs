@@ -11,7 +11,11 @@ use super::surface::{Ground, Spot, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
 use crate::certificate::{Cell, Pieces, SubTriangle};
 use crate::emit::{Diagonal, closure};
+use crate::parallel::IsStopped;
 use crate::patch::{LimitPoint, Rules};
+
+/// Rows of triangles that are shown between two questions whether that is still of use.
+const ROWS: usize = 8;
 
 /// An emitted triangle.
 pub(super) struct Emitted {
@@ -54,9 +58,9 @@ pub(super) struct Sources<'a> {
 
 impl Sources<'_> {
     /// Shows the triangles of a control face, in the order in which they stand.
-    pub(super) fn show(&self, face: u32, beholder: &mut impl Beholder) {
+    pub(super) fn show(&self, face: u32, is_stopped: &IsStopped<'_>, beholder: &mut impl Beholder) {
         let Self { control, edges, trees, chains, closed, emission } = *self;
-        let mut walk = Walk { trees, knots: Vec::new(), next: 0 };
+        let mut walk = Walk::new(trees, Vec::new(), 0, is_stopped);
         let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
         let mut leaves = Leaves {
             rules: control.rules,
@@ -65,6 +69,7 @@ impl Sources<'_> {
             open: control.open(face),
             diagonals: &closed[face as usize].diagonals,
             rim: Rim::default(),
+            is_stopped,
             beholder,
         };
         let at = (Place::root(face), Spot::WHOLE);
@@ -82,6 +87,7 @@ struct Leaves<'a, B> {
     /// Those that have not come yet.
     diagonals: &'a [bool],
     rim: Rim,
+    is_stopped: &'a IsStopped<'a>,
     beholder: &'a mut B,
 }
 
@@ -97,6 +103,9 @@ impl<B: Beholder> Visitor for Leaves<'_, B> {
                 if i + j + 1 < n {
                     self.headlong(node, (i, j));
                 }
+            }
+            if j % ROWS == ROWS - 1 && (self.is_stopped)() {
+                return;
             }
         }
     }

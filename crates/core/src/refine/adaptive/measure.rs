@@ -13,8 +13,8 @@ use super::quadtree::Place;
 use super::settle::{beside, sharp_edges};
 use crate::certificate::{Deviation, Effort, Pieces, SubTriangle, TriangleFrame, exceeds};
 use crate::criterion::{Apart, Criteria, Region};
-use crate::parallel;
 use crate::patch::{LimitPoint, Rules};
+use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
 
 /// Control faces that one call takes together.
@@ -40,9 +40,15 @@ pub(super) struct Measured {
 
 /// Looks at the triangles of some control faces. Bounds of distances below `length`, of triangles that do not fail, need not
 /// be tight.
-pub(super) fn measure(sources: &Sources<'_>, goal: &Goal, length: f64, faces: &[u32]) -> Vec<Measured> {
-    let sharp = sharp_edges(sources.emission);
-    let measured = parallel::pieces_of(faces.len(), BLOCK, |block| {
+pub(super) fn measure(
+    sources: &Sources<'_>,
+    watch: &SharedWatch<'_>,
+    goal: &Goal,
+    length: f64,
+    faces: &[u32],
+) -> Result<Vec<Measured>, Cancelled> {
+    let sharp = sharp_edges(sources.emission, watch)?;
+    let measured = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
         let measured = faces[block].iter().map(|&face| {
             let nowhere = (0.0, Place::root(face));
             let none =
@@ -55,12 +61,14 @@ pub(super) fn measure(sources: &Sources<'_>, goal: &Goal, length: f64, faces: &[
                 length,
                 found: none,
             };
-            sources.show(face, &mut measuring);
+            sources.show(face, is_stopped, &mut measuring);
             measuring.found
         });
         measured.collect::<Vec<_>>()
-    });
-    measured.into_iter().flatten().collect()
+    })?;
+    let mut all = Vec::with_capacity(faces.len());
+    watch.each(measured, |mut block| all.append(&mut block))?;
+    Ok(all)
 }
 
 struct Measuring<'a> {

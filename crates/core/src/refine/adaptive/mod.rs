@@ -36,16 +36,15 @@ mod trial;
 mod walk;
 
 use super::RefineError;
-use super::exact_options::{ExactObserver, ExactOptions, ExactProgress};
+use super::exact_options::ExactOptions;
 use super::exact_result::{Exact, ExactStop};
 use super::junctions::join_copies;
 use crate::criterion::{Criteria, Distance, LimitNormal, Pixels};
 use crate::limit::LimitTable;
 use crate::mesh::{Mesh, Sharpness};
-use crate::parallel;
 use crate::patch::Rules;
 use crate::patch::large_rings::LargeRings;
-use crate::progress::Cancelled;
+use crate::progress::{Observer, SharedWatch, Stage};
 use crate::scheme::Scheme;
 use balance::{Pending, balance};
 use chains::Chains;
@@ -59,6 +58,9 @@ use result::Outcome;
 /// Control faces that one call takes together.
 const BLOCK: usize = 256;
 
+/// Calls that few control faces are shared among.
+const SHARES: usize = 256;
+
 /// Triangles that splitting a leaf adds, closing included, on the average.
 const ADDED: usize = 6;
 
@@ -70,9 +72,10 @@ const RESERVE: usize = 100;
 pub(super) fn adaptive(
     mesh: &Mesh,
     scheme: &dyn Scheme,
-    options: &ExactOptions<'_>,
+    options: &ExactOptions,
+    observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
-    with_engine(mesh, scheme, options, |engine| {
+    with_engine(mesh, scheme, options, observer, |engine| {
         let floor = engine.floor(options.tolerance);
         let (most, cap) = options.budget();
         let most = most.max(mesh.face_count());
@@ -94,10 +97,11 @@ pub(super) fn adaptive(
 pub(super) fn count(
     mesh: &Mesh,
     scheme: &dyn Scheme,
-    options: &ExactOptions<'_>,
+    options: &ExactOptions,
     times: f64,
+    observer: &mut Observer<'_>,
 ) -> Result<usize, RefineError> {
-    with_engine(mesh, scheme, options, |engine| {
+    with_engine(mesh, scheme, options, observer, |engine| {
         let limit = engine.floor(options.tolerance.map(|tolerance| times * tolerance));
         let limit = if engine.control.criteria.is_some() { times } else { limit };
         let plan = if engine.is_balanced {
@@ -112,16 +116,23 @@ pub(super) fn count(
 fn with_engine<T>(
     mesh: &Mesh,
     scheme: &dyn Scheme,
-    options: &ExactOptions<'_>,
+    options: &ExactOptions,
+    observer: &mut Observer<'_>,
     run: impl FnOnce(&Engine<'_>) -> Result<T, RefineError>,
 ) -> Result<T, RefineError> {
+    let watch = SharedWatch::new(observer, Stage::Limits);
+    watch.triangles(mesh.face_count());
     let rules = Rules::of(scheme);
     let table = LimitTable::new(scheme);
-    let (mut positions, sided) = (table.positions(mesh)?, table.sided_normals(mesh)?);
+    let vertices = Some(mesh.vertex_count());
+    watch.stage(Stage::Limits, vertices)?;
+    let mut positions = table.positions_polled(mesh, &mut |done| watch.done(done))??;
+    watch.stage(Stage::Limits, vertices)?;
+    let sided = table.sided_normals_polled(mesh, &mut |done| watch.done(done))??;
     join_copies(&mut positions, &mesh.junctions().vertices);
     let sharpness = Sharpness::of(mesh);
     let lasting = sharpness.lasting();
-    let rounding = probe::rounding(mesh, options.max_levels);
+    let rounding = probe::rounding(mesh, options.max_levels, &watch)?;
     let criteria = criteria(mesh, options, rounding)?;
     let control = Control {
         mesh,
@@ -137,15 +148,16 @@ fn with_engine<T>(
         control: &control,
         edges: Edges::of(mesh),
         max_levels: options.max_levels as u32,
-        observer: options.observer,
+        watch: &watch,
         is_balanced: options.balance,
         rounding,
     };
+    watch.stage(Stage::Refining, None)?;
     run(&engine)
 }
 
 /// What the options ask for; `None` where that is nothing but distances and numbers of triangles.
-fn criteria(mesh: &Mesh, options: &ExactOptions<'_>, rounding: f64) -> Result<Option<Criteria>, RefineError> {
+fn criteria(mesh: &Mesh, options: &ExactOptions, rounding: f64) -> Result<Option<Criteria>, RefineError> {
     if options.angle.is_none() && options.pixels.is_none() {
         return Ok(None);
     }
@@ -162,7 +174,7 @@ pub(super) struct Engine<'a> {
     control: &'a Control<'a>,
     edges: Edges<'a>,
     max_levels: u32,
-    observer: Option<ExactObserver<'a>>,
+    watch: &'a SharedWatch<'a>,
     /// Vertices are moved off the surface.
     is_balanced: bool,
     /// What rounding may do to a distance.
@@ -201,7 +213,7 @@ impl Engine<'_> {
         &self,
         floor: f64,
         (most, cap): (usize, ExactStop),
-        options: &ExactOptions<'_>,
+        options: &ExactOptions,
     ) -> Result<Exact, RefineError> {
         let (mut room, mut reserve) = (most, most / RESERVE + 1);
         loop {
@@ -217,8 +229,8 @@ impl Engine<'_> {
             let Some(even) = even else { return outcome.finish(self, stop, options) };
             // Evenly curved models are best divided evenly, though drifts may allow to prove less of that. Lower
             // bounds are found distances, within some per cent of the truth where all triangles are looked at.
-            let worst_first = outcome.looked_at(self).finish(self, stop, options)?;
-            let even = even.looked_at(self).finish(self, stop, options)?;
+            let worst_first = outcome.looked_at(self)?.finish(self, stop, options)?;
+            let even = even.looked_at(self)?.finish(self, stop, options)?;
             let is_better = even.error.lower < worst_first.error.lower;
             return Ok(if is_better { even } else { worst_first });
         }
@@ -226,7 +238,8 @@ impl Engine<'_> {
 
     /// Divides as asked, until all conditions hold; `None` if that takes more than `most` triangles.
     fn plan(&self, goal: Goal, most: usize) -> Result<Option<Plan>, RefineError> {
-        let Some(decision) = decide(self.control, &goal, &self.edges, self.max_levels, most)? else {
+        let control = (self.control, self.watch);
+        let Some(decision) = decide(control, &goal, &self.edges, self.max_levels, most)? else {
             return Ok(None);
         };
         let faces = self.control.mesh.face_count();
@@ -258,7 +271,8 @@ impl Engine<'_> {
             let closed = &plan.closed;
             let closing = |face: u32| closed[face as usize].extent.as_ref();
             let limits = (self.max_levels, most);
-            let again = plan.decision.settle(self.control, &plan.goal, &self.edges, limits, closing)?;
+            let control = (self.control, self.watch);
+            let again = plan.decision.settle(control, &plan.goal, &self.edges, limits, closing)?;
             let Some(again) = again else { return Ok(false) };
             if again.is_empty() {
                 plan.has_failed |= plan.decision.has_failed();
@@ -294,16 +308,17 @@ impl Engine<'_> {
         let is_touched = core::mem::replace(&mut plan.is_touched, vec![false; plan.closed.len()]);
         let before = plan.emission.take().map(|emission| (emission, &is_touched[..]));
         let chains = (&plan.decision, &plan.chains);
-        Ok(emit::emit(self.control, &self.edges, chains, &plan.closed, only, before)?)
+        emit::emit((self.control, self.watch), &self.edges, chains, &plan.closed, only, before)
     }
 
     /// Emits all of a plan.
     fn emit_all(&self, plan: &mut Plan) -> Result<Emission, RefineError> {
+        self.watch.stage(Stage::Assembling, None)?;
         let mut emission = match plan.emission.take_if(|emission| emission.is_complete(&plan.is_touched)) {
             Some(emission) => emission,
             None => self.emit_some(plan, None)?,
         };
-        let junctions = sides::junctions(self.control, &self.edges, &plan.chains, &emission);
+        let junctions = sides::junctions((self.control, self.watch), &self.edges, &plan.chains, &emission)?;
         join_copies(&mut emission.positions, &junctions.vertices);
         emission.junctions = junctions;
         Ok(emission)
@@ -316,13 +331,13 @@ impl Engine<'_> {
     /// Neighbouring leaves are at most one level apart; marks what changes. Only marked faces may have more leaves than before.
     fn restrict(&self, trees: &mut Trees, is_dirty: &mut [bool]) -> Result<(), RefineError> {
         let faces = marked(is_dirty);
-        let lists = parallel::pieces_of(faces.len(), BLOCK, |block| {
+        let lists = self.watch.pieces(faces.len(), block(faces.len()), |block| {
             let mut pending = Pending::default();
             faces[block].iter().for_each(|&face| pending.push_tree(trees, face));
             pending
-        });
+        })?;
         let mut all = Pending::default();
-        lists.into_iter().for_each(|list| all.append(list));
+        self.watch.each(lists, |list| all.append(list))?;
         self.balance(trees, all, |place| self.mark(place.face, is_dirty))
     }
 
@@ -332,47 +347,49 @@ impl Engine<'_> {
         pending: Pending,
         split: impl FnMut(Place),
     ) -> Result<(), RefineError> {
-        balance(trees, &self.edges, pending, split).then_some(()).ok_or_else(|| trees.too_many(4).into())
+        let fits = balance(trees, &self.edges, pending, &mut || self.watch.poll(), split)?;
+        fits.then_some(()).ok_or_else(|| trees.too_many(4).into())
     }
 
     /// Walks over the given faces, splitting what fails, until nothing does; `false` if there are too many triangles.
     fn close(&self, plan: &mut Plan, mut dirty: Vec<u32>, most: usize) -> Result<bool, RefineError> {
-        let mesh = self.control.mesh;
+        let Self { control, ref edges, max_levels, .. } = *self;
+        let mesh = control.mesh;
         loop {
-            let chains = Chains::of(mesh, &self.edges, &plan.decision.trees);
+            let chains = Chains::of(mesh, edges, &plan.decision.trees, self.watch)?;
             let decision = &plan.decision;
             // Most faces are walked over once.
             let is_first = dirty.len() == plan.closed.len();
-            let found = parallel::pieces_of(dirty.len(), BLOCK, |block| {
+            let found = self.watch.long_pieces(dirty.len(), BLOCK, |block, is_stopped| {
                 let mut knots = Vec::new();
                 let walks = dirty[block].iter().map(|&face| {
                     let allowance = &decision.allowances[face as usize];
                     let trees = (&decision.trees, &chains);
                     let known = &plan.closed[face as usize].verdicts;
                     close(
-                        self.control,
-                        (&plan.goal, self.max_levels),
-                        &self.edges,
+                        control,
+                        (&plan.goal, max_levels),
+                        edges,
                         trees,
                         (allowance, known, !is_first),
-                        face,
+                        (face, is_stopped),
                         &mut knots,
                     )
                 });
                 walks.collect::<Vec<_>>()
-            });
-            for (&face, found) in dirty.iter().zip(found.into_iter().flatten()) {
+            })?;
+            self.watch.each(dirty.iter().zip(found.into_iter().flatten()), |(&face, found)| {
                 plan.closed[face as usize] = found;
                 plan.is_touched[face as usize] = true;
                 // Conditions count on the triangles beside, which may have been closed in another way.
                 plan.settled[face as usize] = None;
-                for twin in (3 * face..3 * face + 3).filter_map(|h| self.edges.twin(h)) {
+                for twin in (3 * face..3 * face + 3).filter_map(|h| edges.twin(h)) {
                     plan.settled[twin as usize / 3] = None;
                 }
-            }
+            })?;
             plan.chains = chains;
             plan.triangles = plan.closed.iter().map(|face| face.triangles as usize).sum();
-            self.tell(plan.triangles)?;
+            self.watch.round(plan.triangles)?;
             if plan.triangles > most {
                 return Ok(false);
             }
@@ -386,6 +403,7 @@ impl Engine<'_> {
                         continue;
                     }
                     is_split = true;
+                    self.watch.poll()?;
                     self.mark(face, &mut is_dirty);
                     self.split(&mut plan.decision.trees, place, |place| pending.push(place))?;
                 }
@@ -395,15 +413,6 @@ impl Engine<'_> {
             }
             self.balance(&mut plan.decision.trees, pending, |place| self.mark(place.face, &mut is_dirty))?;
             dirty = marked(&is_dirty);
-        }
-    }
-
-    /// Tells the observer how many triangles there would be.
-    fn tell(&self, triangles: usize) -> Result<(), RefineError> {
-        let progress = ExactProgress { round: 1, triangles, worst: 0.0 };
-        match self.observer {
-            Some(observer) if observer(&progress).is_break() => Err(Cancelled.into()),
-            _ => Ok(()),
         }
     }
 
@@ -418,6 +427,11 @@ impl Engine<'_> {
             }
         }
     }
+}
+
+/// How many of so many control faces one call takes together where each takes little, but for faces that are divided very deeply.
+fn block(faces: usize) -> usize {
+    (faces / SHARES).clamp(1, BLOCK)
 }
 
 fn marked(is_marked: &[bool]) -> Vec<u32> {

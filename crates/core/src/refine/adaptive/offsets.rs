@@ -8,8 +8,8 @@ use super::decide::Control;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
 use crate::certificate::TriangleFrame;
-use crate::parallel;
 use crate::patch::Rules;
+use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::vector;
 
 /// Levels below a leaf whose vertices are sampled where a piece is not regular.
@@ -24,37 +24,46 @@ pub(super) struct Bulges(Vec<Vec<f64>>);
 
 impl Bulges {
     /// Looks at the triangles of some control faces.
-    pub(super) fn look(&mut self, sources: &Sources<'_>, faces: &[u32]) {
+    pub(super) fn look(
+        &mut self,
+        sources: &Sources<'_>,
+        watch: &SharedWatch<'_>,
+        faces: &[u32],
+    ) -> Result<(), Cancelled> {
         let emission = sources.emission;
         self.0.resize_with(emission.starts.len() - 1, Vec::new);
-        let found = parallel::pieces_of(faces.len(), BLOCK, |block| {
+        let found = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
             let found = faces[block].iter().map(|&face| {
                 let triangles = emission.triangles_of(face);
                 let found = vec![0.0; triangles.len()];
                 let mut looking = Looking { emission, first: triangles.start as u32, found };
-                sources.show(face, &mut looking);
+                sources.show(face, is_stopped, &mut looking);
                 looking.found
             });
             found.collect::<Vec<_>>()
-        });
-        faces
-            .iter()
-            .zip(found.into_iter().flatten())
-            .for_each(|(&face, found)| self.0[face as usize] = found);
+        })?;
+        watch.each(faces.iter().zip(found.into_iter().flatten()), |(&face, found)| {
+            self.0[face as usize] = found;
+        })
     }
 
     /// How far each vertex is to be moved along its normal: the average over the triangles around.
-    pub(super) fn offsets(&self, control: &Control<'_>, emission: &Emission) -> Vec<f64> {
+    pub(super) fn offsets(
+        &self,
+        control: &Control<'_>,
+        emission: &Emission,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Vec<f64>, Cancelled> {
         let mut sums = vec![(0.0f64, 0u32); emission.positions.len()];
-        for (triangle, bulge) in emission.triangles.iter().zip(self.0.iter().flatten()) {
+        watch.each(emission.triangles.iter().zip(self.0.iter().flatten()), |(triangle, bulge)| {
             for &vertex in triangle {
                 let sum = &mut sums[vertex as usize];
                 *sum = (sum.0 + bulge, sum.1 + 1);
             }
-        }
-        let mut offsets: Vec<f64> =
-            sums.into_iter().map(|(sum, triangles)| sum / f64::from(triangles.max(1))).collect();
-        for face in 0..control.mesh.face_count() as u32 {
+        })?;
+        let mut offsets = Vec::with_capacity(sums.len());
+        watch.each(sums, |(sum, triangles)| offsets.push(sum / f64::from(triangles.max(1))))?;
+        watch.each(0..control.mesh.face_count() as u32, |face| {
             let open = control.open(face);
             for edge in (0..3).filter(|&edge| open[edge as usize]) {
                 for &h in emission.borders.along(3 * face + edge) {
@@ -62,12 +71,12 @@ impl Bulges {
                     (0..2).for_each(|end| offsets[triangle[(h as usize + end) % 3] as usize] = 0.0);
                 }
             }
-        }
+        })?;
         // Corners and darts inside a face's reach; and copies, which would part.
         control.lasting.tagged_vertices().for_each(|vertex| offsets[vertex.index()] = 0.0);
         let copies = emission.junctions.vertices.iter().flatten();
         copies.for_each(|&vertex| offsets[vertex as usize] = 0.0);
-        offsets
+        Ok(offsets)
     }
 }
 

@@ -10,11 +10,13 @@ use super::judge::Goal;
 use super::measure::{Measured, measure};
 use super::quadtree::Place;
 use super::surface::{Surface, child_corners};
-use super::{Engine, Plan};
+use super::{Engine, Plan, block};
 use crate::certificate::TriangleFrame;
 use crate::geometry::closest_to_origin;
 use crate::index::VertexId;
 use crate::mesh::Mesh;
+use crate::parallel;
+use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::ErrorBounds;
 use crate::vector::{DVec3, vector};
 
@@ -52,6 +54,9 @@ const MET_SHARE: usize = 64;
 /// How many of them may be in any case.
 const MET_AT_LEAST: usize = 200;
 
+/// Boxes and triangles that are looked at between two calls of the observer.
+const LOOKED_AT: u32 = 1 << 14;
+
 /// How often that is done where no tolerance is met.
 const MOST_TIGHTENINGS: usize = 6;
 
@@ -62,42 +67,45 @@ pub(super) fn probe(
     plan: &Plan,
     emission: &Emission,
     (measured, is_met): (Option<&[Measured]>, bool),
-) -> ErrorBounds {
+) -> Result<ErrorBounds, Cancelled> {
+    let watch = engine.watch;
     let mut worst = match measured {
         Some(measured) => measured.iter().map(|face| face.worst).collect(),
-        None => plan.worst_by_face(),
+        None => plan.worst_by_face(watch)?,
     };
     let mut best =
         ErrorBounds { lower: 0.0, upper: 0.0, at: [0.0; 3], certified: engine.control.rules.is_certified() };
-    let mesh = Nearest::of(engine, emission);
+    let mesh = Nearest::of(engine, emission)?;
     // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
     let mut highest: Vec<(f64, Place)> =
         measured.iter().flat_map(|all| all.iter().map(|face| face.highest)).collect();
-    sort(&mut highest);
+    sort(&mut highest, watch)?;
     let mut probed = HashSet::new();
-    lower(engine, emission, &mesh, (&highest, &mut probed), &mut best);
+    lower(engine, emission, &mesh, (&highest, &mut probed), &mut best)?;
     // By control face, the lower bound for which it was looked at.
     let mut tightened = vec![0.0; worst.len()];
     let again = |length: f64, faces: &[u32], worst: &mut Vec<(f64, Place)>| {
-        let found = measure(&engine.sources(plan, emission), &Goal::Within(f64::INFINITY), length, faces);
+        let nothing = Goal::Within(f64::INFINITY);
+        let found = measure(&engine.sources(plan, emission), watch, &nothing, length, faces)?;
         for (&face, found) in faces.iter().zip(found) {
             let known = &mut worst[face as usize];
             if found.worst.0 < known.0 {
                 *known = found.worst;
             }
         }
+        Ok(())
     };
     // What failed for sure has no bound yet.
     let unbounded = worst.iter().filter(|(bound, _)| bound.is_infinite()).map(|(_, place)| place.face);
-    again(f64::MAX, &unbounded.collect::<Vec<u32>>(), &mut worst);
+    again(f64::MAX, &unbounded.collect::<Vec<u32>>(), &mut worst)?;
     // A tolerance that is met is proven already: what else there is to know must not take longer than to meet it.
     let rounds = if is_met { 1 } else { MOST_TIGHTENINGS };
     let room = if is_met { emission.triangles.len() / MET_SHARE + MET_AT_LEAST } else { usize::MAX };
     for round in 0.. {
         let mut order: Vec<(f64, Place)> = worst.clone();
-        sort(&mut order);
+        sort(&mut order, watch)?;
         best.upper = order.first().map_or(0.0, |&(bound, _)| bound);
-        lower(engine, emission, &mesh, (&order, &mut probed), &mut best);
+        lower(engine, emission, &mesh, (&order, &mut probed), &mut best)?;
         if !best.certified || best.upper <= WIDE * best.lower || round >= rounds {
             break;
         }
@@ -117,31 +125,32 @@ pub(super) fn probe(
         if loose.is_empty() {
             break;
         }
-        again(NARROW * best.lower, &loose, &mut worst);
+        again(NARROW * best.lower, &loose, &mut worst)?;
         loose.iter().for_each(|&face| tightened[face as usize] = best.lower);
     }
     if !best.certified {
-        best.upper = estimated(engine, plan, &worst, &mesh, &mut best);
+        best.upper = estimated(engine, plan, &worst, &mesh, &mut best)?;
     }
     best.upper = best.upper.max(best.lower) + engine.rounding;
     best.lower = (best.lower - engine.rounding).max(0.0);
-    best
+    Ok(best)
 }
 
 /// The greatest first.
-fn sort(order: &mut [(f64, Place)]) {
+fn sort(order: &mut [(f64, Place)], watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
     let by_place = |a: &Place, b: &Place| (a.face, a.path).cmp(&(b.face, b.path));
-    order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(by_place(&a.1, &b.1)));
+    let poll = &mut |_| watch.poll();
+    parallel::sort_polled(order, poll, |a, b| b.0.total_cmp(&a.0).then(by_place(&a.1, &b.1)))
 }
 
 /// Raises the lower bound by points over the first leaves of a list that promise more, but for those that were looked at.
 fn lower(
     engine: &Engine<'_>,
     emission: &Emission,
-    mesh: &Nearest<'_>,
+    mesh: &Nearest<'_, '_>,
     (order, probed): (&[(f64, Place)], &mut HashSet<Place>),
     best: &mut ErrorBounds,
-) {
+) -> Result<(), Cancelled> {
     let most = order.first().map_or(0.0, |&(promise, _)| promise);
     let most_probed = PROBED.min(FEWEST_PROBED + MOST_BOXES / mesh.boxes.len().max(1));
     for &(promise, place) in order.iter().take(most_probed) {
@@ -152,12 +161,13 @@ fn lower(
             continue;
         }
         for point in highest(engine, emission, place) {
-            let distance = mesh.distance(point, place.face);
+            let distance = mesh.distance(point, place.face)?;
             if distance > best.lower {
                 (best.lower, best.at) = (distance, point.to_array());
             }
         }
     }
+    Ok(())
 }
 
 /// Where nothing is certain: the greatest distance of samples over the faces that may be worse than what was found; after
@@ -166,46 +176,46 @@ fn estimated(
     engine: &Engine<'_>,
     plan: &Plan,
     worst: &[(f64, Place)],
-    mesh: &Nearest<'_>,
+    mesh: &Nearest<'_, '_>,
     best: &mut ErrorBounds,
-) -> f64 {
+) -> Result<f64, Cancelled> {
     let control = engine.control;
     let bounds = worst.iter().map(|&(bound, _)| bound);
     let mut order: Vec<(f64, u32)> = bounds.zip(0..).collect();
     order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     for (count, &(bound, face)) in order.iter().enumerate() {
         if bound <= best.lower || count >= MOST_MEASURED {
-            return bound.max(best.lower);
+            return Ok(bound.max(best.lower));
         }
         let trees = &plan.decision.trees;
         let levels = trees.depth(trees.root(face)) as usize + SAMPLED_LEVELS;
         let mut points = Vec::new();
         sample(control.piece(face).surface(control.rules), levels.min(MOST_SAMPLED_LEVELS), &mut points);
         for point in points {
-            let distance = mesh.distance(point, face);
+            let distance = mesh.distance(point, face)?;
             if distance > best.lower {
                 (best.lower, best.at) = (distance, point.to_array());
             }
         }
     }
-    best.lower
+    Ok(best.lower)
 }
 
 impl Plan {
     /// The worst leaves of the control faces, with their bounds.
-    fn worst_by_face(&self) -> Vec<(f64, Place)> {
+    fn worst_by_face(&self, watch: &SharedWatch<'_>) -> Result<Vec<(f64, Place)>, Cancelled> {
         let mut worst: Vec<(f64, Place)> =
             (0..self.closed.len() as u32).map(|face| (0.0, Place::root(face))).collect();
         let closed = self.closed.iter().filter_map(|face| face.extent.as_ref());
         let extents = self.decision.extents().chain(closed);
         let judged = extents.filter_map(|extent| Some((extent.bound, extent.worst?)));
-        for (bound, place) in judged.chain(self.settled.iter().flatten().copied()) {
+        watch.each(judged.chain(self.settled.iter().flatten().copied()), |(bound, place)| {
             let known = &mut worst[place.face as usize];
             if bound > known.0 {
                 *known = (bound, place);
             }
-        }
-        worst
+        })?;
+        Ok(worst)
     }
 }
 
@@ -243,55 +253,67 @@ fn sample(surface: Surface<'_>, levels: usize, points: &mut Vec<DVec3>) {
 }
 
 /// The nearest points of the emitted triangles.
-struct Nearest<'a> {
+struct Nearest<'a, 'w> {
+    watch: &'a SharedWatch<'w>,
     emission: &'a Emission,
     /// Boxes that hold the surface over each control face, and so the corners of its triangles.
     boxes: Vec<(DVec3, DVec3)>,
 }
 
-impl<'a> Nearest<'a> {
-    fn of(engine: &Engine<'_>, emission: &'a Emission) -> Self {
-        let boxes = (0..engine.control.mesh.face_count() as u32).map(|face| {
-            let own = &emission.triangles[emission.triangles_of(face)];
+impl<'a, 'w> Nearest<'a, 'w> {
+    fn of(engine: &'a Engine<'w>, emission: &'a Emission) -> Result<Self, Cancelled> {
+        let bounds = |face: usize| {
+            let own = &emission.triangles[emission.triangles_of(face as u32)];
             let corners =
                 own.as_flattened().iter().map(|&vertex| vector(emission.positions[vertex as usize]));
             corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
-        });
-        Self { emission, boxes: boxes.collect() }
+        };
+        let faces = engine.control.mesh.face_count();
+        let boxes =
+            engine.watch.pieces(faces, block(faces), |block| block.map(bounds).collect::<Vec<_>>())?;
+        Ok(Self { watch: engine.watch, emission, boxes: boxes.concat() })
     }
 
     /// The distance of a point to the mesh; `face` is likely to be nearest.
-    fn distance(&self, point: DVec3, face: u32) -> f64 {
+    fn distance(&self, point: DVec3, face: u32) -> Result<f64, Cancelled> {
         let mut least = f64::INFINITY;
-        self.within(face, point, &mut least);
-        for (other, &(low, high)) in (0..).zip(&self.boxes) {
+        self.within(face, point, &mut least)?;
+        for (other, &(low, high)) in (0u32..).zip(&self.boxes) {
+            if other.is_multiple_of(LOOKED_AT) {
+                self.watch.poll()?;
+            }
             let gap = (low - point).max(point - high).max(DVec3::ZERO).length_squared();
             if gap < least && other != face {
-                self.within(other, point, &mut least);
+                self.within(other, point, &mut least)?;
             }
         }
-        least.sqrt()
+        Ok(least.sqrt())
     }
 
-    fn within(&self, face: u32, point: DVec3, least: &mut f64) {
-        for triangle in &self.emission.triangles[self.emission.triangles_of(face)] {
+    fn within(&self, face: u32, point: DVec3, least: &mut f64) -> Result<(), Cancelled> {
+        for (i, triangle) in (1u32..).zip(&self.emission.triangles[self.emission.triangles_of(face)]) {
+            if i.is_multiple_of(LOOKED_AT) {
+                self.watch.poll()?;
+            }
             let [a, b, c] = triangle.map(|vertex| vector(self.emission.positions[vertex as usize]) - point);
             let (low, high) = (a.min(b).min(c), a.max(b).max(c));
             if low.max(-high).max(DVec3::ZERO).length_squared() < *least {
                 *least = least.min(closest_to_origin(a, b, c).squared);
             }
         }
+        Ok(())
     }
 }
 
 /// What rounding can have done to a distance: positions are convex combinations of convex combinations, one for
 /// each level, and each adds a few units in the last place of the coordinates' size; those of a control vertex add one for
 /// each neighbour. Points near an edge of a triangle count as on it ([`TriangleFrame::on_edge`]), on either side.
-pub(super) fn rounding(control: &Mesh, max_levels: usize) -> f64 {
+pub(super) fn rounding(control: &Mesh, max_levels: usize, watch: &SharedWatch<'_>) -> Result<f64, Cancelled> {
     let size = control.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
     let topology = control.topology();
-    let valence = |v: u32| topology.valence_and_openness(VertexId(v)).0;
-    let most = (0..control.vertex_count() as u32).map(valence).max().unwrap_or(0);
+    let valence = |v: usize| topology.valence_and_openness(VertexId(v as u32)).0;
+    let most = watch.pieces(control.vertex_count(), LOOKED_AT as usize, |piece| piece.map(valence).max());
+    let most = most?.into_iter().flatten().max().unwrap_or(0);
     let units = 32.0 + 8.0 * max_levels.min(MOST_LEVELS) as f64 + f64::from(most);
-    (units * f64::EPSILON + 4.0 * TriangleFrame::ROUNDING) * size
+    Ok((units * f64::EPSILON + 4.0 * TriangleFrame::ROUNDING) * size)
 }

@@ -8,7 +8,8 @@
 
 use crate::index::HalfEdgeId;
 use crate::mesh::{Mesh, MeshError, Topology};
-use crate::refine::exact_options;
+use crate::progress::Cancelled;
+use crate::refine::{RefineError, exact_options};
 
 /// Marks the word of a node below which all leaves are equally deep; the lowest bits are their depth below it.
 pub(super) const LEAF: u32 = 1 << 31;
@@ -175,13 +176,16 @@ impl Trees {
     /// piece's own first.
     ///
     /// # Errors
-    /// There are too many.
-    pub(super) fn of(pieces: &[Piece]) -> Result<Self, MeshError> {
+    /// There are too many, or the observer asked to stop.
+    pub(super) fn of(
+        pieces: &[Piece],
+        poll: &mut dyn FnMut() -> Result<(), Cancelled>,
+    ) -> Result<Self, RefineError> {
         let faces: usize = pieces.iter().map(|piece| piece.roots.len()).sum();
         let words: usize = pieces.iter().map(|piece| piece.words.len()).sum();
         let count = faces + words;
         if count >= MOST_NODES {
-            return Err(MeshError::TooMany { what: "nodes", count, limit: MOST_NODES });
+            return Err(MeshError::TooMany { what: "nodes", count, limit: MOST_NODES }.into());
         }
         let mut all = Vec::with_capacity(faces + words + words / 8);
         let mut base = faces as u32;
@@ -193,6 +197,7 @@ impl Trees {
         for piece in pieces {
             all.extend(piece.words.iter().map(|&word| rebased(word, base)));
             base += piece.words.len() as u32;
+            poll()?;
         }
         Ok(Self { words: all })
     }
@@ -451,7 +456,10 @@ mod tests {
     #[test]
     fn even_nodes_are_split_where_asked() {
         let mut trees =
-            Trees::of(&[Piece { roots: vec![LEAF + 2, LEAF], words: vec![] }, Piece::default()]).unwrap();
+            Trees::of(&[Piece { roots: vec![LEAF + 2, LEAF], words: vec![] }, Piece::default()], &mut || {
+                Ok(())
+            })
+            .unwrap();
         let mut fresh = Vec::new();
         let place = Place { face: 0, level: 4, path: 0b11_01_10_00 };
         assert!(trees.ensure(place, |place| fresh.push(place)));

@@ -3,12 +3,12 @@
 use super::emit::Emission;
 use super::judge::Goal;
 use super::measure::{Measured, measure};
-use super::{Engine, Plan, probe, sides};
+use super::{BLOCK, Engine, Plan, block, probe, sides};
 use crate::certificate::{TriangleFrame, exceeds};
 use crate::criterion::{Criteria, Region};
 use crate::index::{FaceId, HalfEdgeId};
-use crate::mesh::{Mesh, Topology, check_finite, outgoing_half_edges};
-use crate::parallel;
+use crate::mesh::{Mesh, Topology, check_finite, outgoing_half_edges_polled};
+use crate::progress::{Cancelled, SharedWatch, Stage};
 use crate::refine::RefineError;
 use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{Exact, ExactStop};
@@ -29,13 +29,14 @@ pub(super) struct Outcome {
 
 impl Outcome {
     /// Looks at all triangles among their neighbours, if nobody has.
-    pub(super) fn looked_at(mut self, engine: &Engine<'_>) -> Self {
-        let all: Vec<u32> = (0..self.plan.closed.len() as u32).collect();
-        self.measured.get_or_insert_with(|| {
+    pub(super) fn looked_at(mut self, engine: &Engine<'_>) -> Result<Self, Cancelled> {
+        if self.measured.is_none() {
+            let all: Vec<u32> = (0..self.plan.closed.len() as u32).collect();
             let sources = engine.sources(&self.plan, &self.emission);
-            measure(&sources, &Goal::Within(f64::INFINITY), f64::INFINITY, &all)
-        });
-        self
+            let nothing = Goal::Within(f64::INFINITY);
+            self.measured = Some(measure(&sources, engine.watch, &nothing, f64::INFINITY, &all)?);
+        }
+        Ok(self)
     }
 
     /// Measures what was emitted.
@@ -43,17 +44,18 @@ impl Outcome {
         self,
         engine: &Engine<'_>,
         stop: ExactStop,
-        options: &ExactOptions<'_>,
+        options: &ExactOptions,
     ) -> Result<Exact, RefineError> {
         let Self { plan, emission, measured } = self;
-        let control = engine.control;
+        let (control, watch) = (engine.control, engine.watch);
+        watch.stage(Stage::Bounding, None)?;
         let stop = if stop == ExactStop::Met && plan.has_failed { ExactStop::LevelCap } else { stop };
         check_finite(&emission.positions)?;
         if let Some(why) = control.rules.failure() {
             return Err(why.clone().into());
         }
         let is_met = stop == ExactStop::Met && options.tolerance.is_some();
-        let mut error = probe::probe(engine, &plan, &emission, (measured.as_deref(), is_met));
+        let mut error = probe::probe(engine, &plan, &emission, (measured.as_deref(), is_met))?;
         // Where nothing was asked of distances, a bound far from the truth says nothing.
         if options.tolerance.is_none() && options.triangles.is_none() && error.upper > WORTH * error.lower {
             error.upper = f64::INFINITY;
@@ -72,12 +74,19 @@ impl Outcome {
         };
         let pixels = options.pixels.and(measured.as_ref());
         let pixels = pixels.map(|measured| measured.iter().map(|face| face.pixels).fold(0.0, f64::max));
-        let (tags, sides) = (sides::tags(control, &emission), sides::sides(control, &emission));
+        watch.stage(Stage::Assembling, None)?;
+        let tags = sides::tags((control, watch), &emission)?;
+        let sides = sides::sides((control, watch), &emission)?;
         let trees = &plan.decision.trees;
-        let levels = (0..control.mesh.face_count() as u32).map(|face| trees.depth(trees.root(face)) as usize);
-        let levels = levels.max().unwrap_or(0);
+        let faces = control.mesh.face_count();
+        let levels = watch.pieces(faces, block(faces), |block| {
+            block.map(|face| trees.depth(trees.root(face as u32)) as usize).max()
+        });
+        let levels = levels?.into_iter().flatten().max().unwrap_or(0);
+        drop(plan);
         let Emission { positions, normals, origins, triangles, twins, parents, junctions, .. } = emission;
-        let outgoing = outgoing_half_edges(&triangles, &twins, positions.len());
+        let outgoing =
+            outgoing_half_edges_polled(&triangles, &twins, positions.len(), &mut |_| watch.poll())?;
         let topology = Topology::from_parts(triangles, twins, outgoing);
         let mut exact = Exact {
             mesh: Mesh::from_parts(topology, positions, tags, junctions),
@@ -96,7 +105,7 @@ impl Outcome {
         if options.angle.is_some()
             && let Some(criteria) = &control.criteria
         {
-            exact.open_cones = open_cones(&exact, criteria);
+            exact.open_cones = open_cones(&exact, criteria, watch)?;
         }
         if exact.open_cones > 0 && exact.stop == ExactStop::Met {
             exact.stop = ExactStop::Cones;
@@ -106,7 +115,7 @@ impl Outcome {
 }
 
 /// Triangles outside their cones.
-fn open_cones(exact: &Exact, criteria: &Criteria) -> usize {
+fn open_cones(exact: &Exact, criteria: &Criteria, watch: &SharedWatch<'_>) -> Result<usize, Cancelled> {
     let surface = exact.mesh.as_triangles();
     let is_open = |face: usize| {
         let corners = surface.corners(face).map(vector);
@@ -117,5 +126,7 @@ fn open_cones(exact: &Exact, criteria: &Criteria) -> usize {
         let region = Region::around(corners, frame.normal()).turned(2.0 * tilt);
         criteria.cone_ratio(frame.normal(), normals, &region) > 1.0 + CONE_ROUNDING
     };
-    parallel::map(exact.mesh.face_count(), is_open).into_iter().filter(|&is_open| is_open).count()
+    let open =
+        watch.pieces(exact.mesh.face_count(), BLOCK, |block| block.filter(|&face| is_open(face)).count());
+    Ok(open?.into_iter().sum())
 }

@@ -11,7 +11,7 @@ use super::quadtree::Place;
 use super::{Engine, Plan};
 use crate::certificate::{STEEP, around};
 use crate::mesh::NONE;
-use crate::parallel;
+use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
 use crate::vector::vector;
 
@@ -27,17 +27,18 @@ impl Engine<'_> {
         let mut round = 0;
         loop {
             round += 1;
-            self.settle_by_allowances(plan);
-            let only = self.conditional(plan);
+            self.settle_by_allowances(plan)?;
+            let only = self.conditional(plan)?;
             if only.as_ref().is_some_and(|only| only.iter().all(|&extend| extend == Extend::Nothing)) {
                 return Ok(true);
             }
             let emission = self.emit_some(plan, only.as_deref())?;
-            let found = failing(&emission, &plan.goal, &mut plan.settled);
+            let found = failing(&emission, &plan.goal, &mut plan.settled, self.watch)?;
             plan.emission = Some(emission);
             let mut is_dirty = vec![false; plan.closed.len()];
             let mut is_split = false;
             for (place, bound) in found {
+                self.watch.poll()?;
                 if place.level >= self.max_levels {
                     plan.has_failed = true;
                     let known = &mut plan.settled[place.face as usize];
@@ -63,15 +64,15 @@ impl Engine<'_> {
     }
 
     /// Settles the faces whose conditions hold whatever is beside, by what triangles there came to after all.
-    fn settle_by_allowances(&self, plan: &mut Plan) {
+    fn settle_by_allowances(&self, plan: &mut Plan) -> Result<(), Cancelled> {
         // Where nothing is asked for, what the neighbours really are tells how far off they may be.
         if matches!(plan.goal, Goal::Even(..)) {
-            return;
+            return Ok(());
         }
-        for face in 0..plan.closed.len() {
+        self.watch.each(0..plan.closed.len(), |face| {
             let lists = [plan.decision.conditions(face as u32), &plan.closed[face].conditions];
             if plan.settled[face].is_some() || lists.iter().all(|list| list.is_empty()) {
-                continue;
+                return;
             }
             let closing = |face: u32| plan.closed[face as usize].extent.as_ref();
             let (around, _) = plan.decision.around(self.control, &self.edges, face as u32, closing);
@@ -79,47 +80,56 @@ impl Engine<'_> {
                 lists.into_iter().flatten().map(|condition| (condition.bound(&around), condition.place));
             let worst = bounds.max_by(|a, b| a.0.total_cmp(&b.0));
             plan.settled[face] = worst.filter(|&(bound, _)| bound <= plan.goal.allowed(face as u32));
-        }
+        })
     }
 
     /// What must be emitted to look at the conditions that nobody has looked at: their faces and those around, and the
     /// edges of the faces around these. `None` if that is most of all.
-    fn conditional(&self, plan: &Plan) -> Option<Vec<Extend>> {
+    fn conditional(&self, plan: &Plan) -> Result<Option<Vec<Extend>>, Cancelled> {
+        let faces = plan.closed.len();
         let has = |face: usize| {
             let conditions = [plan.decision.conditions(face as u32), &plan.closed[face].conditions];
             plan.settled[face].is_none() && conditions.iter().any(|list| !list.is_empty())
         };
-        let wider = |marked: &[bool]| {
-            let mut wider = marked.to_vec();
-            (0..marked.len())
-                .filter(|&face| marked[face])
-                .for_each(|face| self.mark(face as u32, &mut wider));
-            wider
+        let wider = |is_marked: &dyn Fn(usize) -> bool| {
+            let mut wider = vec![false; faces];
+            let mark = |face| {
+                if is_marked(face) {
+                    self.mark(face as u32, &mut wider);
+                }
+            };
+            self.watch.each(0..faces, mark)?;
+            Ok(wider)
         };
-        let whole = wider(&(0..plan.closed.len()).map(has).collect::<Vec<bool>>());
+        let whole = wider(&has)?;
         let triangles = plan.closed.iter().zip(&whole).filter(|&(_, &is_whole)| is_whole);
         let triangles: usize = triangles.map(|(face, _)| face.triangles as usize).sum();
         if 2 * triangles >= plan.triangles {
-            return None;
+            return Ok(None);
         }
-        let edges = wider(&whole);
+        let edges = wider(&|face| whole[face])?;
         let extend = |(is_whole, is_edge): (bool, bool)| match (is_whole, is_edge) {
             (true, _) => Extend::All,
             (false, true) => Extend::Edges,
             (false, false) => Extend::Nothing,
         };
-        Some(whole.into_iter().zip(edges).map(extend).collect())
+        Ok(Some(whole.into_iter().zip(edges).map(extend).collect()))
     }
 }
 
 /// The leaves whose conditions do not hold, and what they come to. Where all of a control face do, `settled` gets the greatest bound of one, and the
 /// leaf; faces that have it already are passed over.
-fn failing(emission: &Emission, goal: &Goal, settled: &mut [Option<(f64, Place)>]) -> Vec<(Place, f64)> {
-    let sharp = sharp_edges(emission);
+fn failing(
+    emission: &Emission,
+    goal: &Goal,
+    settled: &mut [Option<(f64, Place)>],
+    watch: &SharedWatch<'_>,
+) -> Result<Vec<(Place, f64)>, Cancelled> {
+    let sharp = sharp_edges(emission, watch)?;
     let conditions =
         emission.conditions.iter().filter(|(condition, ..)| settled[condition.place.face as usize].is_none());
     let conditions: Vec<&(Condition, u32, u32)> = conditions.collect();
-    let found = parallel::pieces_of(conditions.len(), BLOCK, |block| {
+    let found = watch.pieces(conditions.len(), BLOCK, |block| {
         let bounds = conditions[block].iter().map(|(condition, first, last)| {
             let (mut squared, mut slope) = (0.0f64, STEEP);
             for triangle in *first..*last {
@@ -131,9 +141,9 @@ fn failing(emission: &Emission, goal: &Goal, settled: &mut [Option<(f64, Place)>
             (bound, bound <= goal.allowed(condition.place.face), condition.place)
         });
         bounds.collect::<Vec<_>>()
-    });
+    })?;
     let (mut failing, mut failed) = (Vec::new(), HashSet::new());
-    for (bound, holds, place) in found.into_iter().flatten() {
+    watch.each(found.into_iter().flatten(), |(bound, holds, place)| {
         let known = &mut settled[place.face as usize];
         if !holds {
             failing.push((place, bound));
@@ -141,21 +151,26 @@ fn failing(emission: &Emission, goal: &Goal, settled: &mut [Option<(f64, Place)>
         } else if known.is_none_or(|(known, _)| bound > known) {
             *known = Some((bound, place));
         }
-    }
+    })?;
     // Where all leaves with conditions have been divided since there is nothing left to look at.
-    for (face, known) in (0..).zip(settled.iter_mut()) {
+    watch.each((0..).zip(settled.iter_mut()), |(face, known)| {
         if failed.contains(&face) {
             *known = None;
         } else if known.is_none() {
             *known = Some((0.0, Place::root(face)));
         }
-    }
-    failing
+    })?;
+    Ok(failing)
 }
 
 /// The half-edges along sharp edges.
-pub(super) fn sharp_edges(emission: &Emission) -> HashSet<u32> {
-    emission.sharp.iter().flat_map(|(h, _)| emission.borders.along(*h).iter().copied()).collect()
+pub(super) fn sharp_edges(emission: &Emission, watch: &SharedWatch<'_>) -> Result<HashSet<u32>, Cancelled> {
+    let mut sharp = HashSet::new();
+    let all = emission.sharp.iter().flat_map(|(h, _)| emission.borders.along(*h));
+    watch.each(all, |&h| {
+        sharp.insert(h);
+    })?;
+    Ok(sharp)
 }
 
 /// [`around`] of an emitted triangle. Sharp edges have nobody beyond.
@@ -178,6 +193,7 @@ mod tests {
     use crate::certificate::Deviation;
     use crate::mesh::Mesh;
     use crate::models;
+    use crate::progress::unobserved;
     use crate::refine::ExactOptions;
     use crate::scheme::Loop;
 
@@ -200,7 +216,8 @@ mod tests {
         for &(name, seed) in models {
             let mesh = stirred(name, seed);
             let tolerance = 10f64.powf(-0.5 - 0.13 * (seed % 20) as f64) * mesh.diagonal();
-            with_engine(&mesh, &Loop, &ExactOptions::default().tolerance(tolerance), |engine| {
+            let options = ExactOptions::default().tolerance(tolerance);
+            with_engine(&mesh, &Loop, &options, &mut unobserved, |engine| {
                 let plan = engine.plan(Goal::Within(tolerance), usize::MAX)?.unwrap();
                 run(engine, plan, &format!("{name}, seed {seed}"));
                 Ok(())
@@ -216,7 +233,7 @@ mod tests {
         plan.emission = None;
         let mut settled = vec![None; plan.settled.len()];
         let emission = engine.emit_all(plan).unwrap();
-        (failing(&emission, &plan.goal, &mut settled), settled)
+        (failing(&emission, &plan.goal, &mut settled, engine.watch).unwrap(), settled)
     }
 
     /// What is known of conditions is what they come to in the end: divisions change the triangles beside closing ones too,

@@ -4,14 +4,20 @@ use super::chains::Chains;
 use super::decide::Control;
 use super::emit::Emission;
 use super::quadtree::Edges;
+use crate::index::HalfEdgeId;
 use crate::mesh::{CreaseTag, Groups, INFINITELY_SHARP, Junctions, NONE, Tags};
+use crate::parallel;
+use crate::progress::{Cancelled, SharedWatch};
 
 /// The normals of the corners of emitted triangles at vertices on sharp edges, by the half-edge that leaves the corner,
 /// ascending.
-pub(super) fn sides(control: &Control<'_>, emission: &Emission) -> Vec<(u32, [f64; 3])> {
+pub(super) fn sides(
+    (control, watch): (&Control<'_>, &SharedWatch<'_>),
+    emission: &Emission,
+) -> Result<Vec<(u32, [f64; 3])>, Cancelled> {
     let mut sides = Vec::new();
     if control.lasting.is_empty() {
-        return sides;
+        return Ok(sides);
     }
     let mut around = |from: u32, to: u32, normal: [f64; 3]| {
         // Counter-clockwise from the half-edge that leaves the vertex to the one that comes in.
@@ -28,32 +34,35 @@ pub(super) fn sides(control: &Control<'_>, emission: &Emission) -> Vec<(u32, [f6
             }
         }
     };
-    for (h, normals) in &emission.sharp {
+    watch.each(&emission.sharp, |(h, normals)| {
         let along = emission.borders.along(*h);
         for (ends, &normal) in along.windows(2).zip(normals) {
             around(ends[1], ends[0], normal);
         }
-    }
+    })?;
     let topology = control.mesh.topology();
     let mut is_tagged = vec![false; control.mesh.vertex_count()];
     control.lasting.tagged_vertices().for_each(|vertex| is_tagged[vertex.index()] = true);
-    for h in (0..3 * control.mesh.face_count() as u32).map(crate::index::HalfEdgeId) {
+    watch.each((0..3 * control.mesh.face_count() as u32).map(HalfEdgeId), |h| {
         if is_tagged[topology.origin(h).index()] {
             let (own, before) = (emission.borders.along(h.0), emission.borders.along(h.previous().0));
             if let (Some(&from), Some(&to)) = (own.first(), before.last()) {
                 around(from, to, control.sided.at(topology, h));
             }
         }
-    }
-    sides.sort_unstable_by_key(|&(h, _)| h);
-    sides
+    })?;
+    parallel::sort_polled(&mut sides, &mut |_| watch.poll(), |a, b| a.0.cmp(&b.0))?;
+    Ok(sides)
 }
 
 /// The tags of the emitted mesh: creases along those of the control mesh, and its corners.
-pub(super) fn tags(control: &Control<'_>, emission: &Emission) -> Tags {
+pub(super) fn tags(
+    (control, watch): (&Control<'_>, &SharedWatch<'_>),
+    emission: &Emission,
+) -> Result<Tags, Cancelled> {
     let corners = control.mesh.tags().corners.iter().filter(|tag| tag.sharpness >= INFINITELY_SHARP);
     let mut tags = Tags { corners: corners.copied().collect(), ..Tags::default() };
-    for (h, _) in &emission.sharp {
+    watch.each(&emission.sharp, |(h, _)| {
         for &h in emission.borders.along(*h) {
             // Each is met from both sides.
             if h < emission.twins[h as usize] {
@@ -62,20 +71,20 @@ pub(super) fn tags(control: &Control<'_>, emission: &Emission) -> Tags {
                 tags.creases.push(CreaseTag { vertices: ends, sharpness: INFINITELY_SHARP });
             }
         }
-    }
-    tags
+    })?;
+    Ok(tags)
 }
 
 /// The copies of vertices and edges of cut sheets.
 pub(super) fn junctions(
-    control: &Control<'_>,
+    (control, watch): (&Control<'_>, &SharedWatch<'_>),
     edges: &Edges<'_>,
     chains: &Chains,
     emission: &Emission,
-) -> Junctions {
+) -> Result<Junctions, Cancelled> {
     let mut junctions =
         Junctions { vertices: control.mesh.junctions().vertices.clone(), edges: Groups::default() };
-    for group in 0..edges.group_count() {
+    watch.each(0..edges.group_count(), |group| {
         let members = edges.members(group);
         let places = members.first().map_or(0, |&(h, _)| chains.own(h).1.len());
         let at = |turned: bool, count: usize, place: usize| if turned { count - 1 - place } else { place };
@@ -87,6 +96,6 @@ pub(super) fn junctions(
             let copy = |&(h, turned): &(u32, bool)| emission.borders.along(h)[at(turned, places + 1, place)];
             junctions.edges.push(members.iter().map(copy));
         }
-    }
-    junctions
+    })?;
+    Ok(junctions)
 }

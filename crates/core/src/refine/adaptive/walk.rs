@@ -10,6 +10,7 @@ use super::quadtree::{
 };
 use super::surface::{Spot, Surface};
 use crate::mesh::NONE;
+use crate::parallel::IsStopped;
 
 /// A vertex on a chain, and the half-edge that was met first between it and the next one.
 #[derive(Clone, Copy, Debug)]
@@ -120,10 +121,30 @@ pub(super) struct Walk<'a> {
     pub(super) knots: Vec<Knot>,
     /// The next vertex's number.
     pub(super) next: u32,
+    is_stopped: &'a IsStopped<'a>,
+    /// Nodes until that is asked again; none once it was so.
+    until_asked: u32,
 }
 
-impl Walk<'_> {
-    /// Walks over a node's leaves.
+/// Nodes between two questions whether the walk is still of use.
+const ASKED: u32 = 32;
+
+impl<'a> Walk<'a> {
+    pub(super) fn new(trees: &'a Trees, knots: Vec<Knot>, next: u32, is_stopped: &'a IsStopped<'a>) -> Self {
+        Self { trees, knots, next, is_stopped, until_asked: ASKED }
+    }
+
+    /// Whether nothing is visited any more.
+    fn is_over(&mut self) -> bool {
+        if self.until_asked > 1 {
+            self.until_asked -= 1;
+        } else if self.until_asked == 1 {
+            self.until_asked = if (self.is_stopped)() { 0 } else { ASKED };
+        }
+        self.until_asked == 0
+    }
+
+    /// Walks over a node's leaves. What is left out once nobody wants the result any more is of no use to anybody.
     pub(super) fn node<V: Visitor>(
         &mut self,
         word: u32,
@@ -132,6 +153,9 @@ impl Walk<'_> {
         surface: Surface<'_>,
         visitor: &mut V,
     ) {
+        if self.is_over() {
+            return;
+        }
         if let Some(depth) = even_depth(word) {
             let interior = self.next;
             let n = 1u32 << depth;

@@ -2,6 +2,7 @@
 
 use super::scale;
 use crate::mesh::Mesh;
+use crate::progress::{Observer, unobserved};
 use crate::refine::exact_options::{BYTES_PER_TRIANGLE, ExactOptions};
 use crate::refine::exact_result::Estimate;
 use crate::refine::simplified::simplified;
@@ -31,14 +32,28 @@ const MOST_GROWTH: f64 = 4.0;
 pub fn exact_estimate(
     control: &Mesh,
     scheme: &dyn Scheme,
-    options: &ExactOptions<'_>,
+    options: &ExactOptions,
+) -> Result<Estimate, RefineError> {
+    exact_estimate_observed(control, scheme, options, &mut unobserved)
+}
+
+/// [`exact_estimate`], telling an observer how it goes on.
+///
+/// # Errors
+/// The same, or the observer asked to stop.
+pub fn exact_estimate_observed(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    options: &ExactOptions,
+    observer: &mut Observer<'_>,
 ) -> Result<Estimate, RefineError> {
     options.check()?;
     if let Some(factor) = scale::factor(control) {
-        return exact_estimate(&scale::mesh(control, factor)?, scheme, &scale::options(options, factor));
+        let (scaled, options) = (scale::mesh(control, factor)?, scale::options(options, factor));
+        return exact_estimate_observed(&scaled, scheme, &options, observer);
     }
     if let Some(tolerance) = options.tolerance.filter(|_| options.optimize) {
-        return optimised(control, scheme, options, tolerance);
+        return optimised(control, scheme, options, tolerance, observer);
     }
     let of = |triangles: usize, is_counted| {
         let triangles = triangles.min(options.budget().0).max(control.face_count());
@@ -48,27 +63,31 @@ pub fn exact_estimate(
     if !quality {
         return Ok(of(options.budget().0, false));
     }
-    approached(control.face_count(), of, |times| adaptive::count(control, scheme, options, times))
+    approached(control.face_count(), of, |times| adaptive::count(control, scheme, options, times, observer))
 }
 
 /// The same where edges are collapsed.
 fn optimised(
     control: &Mesh,
     scheme: &dyn Scheme,
-    options: &ExactOptions<'_>,
+    options: &ExactOptions,
     tolerance: f64,
+    observer: &mut Observer<'_>,
 ) -> Result<Estimate, RefineError> {
     let free = ExactOptions { triangles: None, max_triangles: None, ..options.clone() };
     let plain = ExactOptions { optimize: false, ..free.clone() };
     let mut times = COARSEST;
-    let mut before = adaptive::count(control, scheme, &plain, times)?;
+    let mut before = adaptive::count(control, scheme, &plain, times, observer)?;
     while times > 1.0 && 2 * before <= COLLAPSED {
         times /= 2.0;
-        before = adaptive::count(control, scheme, &plain, times)?;
+        before = adaptive::count(control, scheme, &plain, times, observer)?;
     }
-    let left = simplified(control, scheme, &free.tolerance(times * tolerance))?.mesh.face_count();
+    let left = simplified(control, scheme, &free.tolerance(times * tolerance), observer)?.mesh.face_count();
     let is_counted = times == 1.0;
-    let whole = if is_counted { before } else { exact_estimate(control, scheme, &plain)?.triangles };
+    let whole = match is_counted {
+        true => before,
+        false => exact_estimate_observed(control, scheme, &plain, observer)?.triangles,
+    };
     let triangles = (whole as f64 * left as f64 / before.max(1) as f64).round() as usize;
     let triangles = triangles.min(options.budget().0);
     Ok(Estimate { triangles, memory_bytes: triangles.saturating_mul(BYTES_PER_TRIANGLE), is_counted })

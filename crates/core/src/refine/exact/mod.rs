@@ -5,7 +5,7 @@
 mod estimate;
 mod scale;
 
-pub use estimate::exact_estimate;
+pub use estimate::{exact_estimate, exact_estimate_observed};
 
 use super::RefineError;
 use super::adaptive::adaptive;
@@ -13,24 +13,38 @@ use super::exact_options::ExactOptions;
 use super::exact_result::Exact;
 use super::simplified::simplified;
 use crate::mesh::Mesh;
+use crate::progress::{Observer, unobserved};
 use crate::scheme::Scheme;
 
 /// Refines `control` until the goals are met: each distance, angle or pixel goal everywhere, or as many triangles as
 /// allowed, whichever comes first.
 ///
 /// # Errors
-/// A goal that is no positive number, a vertex without a limit,
-/// more elements than can be numbered, or the observer's wish to stop.
-pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions<'_>) -> Result<Exact, RefineError> {
+/// A goal that is no positive number, a vertex without a limit, or more elements than can be numbered.
+pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions) -> Result<Exact, RefineError> {
+    exact_observed(control, scheme, options, &mut unobserved)
+}
+
+/// [`exact`], telling an observer how it goes on.
+///
+/// # Errors
+/// The same, or the observer asked to stop. Nothing comes with that: as long as faces are being divided there is no mesh,
+/// and to close and measure what there is would take as long as the rest.
+pub fn exact_observed(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    options: &ExactOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Exact, RefineError> {
     options.check()?;
     if let Some(factor) = scale::factor(control) {
-        let scaled = exact(&scale::mesh(control, factor)?, scheme, &scale::options(options, factor))?;
-        return scale::result(scaled, factor);
+        let (scaled, options) = (scale::mesh(control, factor)?, scale::options(options, factor));
+        return scale::result(exact_observed(&scaled, scheme, &options, observer)?, factor);
     }
     if options.optimize {
-        return simplified(control, scheme, options);
+        return simplified(control, scheme, options, observer);
     }
-    adaptive(control, scheme, options)
+    adaptive(control, scheme, options, observer)
 }
 
 /// Whether the distances that [`exact`] reports for a scheme are proven: those of the Loop family are

@@ -29,7 +29,7 @@ pub(super) fn mesh(mesh: &Mesh, factor: f64) -> Result<Mesh, RefineError> {
 }
 
 /// Goals for the multiplied mesh.
-pub(super) fn options<'a>(options: &ExactOptions<'a>, factor: f64) -> ExactOptions<'a> {
+pub(super) fn options(options: &ExactOptions, factor: f64) -> ExactOptions {
     let point = |p: [f64; 3]| p.map(|x| x * factor);
     let camera = |camera: &Camera| Camera { eye: point(camera.eye), target: point(camera.target), ..*camera };
     let view = |view: View| match view.viewpoint {

@@ -5,7 +5,7 @@
 //! (`grid.rs`), positions and normals from the exact surface over each face (`pieces.rs`), and each face fills
 //! slots of its own, so that the result does not depend on threads.
 
-use core::ops::Range;
+use core::ops::{ControlFlow, Range};
 
 use super::grid::{Grid, Numbering};
 use super::pieces::{Pieces, Values};
@@ -15,7 +15,7 @@ use crate::mesh::{CreaseTag, Junctions, Mesh, Sharpness, Tags, Topology};
 use crate::parallel;
 use crate::patch::Rules;
 use crate::patch::submesh::submesh;
-use crate::progress::{Cancelled, Watch};
+use crate::progress::{Cancelled, Progress, Watch};
 use crate::refine::RefineError;
 use crate::refine::tags::less_sharp;
 use crate::vector::{unit_or_zero, vector};
@@ -71,11 +71,12 @@ pub(super) fn refined_at_limit(
     let mut points = vec![[0.0; 3]; vertices];
     let mut by_vertex = vec![[0.0; 3]; if normals { vertices } else { 0 }];
     let blocks = work.blocks(&mut triangles, &mut twins, &mut outgoing, &mut points, &mut by_vertex);
-    let flat = parallel::for_each_block_polled(blocks, &mut |_| watch.poll(), |slots| work.fill(slots))?;
+    let flat = parallel::each_polled(blocks, &mut |_| watch.poll(), |slots| work.fill(slots))?;
     for (outgoing, v) in outgoing.iter_mut().zip(mesh.topology().vertices()) {
         *outgoing = work.at_corner(mesh.topology().outgoing(v));
     }
-    points[..mesh.vertex_count()].copy_from_slice(&rules.table().positions(mesh)?);
+    let corners = rules.table().positions_polled(mesh, &mut |_| watch.poll())??;
+    points[..mesh.vertex_count()].copy_from_slice(&corners);
     watch.poll()?;
     let normals = match normals {
         true => Some(work.finished_normals(by_vertex, flat.concat(), rules, watch)?),
@@ -185,7 +186,7 @@ impl<'a> Work<'a> {
         watch: &mut Watch<'_>,
     ) -> Result<SidedNormals, RefineError> {
         let topology = self.mesh.topology();
-        let old = rules.table().plane_normals(self.mesh)?;
+        let old = rules.table().plane_normals(self.mesh, &mut |_| watch.poll())??;
         by_vertex[..self.mesh.vertex_count()].copy_from_slice(old.by_vertex());
         let mut normals = SidedNormals::new(by_vertex);
         for &(h, normal) in old.sides() {
@@ -202,7 +203,7 @@ impl<'a> Work<'a> {
         if !flat.is_empty() {
             flat.sort_unstable();
             flat.dedup();
-            self.add_averages(&mut normals, &flat, rules)?;
+            self.add_averages(&mut normals, &flat, rules, watch)?;
         }
         Ok(normals)
     }
@@ -268,12 +269,17 @@ impl<'a> Work<'a> {
         normals: &mut SidedNormals,
         flat: &[u32],
         rules: &Rules<'_>,
+        watch: &mut Watch<'_>,
     ) -> Result<(), RefineError> {
         let seeds: Vec<HalfEdgeId> = flat.iter().map(|&face| HalfEdgeId::of(FaceId(face), 0)).collect();
         let around = submesh(self.mesh, self.sharpness, &seeds, 1);
         let options = super::UniformOptions::default().levels(self.grid.levels);
-        let around = super::uniform(&around, rules.scheme(), &options)?.mesh;
-        let averages = rules.table().sided_normals(&around)?;
+        let mut observer = |_: &Progress| match watch.poll() {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(Cancelled) => ControlFlow::Break(()),
+        };
+        let around = super::uniform_observed(&around, rules.scheme(), &options, &mut observer)?.mesh;
+        let averages = rules.table().sided_normals_polled(&around, &mut |_| watch.poll())??;
         let mut numbers = vec![0u32; self.grid.places.len()];
         let half_edges = self.grid.half_edge_count();
         for (place, &face) in flat.iter().enumerate() {

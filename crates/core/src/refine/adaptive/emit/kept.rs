@@ -7,6 +7,10 @@ use super::super::quadtree::Edges;
 use super::leaf_writer::{Vertices, split_off};
 use super::{Emission, Job};
 use crate::mesh::{Mesh, NONE};
+use crate::parallel::IsStopped;
+
+/// Vertices and triangles that are copied between two questions whether that is still of use.
+const COPIED: usize = 1 << 16;
 
 /// What was emitted before.
 pub(super) struct Kept<'a> {
@@ -33,23 +37,28 @@ impl Run {
 
 impl Kept<'_> {
     /// Writes the faces of a job; gives their leaves that pass on conditions.
-    pub(super) fn take_over(&self, closed: &[Closed], mut job: Job<'_>) -> Vec<(Condition, u32, u32)> {
+    pub(super) fn take_over(
+        &self,
+        closed: &[Closed],
+        mut job: Job<'_>,
+        is_stopped: &IsStopped<'_>,
+    ) -> Vec<(Condition, u32, u32)> {
         let mut first_triangle = job.first_triangle;
         let mut conditions = Vec::new();
         let mut inside = job.inside.first;
         for face in job.faces.clone() {
             let (own, shared) = self.on_edges(face);
-            own.into_iter().for_each(|run| self.vertices(run, &mut job.on_edges));
+            own.into_iter().for_each(|run| self.vertices(run, &mut job.on_edges, is_stopped));
             let within = Run {
                 before: self.before.numbers.inside[face as usize],
                 count: closed[face as usize].vertices,
                 now: inside,
             };
-            self.vertices(within, &mut job.inside);
+            self.vertices(within, &mut job.inside, is_stopped);
             inside += within.count;
             let runs = [within, shared[0], shared[1], shared[2]];
             conditions.extend(self.conditions(face, first_triangle));
-            first_triangle += self.triangles(face, &runs, first_triangle, &mut job);
+            first_triangle += self.triangles(face, &runs, first_triangle, (&mut job, is_stopped));
         }
         conditions
     }
@@ -74,19 +83,31 @@ impl Kept<'_> {
     }
 
     /// Copies vertices.
-    fn vertices(&self, run: Run, to: &mut Vertices<'_>) {
-        let from = run.before as usize..(run.before + run.count) as usize;
-        let at = (run.now - to.first) as usize;
-        let to_range = at..at + run.count as usize;
+    fn vertices(&self, run: Run, to: &mut Vertices<'_>, is_stopped: &IsStopped<'_>) {
         let Emission { positions, feet, normals, origins, .. } = self.before;
         let positions = if feet.is_empty() { positions } else { feet };
-        to.positions[to_range.clone()].copy_from_slice(&positions[from.clone()]);
-        to.normals[to_range.clone()].copy_from_slice(&normals[from.clone()]);
-        to.origins[to_range].copy_from_slice(&origins[from]);
+        let first = (run.now - to.first) as usize;
+        for start in (0..run.count as usize).step_by(COPIED) {
+            if start > 0 && is_stopped() {
+                return;
+            }
+            let count = COPIED.min(run.count as usize - start);
+            let (from, at) = (run.before as usize + start, first + start);
+            let (from, at) = (from..from + count, at..at + count);
+            to.positions[at.clone()].copy_from_slice(&positions[from.clone()]);
+            to.normals[at.clone()].copy_from_slice(&normals[from.clone()]);
+            to.origins[at].copy_from_slice(&origins[from]);
+        }
     }
 
     /// Copies the triangles of a face, their first one now being given, and what hangs on them; gives their number.
-    fn triangles(&self, face: u32, runs: &[Run; 4], first: u32, job: &mut Job<'_>) -> u32 {
+    fn triangles(
+        &self,
+        face: u32,
+        runs: &[Run; 4],
+        first: u32,
+        (job, is_stopped): (&mut Job<'_>, &IsStopped<'_>),
+    ) -> u32 {
         let corners = self.mesh.vertex_count() as u32;
         let before = self.before.triangles_of(face);
         let at = (first - job.first_triangle) as usize;
@@ -95,16 +116,22 @@ impl Kept<'_> {
             let run = || runs.iter().find_map(|run| run.renumbered(vertex));
             if vertex < corners { vertex } else { run().unwrap_or(NONE) }
         };
-        for (now, triangle) in
-            job.triangles[at..at + count].iter_mut().zip(&self.before.triangles[before.clone()])
-        {
-            *now = triangle.map(renumbered);
-        }
         let half_edges = 3 * before.start as u32..3 * before.end as u32;
         // Those of other faces are joined later.
         let moved = |h: u32| if half_edges.contains(&h) { h - half_edges.start + 3 * first } else { NONE };
-        let twins = &self.before.twins[half_edges.start as usize..half_edges.end as usize];
-        job.twins[3 * at..3 * (at + count)].iter_mut().zip(twins).for_each(|(now, &twin)| *now = moved(twin));
+        for start in (0..count).step_by(COPIED) {
+            if start > 0 && is_stopped() {
+                return count as u32;
+            }
+            let copied = COPIED.min(count - start);
+            let (from, at) = (before.start + start, at + start);
+            let triangles = &self.before.triangles[from..from + copied];
+            let now = &mut job.triangles[at..at + copied];
+            now.iter_mut().zip(triangles).for_each(|(now, triangle)| *now = triangle.map(renumbered));
+            let twins = &self.before.twins[3 * from..3 * (from + copied)];
+            let now = &mut job.twins[3 * at..3 * (at + copied)];
+            now.iter_mut().zip(twins).for_each(|(now, &twin)| *now = moved(twin));
+        }
         job.parents[at..at + count].fill(face);
         for h in 3 * face..3 * face + 3 {
             let along = self.before.borders.along(h);

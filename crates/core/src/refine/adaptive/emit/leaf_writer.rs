@@ -9,8 +9,12 @@ use super::super::walk::{Knot, Node, Visitor};
 use super::fraction;
 use crate::emit::{Diagonal, closure};
 use crate::mesh::NONE;
+use crate::parallel::IsStopped;
 use crate::patch::LimitPoint;
 use crate::refine::exact_result::Origin;
+
+/// Rows that are written between two questions whether that is still of use.
+const ROWS: usize = 64;
 
 /// A run of vertices to be written: the first's number, then positions, normals, origins.
 pub(super) struct Vertices<'a> {
@@ -69,6 +73,7 @@ pub(super) struct Writer<'a> {
     /// By column, the half-edge that waits for the row above.
     pub(super) below: Vec<u32>,
     pub(super) places: Vec<f64>,
+    pub(super) is_stopped: &'a IsStopped<'a>,
 }
 
 impl Visitor for Writer<'_> {
@@ -121,7 +126,16 @@ impl Writer<'_> {
                 self.inside.origins[at + i - 1] = self.origin([leaf.u, leaf.v]);
             }
             at += count;
+            if self.is_over(j) {
+                return;
+            }
         }
+    }
+
+    /// Whether what is written is of no use any more; asked after some of the rows.
+    #[inline]
+    fn is_over(&self, row: usize) -> bool {
+        row % ROWS == ROWS - 1 && (self.is_stopped)()
     }
 
     /// The vertex at a corner of the leaves.
@@ -156,6 +170,9 @@ impl Writer<'_> {
                     left = first;
                     self.below[i] = first + 1;
                 }
+            }
+            if self.is_over(j) {
+                return;
             }
         }
     }
