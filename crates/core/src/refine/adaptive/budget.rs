@@ -22,6 +22,9 @@ const LEFT_AT_LEAST: usize = 12;
 /// Distances nearer to each other than this tell nothing any more.
 const NEAR: f64 = 1e-3;
 
+/// Between distances nearer than that, as a logarithm, counts jump: the middle is as good as any guess.
+const CLOSE: f64 = 0.03;
+
 /// What fails so many times over is as bad as any.
 const COARSEST: f64 = 1e12;
 
@@ -105,7 +108,8 @@ pub(super) fn search(
         if low > 0.0 {
             // Between two counts a power; but counts come in steps, so the middle where the same end was moved twice.
             let span = (high / low).ln();
-            let guess = beyond.filter(|_| moved_twice < 2).map(|beyond| {
+            let is_apart = span > CLOSE && moved_twice < 2;
+            let guess = beyond.filter(|_| is_apart).map(|beyond| {
                 power = growth.power((high, best.triangles), (low, beyond));
                 growth.distance(high, best.triangles, aim, power)
             });
@@ -194,7 +198,8 @@ pub(super) fn even(engine: &Engine<'_>, most: usize) -> Result<Option<Plan>, Ref
         return Ok(None);
     }
     let Some(even) = engine.plan(Goal::Even(levels, vec![false; faces]), most)? else { return Ok(None) };
-    if levels >= engine.max_levels {
+    // What is left of great budgets is too little to matter.
+    if levels >= engine.max_levels || most >= EXACT {
         return Ok(Some(even));
     }
     // Four for one, and what closes the gaps.
