@@ -1,5 +1,6 @@
 //! Bounds of parts of regular pieces against dense samples, and proofs of the two constants.
 
+use super::heights::halved;
 use super::*;
 use crate::patch::bezier_triangle::BezierTriangle;
 
