@@ -321,6 +321,18 @@ fn depths_have_limits() {
     assert!(ExactOptions::default().max_triangles.is_some());
 }
 
+/// Budgets that no number of triangles comes to are not what ends the division.
+#[test]
+fn budgets_beyond_all_numbers_end_at_other_caps() {
+    let control = model("tetrahedron");
+    for budget in [usize::MAX, usize::MAX / 4 * 3] {
+        let options = ExactOptions::default().max_triangles(None).max_levels(3).triangles(budget);
+        let result = exact(&control, &Loop, &options).unwrap();
+        result.mesh.validate().unwrap();
+        assert_eq!(result.mesh.face_count(), control.face_count() << 6);
+    }
+}
+
 /// The bytes of results, whatever the build: these are those of a release build of one code generation unit. Elsewhere the
 /// mathematics library may round sines and cosines in another way.
 #[test]

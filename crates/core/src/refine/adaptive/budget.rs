@@ -123,7 +123,7 @@ pub(super) fn search(
         if !(next < high && next > low) {
             break;
         }
-        let plan = engine.plan(Goal::Within(next), most + most / COUNTED_BEYOND)?;
+        let plan = engine.plan(Goal::Within(next), most.saturating_add(most / COUNTED_BEYOND))?;
         let fits = plan.as_ref().is_some_and(|plan| plan.triangles <= most);
         moved_twice = if fits == fitted && moved_twice < 2 { moved_twice + 1 } else { 1 };
         fitted = fits;
