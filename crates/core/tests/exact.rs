@@ -333,6 +333,24 @@ fn budgets_beyond_all_numbers_end_at_other_caps() {
     }
 }
 
+/// Faces that pass by themselves and fail among their neighbours are left as they are where the budget has no triangles for that.
+#[test]
+fn budgets_may_leave_nothing_for_neighbours() {
+    for (name, tolerance) in [("sphere", 0.0075), ("cup", 0.024), ("cup", 0.0174)] {
+        let control = model(name);
+        let faces = control.face_count();
+        // Any angle goes: a goal for which triangles are looked at among their neighbours.
+        let within = ExactOptions::default().tolerance(tolerance * control.diagonal()).angle(3.1);
+        let whole = exact(&control, &Loop, &within).unwrap();
+        assert!(whole.stop == ExactStop::Met && whole.mesh.face_count() > faces, "{name}");
+        for budget in [0, 1, faces, faces + 1] {
+            let result = exact(&control, &Loop, &within.clone().triangles(budget)).unwrap();
+            assert_eq!(result.stop, ExactStop::Triangles, "{name}, {budget}");
+            assert_eq!(result.mesh.triangles(), control.triangles(), "{name}, {budget}");
+        }
+    }
+}
+
 /// The bytes of results, whatever the build: these are those of a release build of one code generation unit. Elsewhere the
 /// mathematics library may round sines and cosines in another way.
 #[test]

@@ -157,8 +157,10 @@ fn filled(
     gain: f64,
     goal: impl Fn(Vec<bool>) -> Goal,
 ) -> Result<Plan, RefineError> {
+    // Undivided faces are kept also where they are more.
+    let Some(left) = most.checked_sub(plan.triangles) else { return Ok(plan) };
+    let mut left = left as f64;
     let order = plan.faces_by_bound();
-    let mut left = (most - plan.triangles) as f64;
     let costs = order.iter().map(|&(_, face)| gain * f64::from(plan.closed[face as usize].triangles));
     let guess = costs.take_while(|cost| {
         left -= cost;
