@@ -1,8 +1,9 @@
 //! The greatest number of triangles that a budget allows: the least distance whose plan fits.
 //!
 //! Each distance has a plan of its own, the same that a tolerance would have, so that what is proven at a number of
-//! triangles is what a tolerance proves with as many. Counts follow a power of the distance; the search goes down
-//! from coarse ones, which cost little, and narrows what is left.
+//! triangles is what a tolerance proves with as many. Counts follow a power of the distance ([`Growth`]); the search goes
+//! down from coarse ones, which cost little, and narrows what is left. What a budget below [`EXACT`] leaves even then is spent
+//! on the worst faces. Beside that stands the even division of all faces, which is nearer where these are curved alike.
 
 use super::judge::Goal;
 use super::{Engine, Plan};
@@ -99,7 +100,8 @@ pub(super) fn search(
     let mut power = 1.0f64;
     let enough = most - (most / LEFT).max(LEFT_AT_LEAST).min(most);
     let aim = AIM * most as f64;
-    let (mut fitted, mut moved_twice) = (true, 0);
+    // How often the same end was moved, up to twice.
+    let (mut fitted, mut moved) = (true, 0);
     let is_near = |high: f64, low: f64, triangles: usize| {
         high <= low * if triangles < enough { 1.0 + NEAR } else { PROMISED }
     };
@@ -108,9 +110,9 @@ pub(super) fn search(
         if low > 0.0 {
             // Between two counts a power; but counts come in steps, so the middle where the same end was moved twice.
             let span = (high / low).ln();
-            let is_apart = span > CLOSE && moved_twice < 2;
+            let is_apart = span > CLOSE && moved < 2;
             let guess = beyond.filter(|_| is_apart).map(|beyond| {
-                power = growth.power((high, best.triangles), (low, beyond));
+                let power = growth.power((high, best.triangles), (low, beyond));
                 growth.distance(high, best.triangles, aim, power)
             });
             let edge = (0.05 * span).exp();
@@ -125,7 +127,7 @@ pub(super) fn search(
         }
         let plan = engine.plan(Goal::Within(next), most.saturating_add(most / COUNTED_BEYOND))?;
         let fits = plan.as_ref().is_some_and(|plan| plan.triangles <= most);
-        moved_twice = if fits == fitted && moved_twice < 2 { moved_twice + 1 } else { 1 };
+        moved = if fits == fitted && moved < 2 { moved + 1 } else { 1 };
         fitted = fits;
         match plan {
             Some(plan) if fits => {
@@ -189,7 +191,8 @@ fn filled(
     Ok(best)
 }
 
-/// All faces divided evenly, as often as a budget allows, if that is any division, and what is left spent on the worst faces.
+/// All faces divided evenly, as often as a budget allows, if that is any division; below [`EXACT`] triangles what is left is spent
+/// on the worst faces.
 pub(super) fn even(engine: &Engine<'_>, most: usize) -> Result<Option<Plan>, RefineError> {
     let faces = engine.control.mesh.face_count();
     let levels = levels(engine, most);
