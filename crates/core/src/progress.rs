@@ -208,7 +208,7 @@ impl<'a> SharedWatch<'a> {
         length: usize,
         f: F,
     ) -> Result<Vec<T>, Cancelled> {
-        parallel::pieces_polled(n, length, &mut |_| self.poll(), f)
+        self.long_pieces(n, length, |piece, _| f(piece))
     }
 
     /// [`parallel::long_pieces_polled`].
