@@ -48,8 +48,7 @@ pub fn exact_estimate_observed(
     observer: &mut Observer<'_>,
 ) -> Result<Estimate, RefineError> {
     options.check()?;
-    if let Some(factor) = scale::factor(control) {
-        let (scaled, options) = (scale::mesh(control, factor)?, scale::options(options, factor));
+    if let Some((scaled, options, _)) = scale::scaled(control, options)? {
         return exact_estimate_observed(&scaled, scheme, &options, observer);
     }
     if let Some(tolerance) = options.tolerance.filter(|_| options.optimize) {

@@ -37,8 +37,7 @@ pub fn exact_observed(
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
     options.check()?;
-    if let Some(factor) = scale::factor(control) {
-        let (scaled, options) = (scale::mesh(control, factor)?, scale::options(options, factor));
+    if let Some((scaled, options, factor)) = scale::scaled(control, options)? {
         return scale::result(exact_observed(&scaled, scheme, &options, observer)?, factor);
     }
     if options.optimize {

@@ -11,8 +11,17 @@ use crate::refine::exact_result::{ErrorBounds, Exact};
 /// Sizes with binary exponents up to this are left as they are: their eighth powers are finite.
 const MIDDLING: i32 = 100;
 
+/// A mesh and goals of a middling size and the factor that brings them there; `None` where they are middling already.
+pub(super) fn scaled(
+    control: &Mesh,
+    goals: &ExactOptions,
+) -> Result<Option<(Mesh, ExactOptions, f64)>, RefineError> {
+    let Some(factor) = factor(control) else { return Ok(None) };
+    Ok(Some((mesh(control, factor)?, options(goals, factor), factor)))
+}
+
 /// The power of two that brings a mesh's coordinates near 1; `None` where they are middling already.
-pub(super) fn factor(mesh: &Mesh) -> Option<f64> {
+fn factor(mesh: &Mesh) -> Option<f64> {
     let greatest = mesh.positions().iter().flatten().fold(0.0f64, |greatest, x| greatest.max(x.abs()));
     if greatest == 0.0 || !greatest.is_finite() {
         return None;
@@ -23,13 +32,13 @@ pub(super) fn factor(mesh: &Mesh) -> Option<f64> {
 }
 
 /// A mesh with its coordinates multiplied.
-pub(super) fn mesh(mesh: &Mesh, factor: f64) -> Result<Mesh, RefineError> {
+fn mesh(mesh: &Mesh, factor: f64) -> Result<Mesh, RefineError> {
     let positions = mesh.positions().iter().map(|p| p.map(|x| x * factor)).collect();
     Ok(mesh.clone().with_positions(positions)?)
 }
 
 /// Goals for the multiplied mesh.
-pub(super) fn options(options: &ExactOptions, factor: f64) -> ExactOptions {
+fn options(options: &ExactOptions, factor: f64) -> ExactOptions {
     let point = |p: [f64; 3]| p.map(|x| x * factor);
     let camera = |camera: &Camera| Camera { eye: point(camera.eye), target: point(camera.target), ..*camera };
     let view = |view: View| match view.viewpoint {
