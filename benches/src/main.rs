@@ -9,8 +9,10 @@
 //! * `throughput`: its triangles per second and bytes per triangle;
 //! * `gaps`: how long observers of long functions wait at most;
 //! * `scaling`: exact refinement of ever larger meshes, larger in one way each; needs no models;
+//! * `tolerances GOALS`: triangles and time of exact refinement, each of the GOALS a model, built in or a file, and what is
+//!   asked of it: `cup@0.01` is within 0.01 % of the diagonal, `cup@n:5000` has 5,000 triangles; options `--balance`, `--runs K`;
 //! * `figures FOLDER`: the pictures of the README, from built-in models;
-//! * `all`: all but the figures.
+//! * `all`: `speed`, `quality` and `throughput`.
 //!
 //! Peers that are not installed are left out, and that is said.
 
@@ -23,6 +25,7 @@ mod peers;
 mod quality;
 mod refinement;
 mod scaling;
+mod tolerances;
 
 use std::path::{Path, PathBuf};
 
@@ -41,6 +44,9 @@ fn main() -> Result<()> {
     let work = arguments.next().unwrap_or_else(|| "all".into());
     if work == "scaling" {
         return scaling::scaling();
+    }
+    if work == "tolerances" {
+        return tolerances::tolerances(arguments);
     }
     let folder = arguments
         .next()
@@ -82,7 +88,7 @@ fn measure(work: &str, folder: &Path) -> Result<()> {
         "throughput" => quality::throughput(folder),
         "gaps" => gaps::gaps(folder),
         other => bail!(
-            "no benchmark is called {other}: {}, speed, {}, quality, throughput, gaps, figures, all",
+            "no benchmark is called {other}: {}, speed, {}, quality, throughput, gaps, scaling, tolerances, figures, all",
             SPEED.join(", "),
             QUALITY.join(", ")
         ),

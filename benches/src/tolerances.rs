@@ -1,0 +1,57 @@
+//! Exact refinement of chosen models to chosen goals: triangles, and the processor time that they take. Programs built from two
+//! commits, run in turn, tell what lies between these.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use limitmesh::Mesh;
+use limitmesh::refine::{ExactOptions, exact};
+use limitmesh::scheme::Loop;
+
+use crate::clock::one_thread;
+
+/// Runs of each goal where no number is given; the fastest counts.
+const RUNS: usize = 4;
+
+/// Prints a line for each `MODEL@PERCENT`, a tolerance in per cent of the diagonal, and `MODEL@n:COUNT`, a number of triangles;
+/// MODEL is a file or built in. `--balance` moves vertices off the surface, `--runs K` takes the least of K runs.
+pub(crate) fn tolerances(mut arguments: impl Iterator<Item = String>) -> Result<()> {
+    let (mut is_balanced, mut runs, mut jobs) = (false, RUNS, Vec::new());
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--balance" => is_balanced = true,
+            "--runs" => runs = arguments.next().context("--runs needs a number")?.parse()?,
+            _ => jobs.push(argument),
+        }
+    }
+    if jobs.is_empty() {
+        bail!(
+            "name models and goals: cup@0.01 is within 0.01 % of the diagonal, cup@n:5000 has 5,000 triangles"
+        );
+    }
+    println!("model and goal                                       triangles          ms");
+    for job in &jobs {
+        let (name, goal) = job.rsplit_once('@').with_context(|| format!("no goal in {job}"))?;
+        let control = model(name)?;
+        let options = ExactOptions::default().balance(is_balanced);
+        let options = match goal.strip_prefix("n:") {
+            Some(count) => options.triangles(count.parse()?),
+            None => options.tolerance(0.01 * goal.parse::<f64>()? * control.diagonal()),
+        };
+        let (mut least, mut triangles) = (f64::INFINITY, 0);
+        for _ in 0..runs {
+            let (seconds, result) = one_thread(|| exact(&control, &Loop, &options))?;
+            (least, triangles) = (least.min(seconds.all), result?.mesh.face_count());
+        }
+        println!("{job:50} {triangles:11} {:11.1}", 1e3 * least);
+    }
+    Ok(())
+}
+
+/// A model that is built in, or a file's.
+fn model(name: &str) -> Result<Mesh> {
+    match limitmesh_models::find(name) {
+        Some(model) => Ok(Mesh::from_soup(&model.soup(), &Default::default())?.0),
+        None => crate::mesh(Path::new(name)),
+    }
+}
