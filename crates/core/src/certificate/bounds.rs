@@ -89,8 +89,8 @@ pub(crate) struct Effort {
     pub(crate) open: [bool; 3],
     /// Expected chord of the angles between the triangle and its neighbours.
     pub(crate) chord: f64,
-    /// Expected greatest slope.
-    pub(crate) slope: f64,
+    /// Expected greatest slopes, by edge.
+    pub(crate) slopes: [f64; 3],
     /// Whether nobody asks how far off a triangle is that surely misses the target.
     pub(crate) gives_up: bool,
 }
@@ -241,7 +241,7 @@ impl Search<'_> {
 
     /// What a deviation comes to.
     fn value(&self, deviation: &Deviation) -> f64 {
-        deviation.bound(self.effort.chord, self.effort.slope)
+        deviation.bound(self.effort.chord, self.effort.slopes)
     }
 
     /// The value that is good enough for what is left: less than what stands already adds nothing.
@@ -251,8 +251,8 @@ impl Search<'_> {
 
     fn add(&mut self, deviation: Deviation) {
         // A slope that is too great must not spoil what others are good for.
-        let alone = exceeds(deviation.slope, self.effort.slope);
-        self.found = self.found.max(if alone { Deviation::alone(deviation.own) } else { deviation });
+        let counts = deviation.is_within(self.effort.slopes);
+        self.found = self.found.max(if counts { deviation } else { Deviation::alone(deviation.own) });
     }
 
     fn net(&mut self, net: &BezierTriangle, borders: Borders, halvings: usize) {

@@ -54,7 +54,9 @@ pub(crate) struct RowTarget {
     pub(crate) tilt: f64,
     /// Tangents of the angles of the triangles beside a part at least.
     pub(crate) slope: f64,
-    /// The part of a part's own angles that drifts may have.
+    /// Drifts over an edge may have so much of the least of 1 and the tangents of a part's own angles there ([`TriangleFrame::slope_at`]).
+    ///
+    /// [`TriangleFrame::slope_at`]: super::triangle_frame::TriangleFrame::slope_at
     pub(crate) drift_share: f64,
 }
 
@@ -376,7 +378,8 @@ fn measure(count: usize, parts: &Parts<'_>, rest: &Remainder, target: &RowTarget
         let chord = tilt + neighbour;
         // Angles.
         let (la, lb, lc) = (dot(a, a), dot(b, b), dot(c, c));
-        let slope = area / dot(a, b).max(-dot(a, c)).max(dot(b, c));
+        let (first, second, third) = (dot(a, b), -dot(a, c), dot(b, c));
+        let slope = area / first.max(second).max(third);
         // Beside the edges: the second derivatives outwards, times the edges' lengths.
         let out = [-dot(wa, cross(a, normal)), -dot(wc, cross(c, normal)), dot(wb, cross(b, normal))];
         let longest = la.max(lb).max(lc);
@@ -390,6 +393,12 @@ fn measure(count: usize, parts: &Parts<'_>, rest: &Remainder, target: &RowTarget
         let is_roomy = (ra >= 0.0) & (rb >= 0.0) & (rc >= 0.0);
         let reach = out[0].max(out[1]).max(out[2]).max(0.0);
         let drift = 0.125 * (reach * reach / la.min(lb).min(lc)).sqrt() + rest.curve;
+        // Within the angles at each edge.
+        let (first, second, third) = (first.abs(), second.abs(), third.abs());
+        let most = share * area;
+        let stays = (ra * first.max(second).max(area) <= most)
+            & (rc * second.max(third).max(area) <= most)
+            & (rb * third.max(first).max(area) <= most);
         // No two points in one place: see `quartic_cell`. Changes of barycentric coordinates times the area.
         let (oa, ob) = (cross(a, normal), cross(b, normal));
         let stretched = |w: [f64; 3]| {
@@ -400,7 +409,7 @@ fn measure(count: usize, parts: &Parts<'_>, rest: &Remainder, target: &RowTarget
         let stretch = (0.5 * (la + lb + lc)).sqrt();
         let is_apart = most + DIRECTIONS * rest.first * stretch < NEARLY_ONE * area;
         let is_plain =
-            is_roomy & is_apart & (drift_slope <= (share * slope).min(allowed)) & (chord * chord <= SHARPEST);
+            is_roomy & stays & is_apart & (drift_slope <= allowed) & (chord * chord <= SHARPEST);
         let value = (height + rest.height) * (1.0 + 0.5 * chord * chord) + chord * drift;
         bound[i] = if is_plain { value } else { f64::INFINITY };
         tilt_out[i] = tilt;

@@ -26,8 +26,8 @@ pub(crate) struct Deviation {
     pub(crate) height: f64,
     /// How far pieces reach over edges with a neighbour.
     pub(crate) drift: f64,
-    /// The greatest ratio of that to the distance from the edge's ends.
-    pub(crate) slope: f64,
+    /// The greatest ratio of that to the distance from the edge's ends, by edge.
+    pub(crate) slopes: [f64; 3],
     /// How much of the height may point in any direction rather than along normals.
     pub(crate) across: f64,
 }
@@ -39,14 +39,14 @@ impl Deviation {
             own: greater(self.own, other.own),
             height: greater(self.height, other.height),
             drift: greater(self.drift, other.drift),
-            slope: greater(self.slope, other.slope),
+            slopes: [0, 1, 2].map(|edge| greater(self.slopes[edge], other.slopes[edge])),
             across: greater(self.across, other.across),
         }
     }
 
     /// That of a piece which is as far from the triangle, its curves from their edges, and counts on its own.
     pub(crate) fn alone(own: f64) -> Self {
-        Self { own, height: own, drift: 0.0, slope: 0.0, across: own }
+        Self { own, height: own, drift: 0.0, slopes: [0.0; 3], across: own }
     }
 
     /// The same for a triangle whose corners were moved off the surface by up to `moved`, up to `aside` of that along
@@ -75,17 +75,29 @@ impl Deviation {
         Self { own: own + distance, height: height + distance, across: across + distance, ..self }
     }
 
-    /// The bound where the neighbours' planes are turned by angles with this chord (2 sin(θ/2)) at most, and `slope`
-    /// is the greatest that is allowed.
+    /// The greatest of the slopes.
     #[inline]
-    pub(crate) fn bound(&self, chord: f64, slope: f64) -> f64 {
-        self.among_neighbours(chord, slope).map_or(self.own, |bound| self.own.min(bound))
+    pub(crate) fn steepest(&self) -> f64 {
+        self.slopes.into_iter().fold(0.0, greater)
+    }
+
+    /// Whether all slopes are known to be within limits.
+    #[inline]
+    pub(crate) fn is_within(&self, slopes: [f64; 3]) -> bool {
+        (0..3).all(|edge| self.slopes[edge] <= slopes[edge])
+    }
+
+    /// The bound where the neighbours' planes are turned by angles with this chord (2 sin(θ/2)) at most, and `slopes`
+    /// are the greatest that are allowed, by edge.
+    #[inline]
+    pub(crate) fn bound(&self, chord: f64, slopes: [f64; 3]) -> f64 {
+        self.among_neighbours(chord, slopes).map_or(self.own, |bound| self.own.min(bound))
     }
 
     /// The part of the bound that takes help of the neighbours; `None` where they can't help.
     #[inline]
-    fn among_neighbours(&self, chord: f64, slope: f64) -> Option<f64> {
-        let can_help = self.slope <= slope && chord * chord <= SHARPEST;
+    fn among_neighbours(&self, chord: f64, slopes: [f64; 3]) -> Option<f64> {
+        let can_help = self.is_within(slopes) && chord * chord <= SHARPEST;
         can_help.then_some(self.height * (1.0 + 0.5 * chord * chord) + chord * self.drift)
     }
 
@@ -100,8 +112,8 @@ impl Deviation {
     /// edges between them: what covers a point stands within [`super::bounds`]' |h| + σg along the normals of both planes and
     /// the chord between them; and where it is a strip that covers, at the tangent of half their angle beside it at
     /// most, all of which is within that angle of the triangle's own normal or counts as little.
-    pub(crate) fn apart(&self, chord: f64, slope: f64) -> Apart {
-        let bound = self.among_neighbours(chord, slope).unwrap_or(f64::INFINITY);
+    pub(crate) fn apart(&self, chord: f64, slopes: [f64; 3]) -> Apart {
+        let bound = self.among_neighbours(chord, slopes).unwrap_or(f64::INFINITY);
         let across = if bound.is_finite() { self.across.min(bound) } else { self.own };
         let height = if bound.is_finite() { bound - across } else { 0.0 };
         Apart { own: self.own, height, across }
@@ -184,9 +196,9 @@ struct Greatest {
     /// The part of that distance within the plane.
     side: f64,
     drift: f64,
-    slope: f64,
-    /// The ratio of a curve point's distance from its edge's line, on either side, to the distance from the ends.
-    swing: f64,
+    slopes: [f64; 3],
+    /// By edge, the ratio of a curve point's distance from its edge's line, on either side, to the distance from the ends.
+    swings: [f64; 3],
     /// A foot stood beyond the ends of its edge.
     beyond: bool,
 }
@@ -209,7 +221,7 @@ impl Greatest {
                 let room = frame.room_from_first(edge, seen.offset);
                 side = side.max(outside);
                 self.drift = self.drift.max(outside);
-                self.slope = self.slope.max(outside / room);
+                self.slopes[edge] = self.slopes[edge].max(outside / room);
                 self.beyond |= exceeds(0.0, room);
             }
         }
@@ -228,10 +240,10 @@ impl Greatest {
             return;
         }
         self.beyond |= exceeds(0.0, room);
-        self.swing = self.swing.max(outside.abs() / room);
+        self.swings[edge] = self.swings[edge].max(outside.abs() / room);
         if exceeds(outside, 0.0) {
             self.drift = self.drift.max(outside);
-            self.slope = self.slope.max(outside / room);
+            self.slopes[edge] = self.slopes[edge].max(outside / room);
         }
     }
 }
@@ -239,12 +251,12 @@ impl Greatest {
 impl Greatest {
     /// What that comes to; `None` if the points have to be looked at one by one.
     fn deviation(self, frame: &TriangleFrame) -> Option<Deviation> {
-        let Self { height, squared, side, drift, slope, .. } = self;
+        let Self { height, squared, side, drift, slopes, .. } = self;
         // Squares of tiny lengths vanish.
         let own = if squared > 1e-280 { squared.sqrt() } else { height.hypot(side) };
-        // A curve that swings less than the least angle opens crosses no other edge.
-        let is_plain = !self.beyond && self.swing <= frame.least_slope();
-        is_plain.then_some(Deviation { own, height, drift, slope, across: 0.0 })
+        // A curve that swings less than the angles at its edge open crosses no other edge.
+        let stays = (0..3).all(|edge| self.swings[edge] <= frame.slope_at(edge));
+        (stays && !self.beyond).then_some(Deviation { own, height, drift, slopes, across: 0.0 })
     }
 }
 
@@ -379,22 +391,22 @@ impl DeviationBound<'_> {
         }
         for other in [(edge + 1) % 3, (edge + 2) % 3] {
             if exceeds(self.frame.beside(other, point).outside, 0.0) {
-                deviation.slope = f64::INFINITY;
+                deviation.slopes = [f64::INFINITY; 3];
             }
         }
     }
 
     /// For a triangle that has no plane.
     fn found_alone(&self, distance: f64, deviation: &mut Deviation) {
-        let slope = f64::INFINITY;
-        *deviation = deviation.max(Deviation { slope, ..Deviation::alone(distance) });
+        let slopes = [f64::INFINITY; 3];
+        *deviation = deviation.max(Deviation { slopes, ..Deviation::alone(distance) });
     }
 
     fn drifted(&self, edge: usize, beside: Beside, deviation: &mut Deviation) {
         let room = beside.along.min(self.frame.length(edge) - beside.along);
         deviation.drift = greater(deviation.drift, beside.outside);
         let slope = if room > 0.0 { beside.outside / room } else { f64::INFINITY };
-        deviation.slope = greater(deviation.slope, slope);
+        deviation.slopes[edge] = greater(deviation.slopes[edge], slope);
     }
 }
 

@@ -160,7 +160,7 @@ impl QuarticJet {
         let (third, fourth) = self.most(reach);
         let most = bends.iter().map(|bend| bend.length_squared()).fold(0.0, f64::max).sqrt();
         let most = most + third + fourth;
-        let mut found = BesideEdges { side: 0.0, open: 0.0, drift: 0.0, slope: 0.0, loose: None };
+        let mut found = BesideEdges { side: 0.0, open: 0.0, drift: 0.0, slopes: [0.0; 3], loose: None };
         let mut is_plain = !frame.is_flat() && !is_folding(frame, &bends, 0.5 * third + fourth);
         for edge in 0..3 {
             // Outwards where the derivative points inwards.
@@ -170,14 +170,14 @@ impl QuarticJet {
             let steep = third / 12.0 + fourth / 48.0;
             let room = frame.length(edge) - (0.5 * along + steep);
             let swing = (0.5 * outward.abs() + steep) / room;
-            is_plain &= room > 0.0 && swing <= frame.least_slope();
+            is_plain &= room > 0.0 && swing <= frame.slope_at(edge);
             let off = 0.125 * outward.abs() + rest;
             found.side = found.side.max(off);
             if open[edge] {
                 found.open = found.open.max(off);
             } else {
                 found.drift = found.drift.max((0.125 * outward + rest).max(0.0));
-                found.slope = found.slope.max((0.5 * outward + steep).max(0.0) / room);
+                found.slopes[edge] = (0.5 * outward + steep).max(0.0) / room;
             }
         }
         if !is_plain {
@@ -228,8 +228,8 @@ pub(crate) struct BesideEdges {
     open: f64,
     /// How far curves reach over the others.
     drift: f64,
-    /// The greatest ratio of that to the distance from the edge's ends.
-    slope: f64,
+    /// The greatest ratio of that to the distance from the edge's ends, by edge.
+    slopes: [f64; 3],
     /// Where none of that tells how far the surface reaches: how far it is from the triangle.
     loose: Option<f64>,
 }
@@ -243,12 +243,12 @@ impl BesideEdges {
     /// The deviation where the surface is so high at most.
     pub(crate) fn deviation(&self, height: f64) -> Deviation {
         match self.loose {
-            Some(own) => Deviation { slope: f64::INFINITY, ..Deviation::alone(own) },
+            Some(own) => Deviation { slopes: [f64::INFINITY; 3], ..Deviation::alone(own) },
             None => {
                 let alone = height.hypot(self.open);
                 let across = if self.open > 0.0 { alone } else { 0.0 };
-                let (own, drift, slope) = (height.hypot(self.side), self.drift, self.slope);
-                Deviation { own, height: alone, drift, slope, across }
+                let (own, drift, slopes) = (height.hypot(self.side), self.drift, self.slopes);
+                Deviation { own, height: alone, drift, slopes, across }
             }
         }
     }

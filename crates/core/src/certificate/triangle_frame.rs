@@ -31,6 +31,8 @@ pub(crate) struct TriangleFrame {
     offsets: [f64; 3],
     /// Where the edges start along their directions, from the first corner.
     starts: [f64; 3],
+    /// By corner, the tangent of its angle, or of what an obtuse one leaves of π.
+    tangents: [f64; 3],
     least_slope: f64,
 }
 
@@ -84,6 +86,7 @@ impl TriangleFrame {
             -along[corner].dot(along[before]) * (lengths[corner] * lengths[before])
         };
         let area = sine * (lengths[0] * lengths[1]);
+        let cosines = [0, 1, 2].map(cosine);
         Self {
             corners,
             along,
@@ -94,7 +97,9 @@ impl TriangleFrame {
             outward,
             offsets: [0, 1, 2].map(|edge| outward[edge].dot(from_first[edge])),
             starts: [0, 1, 2].map(|edge| along[edge].dot(from_first[edge])),
-            least_slope: area / cosine(0).max(cosine(1)).max(cosine(2)),
+            // What is not a number allows nothing.
+            tangents: cosines.map(|cosine| (area / cosine.abs()).max(0.0)),
+            least_slope: area / cosines[0].max(cosines[1]).max(cosines[2]),
         }
     }
 
@@ -173,6 +178,13 @@ impl TriangleFrame {
     /// Tangent of the least angle; 0 or not a number for a triangle without area.
     pub(crate) fn least_slope(&self) -> f64 {
         self.least_slope
+    }
+
+    /// Tangent of the lesser of the angles at an edge, or of what an obtuse one leaves of π: a curve that leaves the edge by less than
+    /// this from either end crosses no line of another edge.
+    #[inline]
+    pub(crate) fn slope_at(&self, edge: usize) -> f64 {
+        self.tangents[edge].min(self.tangents[(edge + 1) % 3])
     }
 
     /// The squared length of a vector's part within the plane, in the metric in which the triangle has three edges of length 1: half

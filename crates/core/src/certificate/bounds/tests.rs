@@ -121,7 +121,7 @@ fn bounds_hold_for_every_part_and_valence() {
                 let highest = inside.iter().map(|&p| frame.height(p).abs()).fold(0.0, f64::max);
                 for (target, slope) in [(0.0, 0.5), (0.5 * farthest, 0.2), (2.0 * farthest, f64::MAX)] {
                     let effort =
-                        Effort { target, halvings: 3, open: [false; 3], chord: 0.1, slope, gives_up: false };
+                        Effort { target, halvings: 3, open: [false; 3], chord: 0.1, slopes: [slope; 3], gives_up: false };
                     let found = Pieces::of(&patch).deviation(part, &frame, &rules, effort);
                     assert!(
                         found.own >= farthest - 1e-12 && found.height >= highest - 1e-12,
@@ -147,12 +147,12 @@ fn nothing_is_within_a_distance_of_what_is_not_a_number() {
     let mut numbers = Numbers(3);
     let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
     let effort =
-        Effort { target: 1e9, halvings: 1, open: [false; 3], chord: 0.1, slope: 0.5, gives_up: false };
+        Effort { target: 1e9, halvings: 1, open: [false; 3], chord: 0.1, slopes: [0.5; 3], gives_up: false };
     let fails = |patch: &Patch, corners: [DVec3; 3], open: bool, what: &str| {
         let effort = Effort { open: [open; 3], ..effort };
         let found =
             Pieces::of(patch).deviation(SubTriangle::Whole, &TriangleFrame::new(corners), &rules, effort);
-        assert!(exceeds(found.bound(0.1, 0.5), f64::MAX), "{what}: {found:?}");
+        assert!(exceeds(found.bound(0.1, [0.5; 3]), f64::MAX), "{what}: {found:?}");
     };
     for bad in [f64::NAN, f64::INFINITY] {
         for open in [false, true] {

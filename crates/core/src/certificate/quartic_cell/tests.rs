@@ -96,7 +96,7 @@ fn dense_samples_lie_within_the_bounds() {
         assert!(highest <= high + slack && highest <= refined + slack, "round {round}: {highest} {high}");
         assert!(low <= highest * 1.003 + slack, "round {round}: {low} {highest}");
         assert!(farthest <= deviation.own + slack, "round {round}: {farthest} {deviation:?}");
-        if deviation.slope.is_finite() {
+        if deviation.steepest().is_finite() {
             let most = outside[0].max(outside[2]);
             assert!(most <= deviation.drift + slack, "round {round}: {most} {deviation:?}");
         }

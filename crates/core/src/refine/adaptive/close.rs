@@ -170,8 +170,8 @@ impl Closed {
                 Outcome::Depends { .. } if leaf.is_strict && place.level < max_levels => {
                     self.failing.push(place)
                 }
-                Outcome::Depends { deviation, tilt, slope } => {
-                    self.conditions.push(Condition { place, deviation, tilt, slope });
+                Outcome::Depends { deviation, tilt, slopes } => {
+                    self.conditions.push(Condition { place, deviation, tilt, slopes });
                 }
             }
         }
@@ -262,6 +262,8 @@ fn best(
             let open = triangle.borders.map(|border| border.is_some_and(|edge| open[edge]));
             all = all.and(&judge(triangle.part, triangle.corners, open));
         }
+        // A leaf with split edges has several triangles, each with edges of its own.
+        let all = if leaf.split == [false; 3] { all } else { all.spread() };
         let is_better = best.is_none_or(|(known, _)| {
             (known.fails() && !all.fails())
                 || all.fails() == known.fails() && all.extent.bound < known.extent.bound

@@ -487,8 +487,8 @@ impl<'a> Decider<'a> {
                 self.has_failed = true;
                 LEAF
             }
-            Outcome::Depends { deviation, tilt, slope } => {
-                self.conditions.push(Condition { place, deviation, tilt, slope });
+            Outcome::Depends { deviation, tilt, slopes } => {
+                self.conditions.push(Condition { place, deviation, tilt, slopes });
                 LEAF | CONDITIONAL
             }
         }

@@ -27,9 +27,10 @@ const LENIENT_HALVINGS: usize = 4;
 /// Divisions into four of the heights over a plane, to the same end.
 pub(super) const DIVISIONS: u32 = 2;
 
-/// Drifts are counted on up to this part of what a triangle's own angles allow: those of the triangles beside it may be more acute,
-/// closing triangles above all.
-const DRIFT_SHARE: f64 = 0.48;
+/// Drifts over an edge are counted on up to this part of what a triangle's own angles there allow, or 1: those of the triangle beyond
+/// it may be more acute, closing triangles above all. No more than √2 − 1, so that half of what an angle α leaves of π allows it, too: its
+/// tangent is 1 at least where α ≤ π/2, else tan(π − α) times 1/(1 + √(1 + tan²)).
+const DRIFT_SHARE: f64 = 0.41;
 
 /// The least tilt that neighbours are allowed: it costs next to nothing.
 const LEAST_TILT: f64 = 0.01;
@@ -166,8 +167,8 @@ pub(super) enum Outcome {
         deviation: Deviation,
         /// Its tilt.
         tilt: f64,
-        /// The tangent of its least angle.
-        slope: f64,
+        /// By edge, the slopes that its own angles allow.
+        slopes: [f64; 3],
     },
 }
 
@@ -177,19 +178,19 @@ pub(super) struct Condition {
     pub(super) place: Place,
     pub(super) deviation: Deviation,
     pub(super) tilt: f64,
-    pub(super) slope: f64,
+    pub(super) slopes: [f64; 3],
 }
 
 impl Condition {
     /// That of a leaf of which nothing is known any more: it never holds.
     pub(super) fn unknown(place: Place) -> Self {
-        Self { place, deviation: Deviation::alone(f64::INFINITY), tilt: ANY_TILT, slope: 0.0 }
+        Self { place, deviation: Deviation::alone(f64::INFINITY), tilt: ANY_TILT, slopes: [0.0; 3] }
     }
 
     /// What it comes to beside triangles of these tilts and angles at most.
     pub(super) fn bound(&self, around: &Allowance) -> f64 {
-        let slope = (DRIFT_SHARE * self.slope).min(around.slope);
-        self.deviation.bound(self.tilt + around.tilt, slope)
+        let slopes = self.slopes.map(|slope| slope.min(around.slope));
+        self.deviation.bound(self.tilt + around.tilt, slopes)
     }
 }
 
@@ -220,14 +221,23 @@ impl Verdict {
             (Outcome::Passes, other) => other,
             (own, Outcome::Passes) => own,
             (
-                Outcome::Depends { deviation, tilt, slope },
-                Outcome::Depends { deviation: second, tilt: other, slope: least },
+                Outcome::Depends { deviation, tilt, slopes },
+                Outcome::Depends { deviation: second, tilt: other, slopes: least },
             ) => Outcome::Depends {
                 deviation: deviation.max(second),
                 tilt: tilt.max(other),
-                slope: slope.min(least),
+                slopes: [0, 1, 2].map(|edge| slopes[edge].min(least[edge])),
             },
         };
+        self
+    }
+
+    /// The same where nobody knows which edge is which any more.
+    pub(super) fn spread(mut self) -> Self {
+        if let Outcome::Depends { deviation, slopes, .. } = &mut self.outcome {
+            deviation.slopes = [deviation.steepest(); 3];
+            *slopes = [slopes.iter().copied().fold(f64::INFINITY, f64::min); 3];
+        }
         self
     }
 }
@@ -255,8 +265,8 @@ impl Judge<'_> {
             let beside = ground.jet().beside(cell, &seen.frame, open);
             let by_derivatives = beside.deviation(heights.refined(DIVISIONS, 0.0).min(high));
             let by_net = net().deviation(&seen.frame, self.rules, self.effort(&seen, open));
-            let (chord, slope) = seen.expected();
-            let is_less = by_derivatives.bound(chord, slope) <= by_net.bound(chord, slope);
+            let (chord, slopes) = seen.expected();
+            let is_less = by_derivatives.bound(chord, slopes) <= by_net.bound(chord, slopes);
             return self.decided(&seen, if is_less { by_derivatives } else { by_net }, allowance);
         }
         if exceeds(low, self.limit) && !self.is_kept(&seen) {
@@ -348,11 +358,11 @@ impl Judge<'_> {
 
     /// What is done for a bound.
     fn effort(&self, seen: &Seen, open: [bool; 3]) -> Effort {
-        let (chord, slope) = seen.expected();
+        let (chord, slopes) = seen.expected();
         // What will be divided needs no bound.
         let gives_up = !self.is_kept(seen);
         let halvings = if self.is_lenient { LENIENT_HALVINGS } else { HALVINGS };
-        Effort { target: self.limit, halvings, open, chord, slope, gives_up }
+        Effort { target: self.limit, halvings, open, chord, slopes, gives_up }
     }
 
     fn by_pieces<'p>(
@@ -369,25 +379,25 @@ impl Judge<'_> {
 
     /// What becomes of a triangle with this deviation.
     fn decided(&self, seen: &Seen, deviation: Deviation, allowance: &Allowance) -> Verdict {
-        let (chord, slope) = seen.allowed(allowance);
-        let bound = deviation.bound(chord, slope);
+        let (chord, slopes) = seen.allowed(allowance);
+        let bound = deviation.bound(chord, slopes);
         let verdict = |outcome, bound: f64, drift_slope| Verdict {
             outcome,
             extent: Extent { bound, drift_slope, ..seen.extent() },
         };
         if bound <= self.limit {
             // Drifts that are too steep are not counted on.
-            let counted = if deviation.slope <= slope { deviation.slope } else { 0.0 };
+            let counted = if deviation.is_within(slopes) { deviation.steepest() } else { 0.0 };
             return verdict(Outcome::Passes, bound, counted);
         }
         // Few triangles miss by so little: to divide them costs less than to look at their neighbours.
         let is_near_miss = seen.level >= DEEP && chord < NEARLY_FLAT && bound <= NEAR_MISS * self.limit;
-        let (chord, slope) = seen.expected();
-        let bound = deviation.bound(chord, slope);
+        let (chord, slopes) = seen.expected();
+        let bound = deviation.bound(chord, slopes);
         if self.is_kept(seen) || !is_near_miss && bound <= self.limit {
             // What it comes to is known when its neighbours are.
-            let Extent { tilt, slope, .. } = seen.extent();
-            return verdict(Outcome::Depends { deviation, tilt, slope }, 0.0, 0.0);
+            let (tilt, slopes) = (seen.tilt, seen.own_slopes());
+            return verdict(Outcome::Depends { deviation, tilt, slopes }, 0.0, 0.0);
         }
         verdict(Outcome::Fails, bound, 0.0)
     }
@@ -466,16 +476,26 @@ impl Seen {
         Extent { tilt: self.tilt, slope, ..Extent::NONE }
     }
 
-    /// The chord of the angles to the neighbours and the greatest slope of a drift that are certain.
-    fn allowed(&self, allowance: &Allowance) -> (f64, f64) {
-        let slope = (DRIFT_SHARE * self.frame.least_slope()).min(allowance.slope);
-        (self.tilt + allowance.tilt, slope)
+    /// By edge, the slopes that the triangle's own angles allow.
+    #[inline]
+    fn own_slopes(&self) -> [f64; 3] {
+        [0, 1, 2].map(|edge| DRIFT_SHARE * self.frame.slope_at(edge).min(1.0))
+    }
+
+    /// The chord of the angles to the neighbours and the greatest slopes of drifts, by edge, that are certain.
+    #[inline]
+    fn allowed(&self, allowance: &Allowance) -> (f64, [f64; 3]) {
+        (self.tilt + allowance.tilt, self.own_slopes().map(|slope| slope.min(allowance.slope)))
     }
 
     /// The same as they are expected: neighbours are alike, on the other side of the limit normals. From some level on that
     /// is not expected of their angles: what is wrong there is put right one level at a time.
-    pub(super) fn expected(&self) -> (f64, f64) {
-        let share = if self.level < FEW_LEVELS { 1.0 } else { DRIFT_SHARE };
-        (2.0 * self.tilt, share * self.frame.least_slope())
+    pub(super) fn expected(&self) -> (f64, [f64; 3]) {
+        let slopes = if self.level < FEW_LEVELS {
+            [0, 1, 2].map(|edge| self.frame.slope_at(edge).min(1.0))
+        } else {
+            self.own_slopes()
+        };
+        (2.0 * self.tilt, slopes)
     }
 }

@@ -203,16 +203,16 @@ impl Measuring<'_> {
             halvings: if self.length.is_finite() { MOST_HALVINGS } else { HALVINGS },
             open: emitted.open,
             chord: among.chord,
-            slope: among.slope,
+            slopes: among.slopes,
             gives_up: false,
         }
     }
 
     /// What the triangle comes to with this deviation.
     fn value(&self, among: &Among, deviation: &Deviation) -> Value {
-        let bound = deviation.bound(among.chord, among.slope);
+        let bound = deviation.bound(among.chord, among.slopes);
         let Some(criteria) = self.criteria else { return Value { bound, value: bound, pixels: 0.0 } };
-        let apart: Apart = deviation.apart(among.chord, among.slope);
+        let apart: Apart = deviation.apart(among.chord, among.slopes);
         let region = among.region().grown(apart.own);
         let value = criteria.distance_ratio(&apart, &region);
         Value { bound, value, pixels: criteria.pixels(&apart, &region).unwrap_or(0.0) }
@@ -247,8 +247,8 @@ struct Among {
     frame: TriangleFrame,
     /// The greatest chord of the angles between its plane and its neighbours'.
     chord: f64,
-    /// The greatest slope at which points may drift over its edges.
-    slope: f64,
+    /// The greatest slopes at which points may drift over its edges.
+    slopes: [f64; 3],
     /// Heights of the surface's corners over the triangle's plane.
     lifts: [f64; 3],
     /// How far the corners were moved.
@@ -261,7 +261,11 @@ impl Among {
     fn of(emission: &Emission, sharp: &HashSet<u32>, emitted: &Emitted) -> Self {
         let corners = emitted.vertices.map(|vertex| vector(emission.positions[vertex as usize]));
         let frame = TriangleFrame::new(corners);
-        let (squared, slope) = beside(emission, sharp, emitted.number);
+        let (squared, slopes) = beside(emission, sharp, emitted.number);
+        // The emitted triangle may begin at another corner.
+        let emitted_at = emission.triangles[emitted.number as usize];
+        let first = emitted_at.iter().position(|&vertex| vertex == emitted.vertices[0]).unwrap_or(0);
+        let slopes = [0, 1, 2].map(|edge| slopes[(first + edge) % 3]);
         let steps = emitted.vertices.map(|vertex| emission.step(vertex));
         let (mut moved, mut aside) = (0.0f64, 0.0f64);
         let lifts = steps.map(|step| {
@@ -270,7 +274,7 @@ impl Among {
             aside = aside.max((step - lift * frame.normal()).length());
             -lift
         });
-        Self { corners, frame, chord: squared.sqrt(), slope, lifts, moved, aside }
+        Self { corners, frame, chord: squared.sqrt(), slopes, lifts, moved, aside }
     }
 
     fn region(&self) -> Region {

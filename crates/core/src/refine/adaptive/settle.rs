@@ -131,13 +131,13 @@ fn failing(
     let conditions: Vec<&(Condition, u32, u32)> = conditions.collect();
     let found = watch.pieces(conditions.len(), BLOCK, |block| {
         let bounds = conditions[block].iter().map(|(condition, first, last)| {
-            let (mut squared, mut slope) = (0.0f64, STEEP);
+            let (mut squared, mut slopes) = (0.0f64, [STEEP; 3]);
             for triangle in *first..*last {
                 let (turn, room) = beside(emission, &sharp, triangle);
                 squared = squared.max(turn);
-                slope = slope.min(room);
+                (0..3).for_each(|edge| slopes[edge] = slopes[edge].min(room[edge]));
             }
-            let bound = condition.deviation.bound(squared.sqrt(), slope);
+            let bound = condition.deviation.bound(squared.sqrt(), slopes);
             (bound, bound <= goal.allowed(condition.place.face), condition.place)
         });
         bounds.collect::<Vec<_>>()
@@ -174,7 +174,7 @@ pub(super) fn sharp_edges(emission: &Emission, watch: &SharedWatch<'_>) -> Resul
 }
 
 /// [`around`] of an emitted triangle. Sharp edges have nobody beyond.
-pub(super) fn beside(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -> (f64, f64) {
+pub(super) fn beside(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -> (f64, [f64; 3]) {
     let at = |vertex: u32| vector(emission.positions[vertex as usize]);
     let opposite = [0, 1, 2].map(|edge| {
         let h = 3 * triangle + edge;
@@ -313,7 +313,7 @@ mod tests {
             &[("icosphere", 0), ("sheet", 4), ("spike", 8), ("head", 12)],
             |engine, mut plan, name| {
                 let place = Place { face: 0, level: 20, path: 3 };
-                let condition = Condition { place, deviation: Deviation::alone(0.0), tilt: 0.0, slope: 1.0 };
+                let condition = Condition { place, deviation: Deviation::alone(0.0), tilt: 0.0, slopes: [1.0; 3] };
                 plan.closed[0].conditions.insert(0, condition);
                 let mut lost = vec![0];
                 let is_whole = |face: &usize| {

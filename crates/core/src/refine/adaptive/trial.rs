@@ -39,8 +39,8 @@ impl<'a> Trial<'a> {
 
     /// What the triangle comes to with this deviation.
     fn value(&self, deviation: &Deviation) -> f64 {
-        let (chord, slope) = self.seen.expected();
-        let apart = deviation.apart(chord, slope);
+        let (chord, slopes) = self.seen.expected();
+        let apart = deviation.apart(chord, slopes);
         let distance = self.criteria.distance_ratio(&apart, &self.region.grown(apart.own));
         // What is not a number fails.
         if exceeds(distance, self.cone) { distance } else { self.cone }
@@ -83,9 +83,9 @@ impl<'a> Trial<'a> {
 
     /// What is done for a bound.
     fn effort(&self, open: [bool; 3]) -> Effort {
-        let (chord, slope) = self.seen.expected();
+        let (chord, slopes) = self.seen.expected();
         let target = self.limit * self.criteria.allowed_length(&self.region);
-        Effort { target, halvings: HALVINGS, open, chord, slope, gives_up: false }
+        Effort { target, halvings: HALVINGS, open, chord, slopes, gives_up: false }
     }
 
     pub(super) fn general<'p>(
