@@ -408,8 +408,7 @@ fn measure(count: usize, parts: &Parts<'_>, rest: &Remainder, target: &RowTarget
         let most = stretched(wa).max(stretched(wb)).max(stretched(wc)).sqrt();
         let stretch = (0.5 * (la + lb + lc)).sqrt();
         let is_apart = most + DIRECTIONS * rest.first * stretch < NEARLY_ONE * area;
-        let is_plain =
-            is_roomy & stays & is_apart & (drift_slope <= allowed) & (chord * chord <= SHARPEST);
+        let is_plain = is_roomy & stays & is_apart & (drift_slope <= allowed) & (chord * chord <= SHARPEST);
         let value = (height + rest.height) * (1.0 + 0.5 * chord * chord) + chord * drift;
         bound[i] = if is_plain { value } else { f64::INFINITY };
         tilt_out[i] = tilt;

@@ -120,8 +120,14 @@ fn bounds_hold_for_every_part_and_valence() {
                 let farthest = inside.iter().map(|&p| frame.squared(p)).fold(0.0, f64::max).sqrt();
                 let highest = inside.iter().map(|&p| frame.height(p).abs()).fold(0.0, f64::max);
                 for (target, slope) in [(0.0, 0.5), (0.5 * farthest, 0.2), (2.0 * farthest, f64::MAX)] {
-                    let effort =
-                        Effort { target, halvings: 3, open: [false; 3], chord: 0.1, slopes: [slope; 3], gives_up: false };
+                    let effort = Effort {
+                        target,
+                        halvings: 3,
+                        open: [false; 3],
+                        chord: 0.1,
+                        slopes: [slope; 3],
+                        gives_up: false,
+                    };
                     let found = Pieces::of(&patch).deviation(part, &frame, &rules, effort);
                     assert!(
                         found.own >= farthest - 1e-12 && found.height >= highest - 1e-12,

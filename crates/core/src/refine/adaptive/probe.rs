@@ -3,13 +3,14 @@
 //! Above stand the bounds of what was let pass. Below stand distances that were found: from points of the surface over the
 //! worst leaves to the nearest triangle of the mesh, which is looked for in all control faces whose points come near.
 
+mod farthest;
+
 use std::collections::HashSet;
 
 use super::emit::Emission;
 use super::judge::Goal;
 use super::measure::{Measured, measure};
 use super::quadtree::Place;
-use super::surface::{Surface, child_corners};
 use super::{Engine, Plan, block};
 use crate::certificate::TriangleFrame;
 use crate::geometry::closest_to_origin;
@@ -19,6 +20,7 @@ use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::ErrorBounds;
 use crate::vector::{DVec3, vector};
+use farthest::{SAMPLED_LEVELS, farthest, sample};
 
 /// Leaves with the greatest bounds that are looked at for a lower bound.
 const PROBED: usize = 64;
@@ -26,9 +28,6 @@ const PROBED: usize = 64;
 /// Leaves that are looked at however many control faces there are, and the boxes of control faces that may be looked at for others.
 const FEWEST_PROBED: usize = 8;
 const MOST_BOXES: usize = 2_000_000;
-
-/// Levels below a leaf whose vertices are sampled: the greatest distance is met within some per cent.
-const SAMPLED_LEVELS: usize = 3;
 
 /// Levels below which edges have no length left.
 const MOST_LEVELS: usize = 64;
@@ -52,12 +51,12 @@ const TIGHTENED: usize = 64;
 const MET_SHARE: usize = 64;
 
 /// How many of them may be in any case.
-const MET_AT_LEAST: usize = 200;
+const MET_AT_LEAST: usize = 6_000;
 
 /// Boxes and triangles that are looked at between two calls of the observer.
 const LOOKED_AT: u32 = 1 << 14;
 
-/// How often that is done where no tolerance is met.
+/// How often that is done.
 const MOST_TIGHTENINGS: usize = 6;
 
 /// The certified interval; `measured` by control face where all triangles were looked at among their neighbours, `is_met` if a
@@ -81,51 +80,52 @@ pub(super) fn probe(
         measured.iter().flat_map(|all| all.iter().map(|face| face.highest)).collect();
     sort(&mut highest, watch)?;
     let mut probed = HashSet::new();
-    lower(engine, emission, &mesh, (&highest, &mut probed), &mut best)?;
+    let mut is_known = vec![measured.is_some(); worst.len()];
+    lower(engine, (plan, emission), &mesh, (&highest, |_| true, &mut probed), &mut best)?;
     // By control face, the lower bound for which it was looked at.
     let mut tightened = vec![0.0; worst.len()];
-    let again = |length: f64, faces: &[u32], worst: &mut Vec<(f64, Place)>| {
+    let again = |length: f64, faces: &[u32], worst: &mut [(f64, Place)], is_known: &mut [bool]| {
         let nothing = Goal::Within(f64::INFINITY);
         let found = measure(&engine.sources(plan, emission), watch, &nothing, length, faces)?;
         for (&face, found) in faces.iter().zip(found) {
             let known = &mut worst[face as usize];
             if found.worst.0 < known.0 {
                 *known = found.worst;
+                is_known[face as usize] = true;
             }
         }
         Ok(())
     };
     // What failed for sure has no bound yet.
     let unbounded = worst.iter().filter(|(bound, _)| bound.is_infinite()).map(|(_, place)| place.face);
-    again(f64::MAX, &unbounded.collect::<Vec<u32>>(), &mut worst)?;
+    again(f64::MAX, &unbounded.collect::<Vec<u32>>(), &mut worst, &mut is_known)?;
     // A tolerance that is met is proven already: what else there is to know must not take longer than to meet it.
-    let rounds = if is_met { 1 } else { MOST_TIGHTENINGS };
-    let room = if is_met { emission.triangles.len() / MET_SHARE + MET_AT_LEAST } else { usize::MAX };
+    let mut room = if is_met { emission.triangles.len() / MET_SHARE + MET_AT_LEAST } else { usize::MAX };
     for round in 0.. {
         let mut order: Vec<(f64, Place)> = worst.clone();
         sort(&mut order, watch)?;
         best.upper = order.first().map_or(0.0, |&(bound, _)| bound);
-        lower(engine, emission, &mesh, (&order, &mut probed), &mut best)?;
-        if !best.certified || best.upper <= WIDE * best.lower || round >= rounds {
+        let is_leaf = |place: Place| is_known[place.face as usize];
+        lower(engine, (plan, emission), &mesh, (&order, is_leaf, &mut probed), &mut best)?;
+        if !best.certified || best.upper <= WIDE * best.lower || round >= MOST_TIGHTENINGS {
             break;
         }
         // Bounds that are good enough for the goals need not be tight.
         let loose = order.iter().take_while(|&&(bound, _)| bound > best.lower).map(|(_, place)| place.face);
         let loose =
             loose.filter(|&face| WIDE * tightened[face as usize] < best.lower).take(TIGHTENED << round);
-        let mut left = room;
         let loose: Vec<u32> = loose
             .take_while(|&face| {
                 let count = emission.triangles_of(face).len();
-                let fits = count <= left;
-                left = left.saturating_sub(count);
+                let fits = count <= room;
+                room = room.saturating_sub(count);
                 fits
             })
             .collect();
         if loose.is_empty() {
             break;
         }
-        again(NARROW * best.lower, &loose, &mut worst)?;
+        again(NARROW * best.lower, &loose, &mut worst, &mut is_known)?;
         loose.iter().for_each(|&face| tightened[face as usize] = best.lower);
     }
     if !best.certified {
@@ -143,12 +143,13 @@ fn sort(order: &mut [(f64, Place)], watch: &SharedWatch<'_>) -> Result<(), Cance
     parallel::sort_polled(order, poll, |a, b| b.0.total_cmp(&a.0).then(by_place(&a.1, &b.1)))
 }
 
-/// Raises the lower bound by points over the first leaves of a list that promise more, but for those that were looked at.
+/// Raises the lower bound by points over the first leaves of a list that promise more, but for those that were looked at. Where a
+/// place is not known to be that of a leaf with this bound, its control face is looked at.
 fn lower(
     engine: &Engine<'_>,
-    emission: &Emission,
+    (plan, emission): (&Plan, &Emission),
     mesh: &Nearest<'_, '_>,
-    (order, probed): (&[(f64, Place)], &mut HashSet<Place>),
+    (order, is_leaf, probed): (&[(f64, Place)], impl Fn(Place) -> bool, &mut HashSet<(u32, Option<Place>)>),
     best: &mut ErrorBounds,
 ) -> Result<(), Cancelled> {
     let most = order.first().map_or(0.0, |&(promise, _)| promise);
@@ -157,10 +158,11 @@ fn lower(
         if promise <= best.lower || best.lower > NARROW * most {
             break;
         }
-        if !probed.insert(place) {
+        let leaf = is_leaf(place).then_some(place);
+        if !probed.insert((place.face, leaf)) {
             continue;
         }
-        for point in highest(engine, emission, place) {
+        for point in farthest(engine, plan, emission, place.face, leaf)? {
             let distance = mesh.distance(point, place.face)?;
             if distance > best.lower {
                 (best.lower, best.at) = (distance, point.to_array());
@@ -216,39 +218,6 @@ impl Plan {
             }
         })?;
         Ok(worst)
-    }
-}
-
-/// The point of the surface over a node that stands highest over its triangle; where vertices were moved, those that stand
-/// highest and lowest, and the corners.
-fn highest(engine: &Engine<'_>, emission: &Emission, place: Place) -> Vec<DVec3> {
-    let control = engine.control;
-    let piece = control.piece(place.face);
-    let (mut surface, mut corners) = (piece.surface(control.rules), control.corners(place.face));
-    for level in 0..place.level {
-        let child = place.digit(level);
-        corners = child_corners(corners, surface.middles(), child);
-        surface = surface.child(child);
-    }
-    let frame = TriangleFrame::new(corners.map(|corner| corner.position));
-    let mut points = Vec::new();
-    sample(surface, SAMPLED_LEVELS, &mut points);
-    let height = |point: &DVec3| frame.height(*point);
-    let by_height = |a: &&DVec3, b: &&DVec3| height(a).total_cmp(&height(b));
-    let by_distance = |a: &&DVec3, b: &&DVec3| height(a).abs().total_cmp(&height(b).abs());
-    if emission.offsets.is_empty() {
-        return points.iter().max_by(by_distance).into_iter().copied().collect();
-    }
-    let ends = [points.iter().max_by(by_height), points.iter().min_by(by_height)];
-    let corners = corners.map(|corner| corner.position);
-    ends.into_iter().flatten().copied().chain(corners).collect()
-}
-
-/// Points of a surface.
-fn sample(surface: Surface<'_>, levels: usize, points: &mut Vec<DVec3>) {
-    points.extend(surface.middles().map(|middle| middle.position));
-    if levels > 1 {
-        (0..4).for_each(|child| sample(surface.child(child), levels - 1, points));
     }
 }
 

@@ -313,7 +313,8 @@ mod tests {
             &[("icosphere", 0), ("sheet", 4), ("spike", 8), ("head", 12)],
             |engine, mut plan, name| {
                 let place = Place { face: 0, level: 20, path: 3 };
-                let condition = Condition { place, deviation: Deviation::alone(0.0), tilt: 0.0, slopes: [1.0; 3] };
+                let condition =
+                    Condition { place, deviation: Deviation::alone(0.0), tilt: 0.0, slopes: [1.0; 3] };
                 plan.closed[0].conditions.insert(0, condition);
                 let mut lost = vec![0];
                 let is_whole = |face: &usize| {
