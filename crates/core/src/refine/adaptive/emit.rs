@@ -130,19 +130,32 @@ pub(super) enum Extend {
 /// Emits all leaves, or those of some control faces only. `closed` is what the walks over the faces found, `before` what was
 /// emitted last and the control faces that were walked over since: others are taken over as they are.
 ///
-/// With some faces only the arrays are as long, since numbers stay the same, but nothing else of them is written.
+/// With some faces only, other faces have no triangles and no vertices inside.
 pub(super) fn emit(
     (control, watch): (&Control<'_>, &SharedWatch<'_>),
     edges: &Edges<'_>,
     (decision, chains): (&Decision, &Chains),
     closed: &[Closed],
     only: Option<&[Extend]>,
-    before: Option<(Emission, &[bool])>,
+    before: Option<(&Emission, &[bool])>,
 ) -> Result<Emission, RefineError> {
     let faces = control.mesh.face_count();
     let too_many = |what, count| MeshError::TooMany { what, count, limit: MAX_FACES };
-    let total: usize = closed.iter().map(|face| face.triangles as usize).sum();
-    let inside: usize = closed.iter().map(|face| face.vertices as usize).sum();
+    let is_kept = |face: u32| {
+        // Normals on sharp edges are averages by now.
+        let is_here = |(before, is_changed): (&Emission, &[bool])| {
+            before.is_whole[face as usize] && !is_changed[face as usize] && control.open(face) == [false; 3]
+        };
+        before.is_some_and(is_here)
+    };
+    let extend = |face: u32| match only.map_or(Extend::All, |only| only[face as usize]) {
+        Extend::All if is_kept(face) => Extend::Kept,
+        extend => extend,
+    };
+    let extend: Vec<Extend> = (0..faces as u32).map(extend).collect();
+    let counts = Counts { closed, extend: &extend };
+    let total: usize = counts.triangles().map(|count| count as usize).sum();
+    let inside: usize = counts.vertices().map(|count| count as usize).sum();
     let on_edges = control.mesh.vertex_count() + chains.count();
     if total > MAX_FACES || on_edges + inside >= NONE as usize {
         return Err(too_many("triangles", total).into());
@@ -150,9 +163,9 @@ pub(super) fn emit(
     let mut starts = vec![0u32; 3 * faces + 1];
     watch.each(0..3 * faces, |h| starts[h + 1] = starts[h] + chains.along(edges, h as u32) as u32 + 1)?;
     let mut next = 0;
-    let first_triangles = closed.iter().map(|face| {
-        next += face.triangles;
-        next - face.triangles
+    let first_triangles = counts.triangles().map(|count| {
+        next += count;
+        next - count
     });
     let first_triangles = first_triangles.chain([total as u32]).collect();
     let mut emission = Emission {
@@ -169,21 +182,12 @@ pub(super) fn emit(
         junctions: Junctions::default(),
         conditions: Vec::new(),
         feet: Vec::new(),
-        numbers: Numbers::of(control, chains, closed),
+        numbers: Numbers::of(control, chains, &counts),
         is_whole: Vec::new(),
     };
     corners(control, &mut emission, watch)?;
-    let is_kept = |face: u32| {
-        let (before, is_changed) = before.as_ref()?;
-        let is_kept = before.is_whole[face as usize] && !is_changed[face as usize];
-        // Normals on sharp edges are averages by now.
-        (is_kept && control.open(face) == [false; 3]).then_some(Extend::Kept)
-    };
-    let wanted = |face: u32| only.map_or(Extend::All, |only| only[face as usize]);
-    let extend: Vec<Extend> =
-        (0..faces as u32).map(|face| is_kept(face).unwrap_or_else(|| wanted(face))).collect();
-    let jobs = jobs(control, edges, chains, (closed, &extend), &mut emission, watch)?;
-    let kept = before.as_ref().map(|(before, _)| Kept { before, mesh: control.mesh, edges, chains });
+    let jobs = jobs(control, edges, chains, &counts, &mut emission, watch)?;
+    let kept = before.map(|(before, _)| Kept { before, mesh: control.mesh, edges, chains });
     let conditions = parallel::each_long_polled(jobs, &mut |_| watch.poll(), |job, is_stopped| {
         write(control, edges, (decision, chains), (closed, kept.as_ref()), job, is_stopped)
     });
@@ -204,14 +208,36 @@ fn nowhere(count: usize, watch: &SharedWatch<'_>) -> Result<Vec<Origin>, Cancell
     Ok(origins)
 }
 
+/// How much is emitted, by control face.
+struct Counts<'a> {
+    closed: &'a [Closed],
+    extend: &'a [Extend],
+}
+
+impl Counts<'_> {
+    fn each(&self, count: impl Fn(&Closed) -> u32) -> impl Iterator<Item = u32> {
+        let faces = self.closed.iter().zip(self.extend);
+        faces.map(move |(face, &extend)| if extend >= Extend::Kept { count(face) } else { 0 })
+    }
+
+    fn triangles(&self) -> impl Iterator<Item = u32> {
+        self.each(|face| face.triangles)
+    }
+
+    /// Vertices inside.
+    fn vertices(&self) -> impl Iterator<Item = u32> {
+        self.each(|face| face.vertices)
+    }
+}
+
 impl Numbers {
-    fn of(control: &Control<'_>, chains: &Chains, closed: &[Closed]) -> Self {
+    fn of(control: &Control<'_>, chains: &Chains, counts: &Counts<'_>) -> Self {
         let mut next = (control.mesh.vertex_count() + chains.count()) as u32;
-        let inside = closed.iter().map(|face| {
-            next += face.vertices;
-            next - face.vertices
+        let inside = counts.vertices().map(|count| {
+            next += count;
+            next - count
         });
-        let on_edges = (0..3 * closed.len() as u32).map(|h| chains.own(h).0);
+        let on_edges = (0..3 * counts.closed.len() as u32).map(|h| chains.own(h).0);
         Self { on_edges: on_edges.collect(), inside: inside.collect() }
     }
 }
@@ -250,7 +276,7 @@ fn jobs<'a>(
     control: &Control<'_>,
     edges: &Edges<'_>,
     chains: &Chains,
-    (closed, extend): (&[Closed], &[Extend]),
+    counts: &Counts<'_>,
     emission: &'a mut Emission,
     watch: &SharedWatch<'_>,
 ) -> Result<Vec<Job<'a>>, Cancelled> {
@@ -264,36 +290,39 @@ fn jobs<'a>(
     let mut rest = (&mut triangles[..], &mut twins[..], &mut parents[..], &mut borders.half_edges[..]);
     let (mut jobs, mut from, mut first_triangle) = (Vec::new(), 0u32, 0u32);
     let (mut triangles, mut own, mut vertices, mut segments) = (0u32, 0usize, 0usize, 0usize);
-    let faces = closed.len() as u32;
-    watch.each((0..).zip(closed), |(face, found)| {
-        triangles += found.triangles;
-        vertices += found.vertices as usize;
-        for h in 3 * face..3 * face + 3 {
-            own += chains.own(h).1.len();
-            segments += chains.along(edges, h) + 1;
-        }
-        let own_extend = extend[face as usize];
-        let is_last = face + 1 == faces || own_extend != extend[face as usize + 1];
-        if triangles >= JOB || is_last {
-            let job = Job {
-                extend: own_extend,
-                faces: from..face + 1,
-                on_edges: on_edges.take(own),
-                inside: inside.take(vertices),
-                first_triangle,
-                triangles: split_off(&mut rest.0, triangles as usize),
-                twins: split_off(&mut rest.1, 3 * triangles as usize),
-                parents: split_off(&mut rest.2, triangles as usize),
-                borders: split_off(&mut rest.3, segments),
-            };
-            if own_extend != Extend::Nothing {
-                jobs.push(job);
+    let (faces, extend) = (counts.closed.len() as u32, counts.extend);
+    watch.each(
+        (0..).zip(counts.triangles().zip(counts.vertices())),
+        |(face, (own_triangles, own_vertices))| {
+            triangles += own_triangles;
+            vertices += own_vertices as usize;
+            for h in 3 * face..3 * face + 3 {
+                own += chains.own(h).1.len();
+                segments += chains.along(edges, h) + 1;
             }
-            first_triangle += triangles;
-            from = face + 1;
-            (triangles, own, vertices, segments) = (0, 0, 0, 0);
-        }
-    })?;
+            let own_extend = extend[face as usize];
+            let is_last = face + 1 == faces || own_extend != extend[face as usize + 1];
+            if triangles >= JOB || is_last {
+                let job = Job {
+                    extend: own_extend,
+                    faces: from..face + 1,
+                    on_edges: on_edges.take(own),
+                    inside: inside.take(vertices),
+                    first_triangle,
+                    triangles: split_off(&mut rest.0, triangles as usize),
+                    twins: split_off(&mut rest.1, 3 * triangles as usize),
+                    parents: split_off(&mut rest.2, triangles as usize),
+                    borders: split_off(&mut rest.3, segments),
+                };
+                if own_extend != Extend::Nothing {
+                    jobs.push(job);
+                }
+                first_triangle += triangles;
+                from = face + 1;
+                (triangles, own, vertices, segments) = (0, 0, 0, 0);
+            }
+        },
+    )?;
     Ok(jobs)
 }
 

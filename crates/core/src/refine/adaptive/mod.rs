@@ -304,9 +304,8 @@ impl Engine<'_> {
     }
 
     /// Emits all of a plan, or some control faces, but for what was emitted before and is the same.
-    fn emit_some(&self, plan: &mut Plan, only: Option<&[Extend]>) -> Result<Emission, RefineError> {
-        let is_touched = core::mem::replace(&mut plan.is_touched, vec![false; plan.closed.len()]);
-        let before = plan.emission.take().map(|emission| (emission, &is_touched[..]));
+    fn emit_some(&self, plan: &Plan, only: Option<&[Extend]>) -> Result<Emission, RefineError> {
+        let before = plan.emission.as_ref().map(|emission| (emission, &plan.is_touched[..]));
         let chains = (&plan.decision, &plan.chains);
         emit::emit((self.control, self.watch), &self.edges, chains, &plan.closed, only, before)
     }
@@ -318,6 +317,8 @@ impl Engine<'_> {
             Some(emission) => emission,
             None => self.emit_some(plan, None)?,
         };
+        plan.emission = None;
+        plan.is_touched.fill(false);
         let junctions = sides::junctions((self.control, self.watch), &self.edges, &plan.chains, &emission)?;
         join_copies(&mut emission.positions, &junctions.vertices);
         emission.junctions = junctions;

@@ -34,7 +34,11 @@ impl Engine<'_> {
             }
             let emission = self.emit_some(plan, only.as_deref())?;
             let found = failing(&emission, &plan.goal, &mut plan.settled, self.watch)?;
-            plan.emission = Some(emission);
+            // What is emitted again for a look at few faces is not worth what it took before.
+            if only.is_none() || plan.emission.is_none() {
+                plan.emission = Some(emission);
+                plan.is_touched.fill(false);
+            }
             let mut is_dirty = vec![false; plan.closed.len()];
             let mut is_split = false;
             for (place, bound) in found {
