@@ -6,8 +6,10 @@
 //! on the worst faces. Beside that stands the even division of all faces, which is nearer where these are curved alike.
 
 use super::judge::Goal;
-use super::{Engine, Plan};
+use super::{Engine, Plan, block};
+use crate::certificate::{TriangleFrame, exceeds};
 use crate::mesh::MeshError;
+use crate::parallel;
 use crate::refine::RefineError;
 use crate::refine::exact_result::ExactStop;
 
@@ -34,6 +36,12 @@ const PROMISED: f64 = 1.1;
 
 /// The part of the budget that a guess aims at: what is left then is enough.
 const AIM: f64 = 0.996;
+
+/// The part of the budget that the first plan aims at, so that it fits.
+const FIRST_AIM: f64 = 0.8;
+
+/// Triangles that a face takes for each time that it is too high, about: some are less high than need be, others close gaps.
+const FOR_ONE: f64 = 2.2;
 
 /// From one guess to the next distances fall by this much at most.
 const MOST_APART: f64 = 8.0;
@@ -105,9 +113,12 @@ pub(super) fn search(
     let is_near = |high: f64, low: f64, triangles: usize| {
         high <= low * if triangles < enough { 1.0 + NEAR } else { PROMISED }
     };
+    let mut first = if engine.is_settled_later() { None } else { expected(engine, FIRST_AIM * most as f64)? };
     while !is_near(high, low, best.triangles) && high > f64::MIN_POSITIVE {
         let mut next = growth.distance(high, best.triangles, aim.min(STEP * best.triangles as f64), power);
-        if low > 0.0 {
+        if let Some(expected) = first.take().filter(|&expected| low < expected && expected < high) {
+            next = expected;
+        } else if low > 0.0 {
             // Between two counts a power; but counts come in steps, so the middle where the same end was moved twice.
             let span = (high / low).ln();
             let is_apart = span > CLOSE && moved < 2;
@@ -125,22 +136,69 @@ pub(super) fn search(
         if !(next < high && next > low) {
             break;
         }
-        let plan = engine.plan(Goal::Within(next), most.saturating_add(most / COUNTED_BEYOND))?;
-        let fits = plan.as_ref().is_some_and(|plan| plan.triangles <= most);
+        let counted = most.saturating_add(most / COUNTED_BEYOND);
+        let faces = 0..best.closed.len() as u32;
+        let wanting: Vec<u32> = faces.filter(|&face| exceeds(best.bound(face), next)).collect();
+        let found = plan(engine, &best, Goal::Within(next), &wanting, counted)?;
+        let fits = found.as_ref().is_some_and(|plan| plan.triangles <= most);
         moved = if fits == fitted && moved < 2 { moved + 1 } else { 1 };
         fitted = fits;
-        match plan {
+        match found {
             Some(plan) if fits => {
                 power = growth.power((high, best.triangles), (next, plan.triangles));
                 (high, best) = (next, plan);
             }
-            plan => (low, beyond) = (next, plan.map(|plan| plan.triangles)),
+            found => (low, beyond) = (next, found.map(|plan| plan.triangles)),
         }
     }
     if most < EXACT && low > 0.0 {
         best = fill(engine, best, (high, low), most)?;
     }
     Ok((best, cap))
+}
+
+/// A plan for a goal that asks more of these faces than another: from that, where it knows what its triangles come to.
+fn plan(
+    engine: &Engine<'_>,
+    coarser: &Plan,
+    goal: Goal,
+    wanting: &[u32],
+    most: usize,
+) -> Result<Option<Plan>, RefineError> {
+    if engine.is_settled_later() {
+        engine.plan(goal, most)
+    } else {
+        engine.finer(coarser, goal, wanting, most)
+    }
+}
+
+/// The distance within which so many triangles are expected, by the heights of points of the surface over the middles of the control
+/// faces' edges; `None` where all is flat.
+///
+/// Triangles' heights fall with the square of their size, so a face of height h takes about h/d triangles within d, and at least one:
+/// with the k highest faces divided d = Σh/(wanted − others).
+fn expected(engine: &Engine<'_>, wanted: f64) -> Result<Option<f64>, RefineError> {
+    let control = engine.control;
+    let faces = control.mesh.face_count();
+    let height = |face: usize| {
+        let piece = control.piece(face as u32);
+        let frame = TriangleFrame::new(control.corners(face as u32).map(|corner| corner.position));
+        let middles = piece.surface(control.rules).middles();
+        middles.iter().map(|middle| frame.height(middle.position).abs()).fold(0.0, f64::max)
+    };
+    let blocks = engine.watch.pieces(faces, block(faces), |block| block.map(height).collect::<Vec<f64>>())?;
+    let mut heights = blocks.concat();
+    parallel::sort_polled(&mut heights, &mut |_| engine.watch.poll(), |a, b| b.total_cmp(a))?;
+    let (mut sum, mut others) = (0.0, faces as f64);
+    for (at, &height) in heights.iter().enumerate() {
+        (sum, others) = (sum + FOR_ONE * height, others - 1.0);
+        let distance = sum / (wanted - others);
+        let next = heights.get(at + 1).map_or(0.0, |next| FOR_ONE * next);
+        if wanted > others && distance >= next {
+            return Ok(Some(distance).filter(|distance| *distance > 0.0 && distance.is_finite()));
+        }
+    }
+    Ok(None)
 }
 
 /// Spends what is left of a budget on the worst faces, as many as fit: they come within the lesser of two distances, the
@@ -154,22 +212,22 @@ fn fill(engine: &Engine<'_>, plan: Plan, (high, low): (f64, f64), most: usize) -
 /// about.
 fn filled(
     engine: &Engine<'_>,
-    plan: Plan,
+    coarsest: Plan,
     most: usize,
     gain: f64,
     goal: impl Fn(Vec<bool>) -> Goal,
 ) -> Result<Plan, RefineError> {
     // Undivided faces are kept also where they are more.
-    let Some(left) = most.checked_sub(plan.triangles) else { return Ok(plan) };
+    let Some(left) = most.checked_sub(coarsest.triangles) else { return Ok(coarsest) };
     let mut left = left as f64;
-    let order = plan.faces_by_bound();
-    let costs = order.iter().map(|&(_, face)| gain * f64::from(plan.closed[face as usize].triangles));
+    let order = coarsest.faces_by_bound();
+    let costs = order.iter().map(|&(_, face)| gain * f64::from(coarsest.closed[face as usize].triangles));
     let guess = costs.take_while(|cost| {
         left -= cost;
         left >= 0.0
     });
     let mut next = guess.count();
-    let (mut best, mut fits, mut fails) = (plan, 0, order.len() + 1);
+    let (mut best, mut fits, mut fails) = (coarsest, 0, order.len() + 1);
     for _ in 0..MOST_FILLS {
         if fits + 1 >= fails {
             break;
@@ -177,7 +235,8 @@ fn filled(
         let middle = next.clamp(fits + 1, fails - 1);
         let mut is_finer = vec![false; best.closed.len()];
         order[..middle].iter().for_each(|&(_, face)| is_finer[face as usize] = true);
-        match engine.plan(goal(is_finer), most)? {
+        let wanting: Vec<u32> = order[fits..middle].iter().map(|&(_, face)| face).collect();
+        match plan(engine, &best, goal(is_finer), &wanting, most)? {
             Some(plan) => {
                 (best, fits) = (plan, middle);
                 next = if fails > order.len() { 2 * middle } else { fits.midpoint(fails) };

@@ -12,7 +12,7 @@ use crate::progress::{Cancelled, SharedWatch};
 const BLOCK: usize = 1024;
 
 /// The vertices on all control edges.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Chains {
     /// By half-edge, where its vertices start; those of a half-edge whose twin comes first are the twin's.
     starts: Vec<u32>,

@@ -4,6 +4,7 @@
 //! those beside ([`Allowance`]) is guessed from the control faces' own curvature, checked against what came out, and
 //! widened where it was too little.
 
+mod allowances;
 mod even_parts;
 
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
@@ -28,14 +29,8 @@ use even_parts::{AtOnce, MOST_TESTED};
 /// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
 const BLOCK: usize = 64;
 
-/// What is added to an allowance that was too little.
-const WIDER: f64 = 1.1;
-
 /// Leaves that are added to the common count together.
 const COUNTED: usize = 256;
-
-/// Rounds after which triangles count on nothing where allowances still do not hold.
-const MOST_ROUNDS: usize = 6;
 
 /// What is known of the control mesh.
 pub(super) struct Control<'a> {
@@ -79,6 +74,7 @@ impl Control<'_> {
 }
 
 /// The trees, and what their leaves come to and count on, by control face.
+#[derive(Clone)]
 pub(super) struct Decision {
     pub(super) trees: Trees,
     pub(super) allowances: Vec<Allowance>,
@@ -99,6 +95,7 @@ pub(super) fn child_open(open: [bool; 3], child: usize) -> [bool; 3] {
 }
 
 /// What one face came to.
+#[derive(Clone)]
 struct Found {
     extent: Extent,
     allowance: Allowance,
@@ -148,81 +145,6 @@ pub(super) fn decide(
 }
 
 impl Decision {
-    /// Divides again the faces that counted on more than those beside them keep, `closing` being what came about since in a
-    /// face; gives their numbers, or `None` if that takes too many leaves.
-    pub(super) fn settle<'c>(
-        &mut self,
-        (control, watch): (&Control<'_>, &SharedWatch<'_>),
-        goal: &Goal,
-        edges: &Edges<'_>,
-        (max_levels, most): (u32, usize),
-        closing: impl Fn(u32) -> Option<&'c Extent> + Sync,
-    ) -> Result<Option<Vec<u32>>, RefineError> {
-        let faces = self.found.len() as u32;
-        let mut wanting = Vec::new();
-        watch.each(0..faces, |face| {
-            let (Allowance { tilt, slope }, counted) = self.around(control, edges, face, &closing);
-            let allowance = &self.allowances[face as usize];
-            // What counts on nothing needs nothing.
-            if *allowance != Allowance::NOTHING && !(tilt <= allowance.tilt && counted <= slope) {
-                wanting.push((face, tilt, slope));
-            }
-        })?;
-        for &(face, tilt, slope) in &wanting {
-            let own = &mut self.allowances[face as usize];
-            *own = if self.rounds >= MOST_ROUNDS {
-                Allowance::NOTHING
-            } else {
-                Allowance { tilt: own.tilt.max(WIDER * tilt), slope: own.slope.min(slope / WIDER) }
-            };
-        }
-        self.rounds += 1;
-        let count = Count { leaves: AtomicUsize::new(0), most };
-        let again = watch.long_pieces(wanting.len(), BLOCK, |block, is_stopped| {
-            let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
-            let again = wanting[block].iter().map(|&(face, ..)| {
-                let found = decider.face(face, Some(self.allowances[face as usize]));
-                decider.tell();
-                (face, core::mem::take(&mut decider.piece), found)
-            });
-            again.collect::<Vec<_>>()
-        })?;
-        if count.is_passed() {
-            return Ok(None);
-        }
-        for (face, piece, found) in again.into_iter().flatten() {
-            if !self.trees.replace(face, &piece) {
-                return Err(self.trees.too_many(piece.words.len()).into());
-            }
-            self.found[face as usize] = found;
-        }
-        Ok(Some(wanting.into_iter().map(|(face, ..)| face).collect()))
-    }
-
-    /// What the triangles in a face and beside it come to, `closing` being what came about since in a face, and the greatest
-    /// slope that is counted on in the face.
-    pub(super) fn around<'c>(
-        &self,
-        control: &Control<'_>,
-        edges: &Edges<'_>,
-        face: u32,
-        closing: impl Fn(u32) -> Option<&'c Extent>,
-    ) -> (Allowance, f64) {
-        let all = |face: u32| {
-            let mut extent = self.found[face as usize].extent;
-            if let Some(closing) = closing(face) {
-                extent.add(closing);
-            }
-            extent
-        };
-        let own = all(face);
-        let mut around = Allowance { tilt: own.tilt, slope: own.slope };
-        for other in beside(control, edges, face).map(all) {
-            around = Allowance { tilt: around.tilt.max(other.tilt), slope: around.slope.min(other.slope) };
-        }
-        (around, own.drift_slope)
-    }
-
     /// The leaves of a face that pass on conditions, in the order of the tree; those that were split since are among them.
     pub(super) fn conditions(&self, face: u32) -> &[Condition] {
         &self.found[face as usize].conditions

@@ -236,6 +236,11 @@ impl Engine<'_> {
         }
     }
 
+    /// Whether triangles are looked at among their neighbours once all are emitted, not before.
+    fn is_settled_later(&self) -> bool {
+        self.control.criteria.is_some() || self.is_balanced
+    }
+
     /// Divides as asked, until all conditions hold; `None` if that takes more than `most` triangles.
     fn plan(&self, goal: Goal, most: usize) -> Result<Option<Plan>, RefineError> {
         let control = (self.control, self.watch);
@@ -255,10 +260,43 @@ impl Engine<'_> {
             is_touched: vec![true; faces],
             emission: None,
         };
-        let is_settled_later = self.control.criteria.is_some() || self.is_balanced;
         let fits = self.carry_out(&mut plan, vec![true; faces], most)?
-            && (is_settled_later || self.settle(&mut plan, most)?);
+            && (self.is_settled_later() || self.settle(&mut plan, most)?);
         Ok(fits.then_some(plan))
+    }
+
+    /// The same for another goal, of distances alone, which asks more of these faces only: they are divided anew, and what that
+    /// changes. `None` if that takes too many triangles.
+    fn finer(
+        &self,
+        plan: &Plan,
+        goal: Goal,
+        wanting: &[u32],
+        most: usize,
+    ) -> Result<Option<Plan>, RefineError> {
+        let Plan { decision, chains, closed, triangles, has_failed, settled, .. } = plan;
+        let mut finer = Plan {
+            goal,
+            decision: decision.clone(),
+            chains: chains.clone(),
+            closed: closed.clone(),
+            triangles: *triangles,
+            has_failed: *has_failed,
+            settled: settled.clone(),
+            is_touched: vec![true; closed.len()],
+            emission: None,
+        };
+        let again: Vec<_> = wanting.iter().map(|&face| (face, None)).collect();
+        let control = (self.control, self.watch);
+        if !finer.decision.divide(control, &finer.goal, &self.edges, (self.max_levels, most), &again)? {
+            return Ok(None);
+        }
+        finer.decision.begin_again();
+        let mut is_dirty = vec![false; closed.len()];
+        wanting.iter().for_each(|&face| finer.closed[face as usize].verdicts = Verdicts::default());
+        wanting.iter().for_each(|&face| self.mark(face, &mut is_dirty));
+        let fits = self.carry_out(&mut finer, is_dirty, most)? && self.settle(&mut finer, most)?;
+        Ok(fits.then_some(finer))
     }
 
     /// Restricts and closes until everything holds, beginning with the marked faces; `false` if there are too many triangles.
@@ -440,15 +478,17 @@ fn marked(is_marked: &[bool]) -> Vec<u32> {
 }
 
 impl Plan {
+    /// The greatest bound of a face's triangles.
+    fn bound(&self, face: u32) -> f64 {
+        let closing = self.closed[face as usize].extent.as_ref().map_or(0.0, |extent| extent.bound);
+        let settled = self.settled[face as usize].map_or(0.0, |(bound, _)| bound);
+        closing.max(settled).max(self.decision.bound(face))
+    }
+
     /// The faces whose leaves have the greatest bounds first.
     fn faces_by_bound(&self) -> Vec<(f64, u32)> {
-        let bound = |face: usize| {
-            let closing = self.closed[face].extent.as_ref().map_or(0.0, |extent| extent.bound);
-            let settled = self.settled[face].map_or(0.0, |(bound, _)| bound);
-            closing.max(settled).max(self.decision.bound(face as u32))
-        };
         let mut order: Vec<(f64, u32)> =
-            (0..self.closed.len()).map(|face| (bound(face), face as u32)).collect();
+            (0..self.closed.len() as u32).map(|face| (self.bound(face), face)).collect();
         order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         order
     }
