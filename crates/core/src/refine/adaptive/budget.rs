@@ -10,6 +10,7 @@ use super::{Engine, Plan, block};
 use crate::certificate::{TriangleFrame, exceeds};
 use crate::mesh::MeshError;
 use crate::parallel;
+use crate::progress::Cancelled;
 use crate::refine::RefineError;
 use crate::refine::exact_result::ExactStop;
 
@@ -41,7 +42,7 @@ const AIM: f64 = 0.996;
 const FIRST_AIM: f64 = 0.8;
 
 /// Triangles that a face takes for each time that it is too high, about: some are less high than need be, others close gaps.
-const FOR_ONE: f64 = 2.2;
+const FOR_ONE: f64 = 2.9;
 
 /// From one guess to the next distances fall by this much at most.
 const MOST_APART: f64 = 8.0;
@@ -172,24 +173,14 @@ fn plan(
     }
 }
 
-/// The distance within which so many triangles are expected, by the heights of points of the surface over the middles of the control
-/// faces' edges; `None` where all is flat.
+/// The distance within which so many triangles are expected, by [`heights`]; `None` where all is flat.
 ///
 /// Triangles' heights fall with the square of their size, so a face of height h takes about h/d triangles within d, and at least one:
 /// with the k highest faces divided d = Σh/(wanted − others).
 fn expected(engine: &Engine<'_>, wanted: f64) -> Result<Option<f64>, RefineError> {
-    let control = engine.control;
-    let faces = control.mesh.face_count();
-    let height = |face: usize| {
-        let piece = control.piece(face as u32);
-        let frame = TriangleFrame::new(control.corners(face as u32).map(|corner| corner.position));
-        let middles = piece.surface(control.rules).middles();
-        middles.iter().map(|middle| frame.height(middle.position).abs()).fold(0.0, f64::max)
-    };
-    let blocks = engine.watch.pieces(faces, block(faces), |block| block.map(height).collect::<Vec<f64>>())?;
-    let mut heights = blocks.concat();
+    let mut heights = heights(engine)?;
     parallel::sort_polled(&mut heights, &mut |_| engine.watch.poll(), |a, b| b.total_cmp(a))?;
-    let (mut sum, mut others) = (0.0, faces as f64);
+    let (mut sum, mut others) = (0.0, heights.len() as f64);
     for (at, &height) in heights.iter().enumerate() {
         (sum, others) = (sum + FOR_ONE * height, others - 1.0);
         let distance = sum / (wanted - others);
@@ -199,6 +190,20 @@ fn expected(engine: &Engine<'_>, wanted: f64) -> Result<Option<f64>, RefineError
         }
     }
     Ok(None)
+}
+
+/// How high the surface stands over the triangles of the control faces' corners, in the middles of their edges.
+fn heights(engine: &Engine<'_>) -> Result<Vec<f64>, Cancelled> {
+    let control = engine.control;
+    let faces = control.mesh.face_count();
+    let height = |face: usize| {
+        let piece = control.piece(face as u32);
+        let frame = TriangleFrame::new(control.corners(face as u32).map(|corner| corner.position));
+        let middles = piece.surface(control.rules).middles();
+        middles.iter().map(|middle| frame.height(middle.position).abs()).fold(0.0, f64::max)
+    };
+    let blocks = engine.watch.pieces(faces, block(faces), |block| block.map(height).collect::<Vec<f64>>())?;
+    Ok(blocks.concat())
 }
 
 /// Spends what is left of a budget on the worst faces, as many as fit: they come within the lesser of two distances, the
@@ -250,15 +255,20 @@ fn filled(
     Ok(best)
 }
 
-/// All faces divided evenly, as often as a budget allows, if that is any division; below [`EXACT`] triangles what is left is spent
-/// on the worst faces.
-pub(super) fn even(engine: &Engine<'_>, most: usize) -> Result<Option<Plan>, RefineError> {
+/// All faces divided evenly, as often as a budget allows, if that is any division and may come within a distance; below [`EXACT`]
+/// triangles what is left is spent on the worst faces.
+pub(super) fn even(engine: &Engine<'_>, distance: f64, most: usize) -> Result<Option<Plan>, RefineError> {
     let faces = engine.control.mesh.face_count();
     let levels = levels(engine, most);
     let triangles = faces << (2 * levels);
     // With twice the triangles the worst places come first in any case; and what is tried has to be looked at all over.
     let least = if most < EXACT { most / 2 } else { most - most / NEARLY_ALL };
     if levels == 0 || triangles < least {
+        return Ok(None);
+    }
+    // Heights fall with the square of the size.
+    let highest = heights(engine)?.into_iter().fold(0.0, f64::max);
+    if highest > distance * 4f64.powi(levels as i32) {
         return Ok(None);
     }
     let Some(even) = engine.plan(Goal::Even(levels, vec![false; faces]), most)? else { return Ok(None) };

@@ -225,7 +225,7 @@ impl Engine<'_> {
                 continue;
             };
             let is_best = stop == ExactStop::Met || floor > 0.0;
-            let even = if is_best { None } else { self.even(most)? };
+            let even = if is_best { None } else { self.even(outcome.plan.worst(), most)? };
             let Some(even) = even else { return outcome.finish(self, stop, options) };
             // Evenly curved models are best divided evenly, though drifts may allow to prove less of that. Lower
             // bounds are found distances, within some per cent of the truth where all triangles are looked at.
@@ -333,9 +333,9 @@ impl Engine<'_> {
         Ok(Some(Outcome { plan, emission, measured: None }))
     }
 
-    /// The even division that fits, what is left spent on its worst faces.
-    fn even(&self, most: usize) -> Result<Option<Outcome>, RefineError> {
-        match budget::even(self, most)? {
+    /// The even division that fits, if it may come within a distance, what is left spent on its worst faces.
+    fn even(&self, distance: f64, most: usize) -> Result<Option<Outcome>, RefineError> {
+        match budget::even(self, distance, most)? {
             Some(even) => self.emit(even, most, true),
             None => Ok(None),
         }
@@ -493,9 +493,8 @@ impl Plan {
         order
     }
 
-    /// The greatest bound of what was judged.
+    /// The greatest bound of all triangles.
     fn worst(&self) -> f64 {
-        let closed = self.closed.iter().filter_map(|face| face.extent.as_ref());
-        self.decision.extents().chain(closed).map(|extent| extent.bound).fold(0.0, f64::max)
+        (0..self.closed.len() as u32).map(|face| self.bound(face)).fold(0.0, f64::max)
     }
 }
