@@ -288,7 +288,6 @@ fn levels(engine: &Engine<'_>, most: usize) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::measure::measure;
     use super::super::with_engine;
     use super::*;
     use crate::mesh::Mesh;
@@ -299,39 +298,6 @@ mod tests {
 
     fn model(name: &str) -> Mesh {
         Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0
-    }
-
-    /// Every triangle of a plan that was made from a coarser one keeps the distance among its neighbours, which `measure` looks at
-    /// anew; and there are hardly more than in one that was made at once.
-    #[test]
-    fn plans_from_coarser_ones_keep_their_distance() {
-        for name in ["torus", "sphere", "cup", "head", "spike", "sheet"] {
-            let mesh = model(name);
-            let options = ExactOptions::default().triangles(1);
-            with_engine(&mesh, &Loop, &options, &mut unobserved, |engine| {
-                let mut last = engine.plan(Goal::Within(f64::INFINITY), usize::MAX)?.unwrap();
-                for share in [1e-2, 2e-3, 1.7e-3, 2e-4] {
-                    let distance = share * mesh.diagonal();
-                    let faces = 0..last.closed.len() as u32;
-                    let wanting: Vec<u32> =
-                        faces.filter(|&face| exceeds(last.bound(face), distance)).collect();
-                    let mut found =
-                        engine.finer(&last, Goal::Within(distance), &wanting, usize::MAX)?.unwrap();
-                    let emission = engine.emit_all(&mut found)?;
-                    let sources = engine.sources(&found, &emission);
-                    let all: Vec<u32> = (0..found.closed.len() as u32).collect();
-                    let measured = measure(&sources, engine.watch, &found.goal, f64::INFINITY, &all)?;
-                    let failing = measured.iter().map(|face| face.failing.len()).sum::<usize>();
-                    assert_eq!(failing, 0, "{name}, {share}");
-                    let at_once = engine.plan(Goal::Within(distance), usize::MAX)?.unwrap();
-                    let most = 1.05 * at_once.triangles as f64 + 20.0;
-                    assert!(found.triangles as f64 <= most, "{name}, {share}: {}", found.triangles);
-                    last = found;
-                }
-                Ok(())
-            })
-            .unwrap();
-        }
     }
 
     /// Counts that are expected are near those that come about.

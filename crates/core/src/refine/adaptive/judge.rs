@@ -478,7 +478,7 @@ impl Seen {
 
     /// By edge, the slopes that the triangle's own angles allow.
     #[inline]
-    fn own_slopes(&self) -> [f64; 3] {
+    pub(super) fn own_slopes(&self) -> [f64; 3] {
         [0, 1, 2].map(|edge| DRIFT_SHARE * self.frame.slope_at(edge).min(1.0))
     }
 

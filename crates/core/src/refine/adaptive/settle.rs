@@ -191,12 +191,14 @@ pub(super) fn beside(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -
 
 #[cfg(test)]
 mod tests {
+    use super::super::judge::{Allowance, Extent, Seen};
     use super::super::quadtree::{CONDITIONAL, LEAF, Piece, is_split};
     use super::super::with_engine;
     use super::*;
     use crate::certificate::Deviation;
     use crate::mesh::Mesh;
     use crate::models;
+    use crate::patch::LimitPoint;
     use crate::progress::unobserved;
     use crate::refine::ExactOptions;
     use crate::scheme::Loop;
@@ -266,6 +268,60 @@ mod tests {
             }
         });
         assert!(counted > 100, "{counted}");
+    }
+
+    /// What the triangles of a plan count on of those beside them, and whether what passes on conditions does so.
+    fn assert_holds(engine: &Engine<'_>, plan: &mut Plan, name: &str) {
+        let (failing, _) = looked_at(engine, plan);
+        assert!(failing.is_empty(), "{name}: {failing:?}");
+        let emission = engine.emit_all(plan).unwrap();
+        let sharp = sharp_edges(&emission, engine.watch).unwrap();
+        for (face, extent) in (0..).zip(plan.decision.extents()) {
+            let allowance = plan.decision.allowances[face as usize];
+            if allowance == Allowance::NOTHING {
+                continue;
+            }
+            let closing = plan.closed[face as usize].extent.unwrap_or(Extent::NONE);
+            let counted = extent.drift_slope.max(closing.drift_slope);
+            for triangle in emission.triangles_of(face) {
+                let corners = emission.triangles[triangle].map(|vertex| {
+                    let at = |list: &[[f64; 3]]| vector(list[vertex as usize]);
+                    LimitPoint { position: at(&emission.positions), normal: at(&emission.normals) }
+                });
+                let seen = Seen::of(&corners, 0);
+                let (squared, slopes) = beside(&emission, &sharp, triangle as u32);
+                let chord = seen.tilt + allowance.tilt + 1e-9;
+                assert!(squared.sqrt() <= chord, "{name}, face {face}: {} {chord}", squared.sqrt());
+                for (slope, own) in slopes.into_iter().zip(seen.own_slopes()) {
+                    let least = own.min(counted) * (1.0 - 1e-9);
+                    assert!(slope >= least, "{name}, face {face}: {slope} {least}");
+                }
+            }
+        }
+    }
+
+    /// Triangles that pass whatever is beside them count on angles that none there exceeds, also where a plan was made from a coarser
+    /// one; and that has hardly more triangles than one that was made at once.
+    #[test]
+    fn what_triangles_count_on_is_there() {
+        let models = ["torus", "sphere", "cup", "head", "bumpy", "icosphere"].map(|name| (name, 0));
+        let stirred = [("head", 5), ("cup", 9), ("icosphere", 10), ("torus", 6)];
+        with_plans(&[&models[..], &stirred].concat(), |engine, _, name| {
+            let mut last = engine.plan(Goal::Within(f64::INFINITY), usize::MAX).unwrap().unwrap();
+            for share in [1e-2, 2e-3, 1.7e-3, 2e-4] {
+                let goal = || Goal::Within(share * engine.control.mesh.diagonal());
+                let faces = 0..last.closed.len() as u32;
+                let wanting = faces.filter(|&face| last.bound(face) > goal().allowed(face));
+                let wanting: Vec<u32> = wanting.collect();
+                let mut finer = engine.finer(&last, goal(), &wanting, usize::MAX).unwrap().unwrap();
+                let mut at_once = engine.plan(goal(), usize::MAX).unwrap().unwrap();
+                assert_holds(engine, &mut finer, name);
+                assert_holds(engine, &mut at_once, name);
+                let most = 1.05 * at_once.triangles as f64 + 20.0;
+                assert!(finer.triangles as f64 <= most, "{name}, {share}: {}", finer.triangles);
+                last = finer;
+            }
+        });
     }
 
     /// What is taken over from an emission to the next is what would be written anew.
