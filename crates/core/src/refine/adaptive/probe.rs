@@ -59,6 +59,9 @@ const LOOKED_AT: u32 = 1 << 14;
 /// How often that is done.
 const MOST_TIGHTENINGS: usize = 6;
 
+/// Control faces that were looked at, and which known leaf of theirs.
+type Probed = HashSet<(u32, Option<Place>)>;
+
 /// The certified interval; `measured` by control face where all triangles were looked at among their neighbours, `is_met` if a
 /// tolerance is: then nobody waits for a tighter bound.
 pub(super) fn probe(
@@ -79,7 +82,7 @@ pub(super) fn probe(
     let mut highest: Vec<(f64, Place)> =
         measured.iter().flat_map(|all| all.iter().map(|face| face.highest)).collect();
     sort(&mut highest, watch)?;
-    let mut probed = HashSet::new();
+    let mut probed = Probed::new();
     let mut is_known = vec![measured.is_some(); worst.len()];
     lower(engine, (plan, emission), &mesh, (&highest, |_| true, &mut probed), &mut best)?;
     // By control face, the lower bound for which it was looked at.
@@ -149,7 +152,7 @@ fn lower(
     engine: &Engine<'_>,
     (plan, emission): (&Plan, &Emission),
     mesh: &Nearest<'_, '_>,
-    (order, is_leaf, probed): (&[(f64, Place)], impl Fn(Place) -> bool, &mut HashSet<(u32, Option<Place>)>),
+    (order, is_leaf, probed): (&[(f64, Place)], impl Fn(Place) -> bool, &mut Probed),
     best: &mut ErrorBounds,
 ) -> Result<(), Cancelled> {
     let most = order.first().map_or(0.0, |&(promise, _)| promise);
