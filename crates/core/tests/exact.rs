@@ -1,13 +1,16 @@
 //! Exact refinement against uniform refinement with limit vertices, dense sampling and exact shapes.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod support;
+
+use std::ops::ControlFlow;
 
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
 use limitmesh::measure::{Bvh, SamplingOptions, hausdorff, hausdorff_between, limit_reference};
-use limitmesh::refine::{ExactOptions, ExactStop, exact, exact_estimate};
+use limitmesh::progress::{Progress, Stage};
+use limitmesh::refine::{ExactOptions, ExactStop, exact, exact_estimate, exact_observed};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 use support::vertices_are_of_uniform_refinement;
 
@@ -237,6 +240,28 @@ fn balanced_meshes_need_fewer_triangles() {
         let samples = SamplingOptions::default().samples(200_000);
         let sampled = hausdorff(balanced.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
         assert!(sampled.symmetric() <= 1.02 * balanced.error.upper, "{name}: {}", sampled.symmetric());
+    }
+}
+
+/// Dividing a triangle moves its corners no nearer to where those beside it fail: else divisions go round a model one triangle a
+/// round.
+#[test]
+fn balancing_ends_after_a_few_rounds() {
+    for (name, tolerance) in [("cup", 1e-5), ("cup", 1e-4), ("sphere", 1e-5), ("teddy", 1e-4)] {
+        let control = model(name);
+        let options = ExactOptions::default().tolerance(tolerance * control.diagonal());
+        let (mut rounds, mut before) = (0, Stage::Limits);
+        let mut count = |progress: &Progress| {
+            rounds += usize::from(progress.stage == Stage::Assembling && before != Stage::Assembling);
+            before = progress.stage;
+            // The last time is that of the finished mesh.
+            if rounds > 10 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let balanced = exact_observed(&control, &Loop, &options.clone().balance(true), &mut count);
+        let balanced = balanced.unwrap_or_else(|why| panic!("{name} within {tolerance}: {why}"));
+        assert_eq!(balanced.stop, ExactStop::Met);
+        let plain = exact(&control, &Loop, &options).unwrap();
+        assert!(balanced.mesh.face_count() < 4 * plain.mesh.face_count() / 5, "{name} within {tolerance}");
     }
 }
 

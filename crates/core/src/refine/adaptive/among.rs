@@ -6,6 +6,7 @@ use super::emitted::Sources;
 use super::judge::Goal;
 use super::measure::{Measured, measure};
 use super::offsets::Bulges;
+use super::quadtree::Place;
 use super::result::Outcome;
 use super::{ADDED, Engine, Plan, marked};
 use crate::progress::{Cancelled, Stage};
@@ -14,7 +15,10 @@ use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{Exact, ExactStop};
 
 /// How far triangles may miss the surface before their corners are moved: by half that much afterwards at best.
-const UNBALANCED: f64 = 1.8;
+const UNBALANCED: f64 = 1.9;
+
+/// Heights of parts are at most so many times what they should be, a quarter.
+const SURELY: f64 = 1.5;
 
 /// What balancing leaves of a plain mesh's distance, at equal triangles, about.
 const BALANCED: f64 = 0.65;
@@ -36,16 +40,32 @@ impl Engine<'_> {
     ) -> Result<Option<Outcome>, RefineError> {
         let mut bulges = Bulges::default();
         let mut measured: Vec<Measured> = Vec::new();
+        // What changed since triangles were measured last.
+        let mut is_new = vec![false; plan.closed.len()];
+        // Heights that are good enough, where it is known.
+        let allowed = if self.control.criteria.is_none() { goal.allowed(0) } else { 0.0 };
         loop {
             let touched = plan.is_touched.clone();
             let mut emission = self.emit_all(&mut plan)?;
             if self.is_balanced {
-                bulges.look(&self.sources(&plan, &emission), self.watch, &marked(&touched))?;
-                let offsets = bulges.offsets(self.control, &emission, self.watch)?;
+                bulges.look(&self.sources(&plan, &emission), self.watch, &marked(&touched), allowed)?;
+            }
+            is_new.iter_mut().zip(&touched).for_each(|(is_new, is_touched)| *is_new |= is_touched);
+            // What cannot be balanced is divided before anything is measured.
+            let failing = if allowed > 0.0 { bulges.failing() } else { Vec::new() };
+            if let Some(is_dirty) = self.divide(&mut plan, &failing, Some(allowed))? {
+                plan.emission = Some(emission);
+                if !self.carry_out(&mut plan, is_dirty, most)? {
+                    return Ok(None);
+                }
+                continue;
+            }
+            if self.is_balanced {
+                let offsets = bulges.offsets(self.control, &emission, allowed, self.watch)?;
                 emission.shift(offsets, self.watch)?;
             }
             self.watch.stage(Stage::Bounding, None)?;
-            let around = marked(&self.around(touched)?);
+            let around = marked(&self.around(core::mem::replace(&mut is_new, vec![false; touched.len()]))?);
             let sources = self.sources(&plan, &emission);
             let found = measure(&sources, self.watch, goal, f64::INFINITY, &around)?;
             if measured.is_empty() {
@@ -54,7 +74,11 @@ impl Engine<'_> {
                 let faces = around.iter().zip(found);
                 self.watch.each(faces, |(&face, found)| measured[face as usize] = found)?;
             }
-            let Some(is_dirty) = self.divide(&mut plan, &measured, (most, is_budget))? else {
+            let failing: Vec<(Place, f64)> =
+                measured.iter().flat_map(|face| &face.failing).copied().collect();
+            let is_full = is_budget && plan.triangles + ADDED * failing.len() > most;
+            let is_dirty = if is_full { None } else { self.divide(&mut plan, &failing, None)? };
+            let Some(is_dirty) = is_dirty else {
                 return Ok(Some(Outcome { plan, emission, measured: Some(measured) }));
             };
             plan.emission = Some(emission);
@@ -83,28 +107,40 @@ impl Engine<'_> {
         Ok(is_around)
     }
 
-    /// Divides the leaves that fail, and marks the faces that this changes; `None` if there are none that may be.
+    /// Divides the leaves that fail, and marks the faces that this changes; `None` if there are none that may be. With heights that
+    /// are `allowed` as often as these take, each division leaving a quarter.
     fn divide(
         &self,
         plan: &mut Plan,
-        measured: &[Measured],
-        (most, is_budget): (usize, bool),
+        failing: &[(Place, f64)],
+        allowed: Option<f64>,
     ) -> Result<Option<Vec<bool>>, RefineError> {
-        let failing: usize = measured.iter().map(|face| face.failing.len()).sum();
-        if failing == 0 || is_budget && plan.triangles + ADDED * failing > most {
-            return Ok(None);
-        }
         let mut is_dirty = vec![false; plan.closed.len()];
         let mut is_split = false;
-        for &(place, _) in measured.iter().flat_map(|face| &face.failing) {
-            if place.level >= self.max_levels {
-                plan.has_failed = true;
-                continue;
-            }
-            is_split = true;
+        let mut fresh = Vec::new();
+        for &(place, height) in failing {
             self.watch.poll()?;
-            self.mark(place.face, &mut is_dirty);
-            self.split(&mut plan.decision.trees, place, |place| self.mark(place.face, &mut is_dirty))?;
+            let mut left = allowed.map_or(0.0, |allowed| height / (4.0 * SURELY * allowed));
+            fresh.push(place);
+            for level in place.level.. {
+                if level >= self.max_levels {
+                    plan.has_failed |= level == place.level;
+                    break;
+                }
+                is_split = true;
+                self.mark(place.face, &mut is_dirty);
+                for place in core::mem::take(&mut fresh) {
+                    self.split(&mut plan.decision.trees, place, |place| {
+                        self.mark(place.face, &mut is_dirty)
+                    })?;
+                    fresh.extend((0..4).map(|child| place.child(child)));
+                }
+                if left <= 1.0 {
+                    break;
+                }
+                left *= 0.25;
+            }
+            fresh.clear();
         }
         Ok(is_split.then_some(is_dirty))
     }

@@ -23,6 +23,9 @@ const BLOCK: usize = 64;
 /// Halvings of a net for tight bounds: towards a corner at which points drift too fast, where only short pieces are near.
 const MOST_HALVINGS: usize = 10;
 
+/// What rounding leaves of a height that is just good enough.
+const ROUNDED: f64 = 1.0 - 1e-9;
+
 /// What the triangles of a control face come to.
 #[derive(Clone, Debug)]
 pub(super) struct Measured {
@@ -91,7 +94,8 @@ impl Beholder for Measuring<'_> {
             }
             (Some(criteria), Over::General(_, corners)) => among.cone(criteria, emitted.place, corners),
         };
-        if let Some(value) = self.certain_failure(&among, emitted, &mut over, rules) {
+        let attained = self.attained(&among, emitted, &mut over, rules);
+        if let Some(value) = attained.filter(|&height| height > self.limit) {
             return self.found.fail(emitted.place, Value { bound: f64::INFINITY, value, pixels: 0.0 });
         }
         let mut best: Option<(Value, f64)> = None;
@@ -108,9 +112,12 @@ impl Beholder for Measuring<'_> {
             Over::Regular(ground, cell, spot) => {
                 let heights = ground.jet().heights(&cell, among.frame.normal());
                 let beside = ground.jet().beside(&cell, &among.frame, emitted.open);
-                let first =
-                    if among.moved > 0.0 { heights.lifted(among.lifts, 1, 0.0) } else { heights.range().1 };
                 let off = |height| beside.deviation_off(height, among.moved, among.aside);
+                let first = match self.high_enough(&among, &off(0.0)) {
+                    Some(enough) => heights.lifted(among.lifts, DIVISIONS, enough),
+                    None if among.moved > 0.0 => heights.lifted(among.lifts, 1, 0.0),
+                    None => heights.range().1,
+                };
                 if !is_enough(off(first)) && !is_enough(off(heights.lifted(among.lifts, DIVISIONS, 0.0))) {
                     let net = ground.net(spot, emitted.part);
                     let deviation = net.deviation(&among.frame, rules, self.effort(&among, emitted));
@@ -122,6 +129,7 @@ impl Beholder for Measuring<'_> {
             }
         }
         let Some((value, height)) = best else { return };
+        let height = attained.unwrap_or(height);
         if exceeds(height, self.found.highest.0) {
             self.found.highest = (height, emitted.place);
         }
@@ -146,17 +154,22 @@ impl Measured {
 
     fn fail(&mut self, place: Place, value: Value) {
         self.add(place, &value);
-        match self.failing.last_mut() {
-            Some((last, known)) if *last == place => *known = known.max(value.value),
-            _ => self.failing.push((place, value.value)),
-        }
+        fail(&mut self.failing, place, value.value);
+    }
+}
+
+/// Adds a leaf that fails to a list in the order of the walk, or what another triangle of the last one comes to.
+pub(super) fn fail(failing: &mut Vec<(Place, f64)>, place: Place, value: f64) {
+    match failing.last_mut() {
+        Some((last, known)) if *last == place => *known = known.max(value),
+        _ => failing.push((place, value)),
     }
 }
 
 impl Measuring<'_> {
-    /// The distance of a triangle that fails for sure, as a few points of the surface over it tell: then it needs no bound, as
-    /// long as it is divided. Nobody who asks for tight bounds or for more than distances is told that.
-    fn certain_failure<'p>(
+    /// The greatest height of a few points of the surface over a triangle: where that is too much it fails for sure, and needs no
+    /// bound, as long as it is divided. Nobody who asks for tight bounds or for more than distances is told that.
+    fn attained<'p>(
         &self,
         among: &Among,
         emitted: &Emitted,
@@ -166,19 +179,27 @@ impl Measuring<'_> {
         if self.length.is_finite() || self.criteria.is_some() {
             return None;
         }
-        let height = match over {
+        match over {
             Over::Regular(ground, cell, _) => {
                 let (low, high) = ground.jet().heights(cell, among.frame.normal()).sampled(among.lifts);
-                high.max(-low)
+                Some(high.max(-low))
             }
             Over::General(pieces, _) if emitted.part == SubTriangle::Whole => {
                 let refined = pieces.refined(rules);
                 let height = |edge| among.frame.height(refined.middle(edge).position).abs();
-                height(0).max(height(1)).max(height(2))
+                Some(height(0).max(height(1)).max(height(2)))
             }
-            Over::General(..) => 0.0,
-        };
-        (height > self.limit).then_some(height)
+            Over::General(..) => None,
+        }
+    }
+
+    /// The height over a triangle that is surely good enough, given the deviation for none: nobody needs to know it better. `None`
+    /// where there is none, or where more counts than distances.
+    fn high_enough(&self, among: &Among, flat: &Deviation) -> Option<f64> {
+        let target = self.limit.min(self.length);
+        let can_be = self.criteria.is_none() && target.is_finite() && flat.is_within(among.slopes);
+        let height = flat.height_within(target, among.chord) - flat.height;
+        (can_be && height > 0.0).then_some(ROUNDED * height)
     }
 
     fn by_pieces<'p>(

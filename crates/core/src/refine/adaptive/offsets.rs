@@ -1,16 +1,22 @@
 //! Moves vertices off the limit surface by half of what the triangles miss, so that the error lies on both sides.
 //!
 //! Triangles with their corners on a convex surface lie inside it by up to e; with the corners moved out by e/2 both
-//! sides have e/2 (mathematically: the midpoint of the heights' range is moved to 0). Where a surface bends both ways, and on
-//! boundaries and sharp edges, vertices stay.
+//! sides have e/2. Let heights over a triangle lie between l ≤ 0 ≤ h while its corners are on the surface. With all three moved by
+//! x they lie between l − x and h − x, so for errors of at most e each corner's x has to be between h − e and l + e. A vertex that is
+//! between these for all triangles around it stays so when some of them are divided: then the ranges shrink. Else a division would
+//! make the triangles beside fail, these those beside them, and so on, one a round.
+//!
+//! Where a surface bends both ways in the same way, and on boundaries and sharp edges, vertices stay.
 
 use super::decide::Control;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
+use super::measure::fail;
+use super::quadtree::Place;
 use crate::certificate::TriangleFrame;
 use crate::patch::Rules;
 use crate::progress::{Cancelled, SharedWatch};
-use crate::vector::vector;
+use crate::vector::{unit_or_zero, vector};
 
 /// Levels below a leaf whose vertices are sampled where a piece is not regular.
 const SAMPLED_LEVELS: usize = 2;
@@ -18,25 +24,42 @@ const SAMPLED_LEVELS: usize = 2;
 /// Control faces that one call takes together.
 const BLOCK: usize = 64;
 
-/// The middles of the heights of the surface over the triangles, whose corners lie on it, by control face.
+/// Where all heights around can be within this part of what is allowed, vertices move no farther than they have to for that.
+const EASY: f64 = 0.5;
+
+/// Heights in a range of so many times what is allowed on either side are too much, wherever the corners are.
+const HOPELESS: f64 = 2.0;
+
+/// The least and the greatest height of the surface over the triangles, whose corners lie on it, by control face.
 #[derive(Default)]
-pub(super) struct Bulges(Vec<Vec<f64>>);
+pub(super) struct Bulges(Vec<Bulge>);
+
+/// Those of a control face.
+#[derive(Clone, Default)]
+struct Bulge {
+    ranges: Vec<(f64, f64)>,
+    /// Leaves whose triangles bulge too far, and half of that.
+    failing: Vec<(Place, f64)>,
+}
 
 impl Bulges {
-    /// Looks at the triangles of some control faces.
+    /// Looks at the triangles of some control faces; heights of `allowed` on either side are good enough.
     pub(super) fn look(
         &mut self,
         sources: &Sources<'_>,
         watch: &SharedWatch<'_>,
         faces: &[u32],
+        allowed: f64,
     ) -> Result<(), Cancelled> {
+        let hopeless = HOPELESS * allowed;
         let emission = sources.emission;
-        self.0.resize_with(emission.starts.len() - 1, Vec::new);
+        self.0.resize_with(emission.starts.len() - 1, Bulge::default);
         let found = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
             let found = faces[block].iter().map(|&face| {
                 let triangles = emission.triangles_of(face);
-                let found = vec![0.0; triangles.len()];
-                let mut looking = Looking { emission, first: triangles.start as u32, found };
+                let ranges = vec![(0.0, 0.0); triangles.len()];
+                let found = Bulge { ranges, failing: Vec::new() };
+                let mut looking = Looking { emission, first: triangles.start as u32, hopeless, found };
                 sources.show(face, is_stopped, &mut looking);
                 looking.found
             });
@@ -47,22 +70,27 @@ impl Bulges {
         })
     }
 
-    /// How far each vertex is to be moved along its normal: the average over the triangles around.
+    /// The leaves that fail wherever their corners are moved, and what they come to at best.
+    pub(super) fn failing(&self) -> Vec<(Place, f64)> {
+        self.0.iter().flat_map(|face| &face.failing).copied().collect()
+    }
+
+    /// How far each vertex is to be moved along its normal: by the mean of the middles around, or as near to that as leaves all
+    /// heights around well within `allowed`; where nothing does, to the middle of them all.
     pub(super) fn offsets(
         &self,
         control: &Control<'_>,
         emission: &Emission,
+        allowed: f64,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<f64>, Cancelled> {
-        let mut sums = vec![(0.0f64, 0u32); emission.positions.len()];
-        watch.each(emission.triangles.iter().zip(self.0.iter().flatten()), |(triangle, bulge)| {
-            for &vertex in triangle {
-                let sum = &mut sums[vertex as usize];
-                *sum = (sum.0 + bulge, sum.1 + 1);
-            }
+        let mut around = vec![Around::default(); emission.positions.len()];
+        let ranges = self.0.iter().flat_map(|face| &face.ranges);
+        watch.each(emission.triangles.iter().zip(ranges), |(triangle, range)| {
+            triangle.iter().for_each(|&vertex| around[vertex as usize].add(range));
         })?;
-        let mut offsets = Vec::with_capacity(sums.len());
-        watch.each(sums, |(sum, triangles)| offsets.push(sum / f64::from(triangles.max(1))))?;
+        let mut offsets = Vec::with_capacity(around.len());
+        watch.each(around, |around| offsets.push(around.offset(EASY * allowed)))?;
         watch.each(0..control.mesh.face_count() as u32, |face| {
             let open = control.open(face);
             for edge in (0..3).filter(|&edge| open[edge as usize]) {
@@ -80,20 +108,52 @@ impl Bulges {
     }
 }
 
+/// The heights over the triangles around a vertex.
+#[derive(Clone, Copy, Default)]
+struct Around {
+    low: f64,
+    high: f64,
+    /// Of twice the middles.
+    sum: f64,
+    triangles: u32,
+}
+
+impl Around {
+    fn add(&mut self, &(low, high): &(f64, f64)) {
+        (self.low, self.high) = (self.low.min(low), self.high.max(high));
+        self.sum += low + high;
+        self.triangles += 1;
+    }
+
+    /// How far to move the vertex.
+    fn offset(&self, easy: f64) -> f64 {
+        let (least, most) = (self.high - easy, self.low + easy);
+        if least <= most {
+            (0.5 * self.sum / f64::from(self.triangles.max(1))).max(least).min(most)
+        } else {
+            0.5 * (self.low + self.high)
+        }
+    }
+}
+
 /// Looks at the triangles of a control face.
 struct Looking<'a> {
     emission: &'a Emission,
     first: u32,
-    found: Vec<f64>,
+    hopeless: f64,
+    found: Bulge,
 }
 
 impl Beholder for Looking<'_> {
     fn triangle<'p>(&mut self, emitted: &Emitted, over: Over<'_, 'p>, rules: &'p Rules<'p>) {
         let corners = emitted.vertices.map(|vertex| vector(self.emission.positions[vertex as usize]));
-        let frame = TriangleFrame::new(corners);
         let (low, high) = match over {
-            Over::Regular(ground, cell, _) => ground.jet().heights(&cell, frame.normal()).sampled([0.0; 3]),
+            Over::Regular(ground, cell, _) => {
+                let [a, b, c] = corners;
+                ground.jet().heights(&cell, unit_or_zero((b - a).cross(c - a))).sampled([0.0; 3])
+            }
             Over::General(pieces, _) => {
+                let frame = TriangleFrame::new(corners);
                 let points = pieces.points(SAMPLED_LEVELS, rules).into_iter();
                 let inside =
                     points.filter(|&point| (0..3).all(|edge| frame.beside(edge, point).outside <= 0.0));
@@ -101,6 +161,9 @@ impl Beholder for Looking<'_> {
                 heights.fold((0.0f64, 0.0f64), |(low, high), height| (low.min(height), high.max(height)))
             }
         };
-        self.found[(emitted.number - self.first) as usize] = 0.5 * (low + high);
+        self.found.ranges[(emitted.number - self.first) as usize] = (low, high);
+        if high - low > self.hopeless {
+            fail(&mut self.found.failing, emitted.place, 0.5 * (high - low));
+        }
     }
 }
