@@ -18,7 +18,7 @@ pub(crate) use bounds::{Effort, NetPart, Pieces};
 pub(crate) use cell_rows::{CellRows, MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, RowTarget};
 pub(crate) use deviation::Deviation;
 pub(crate) use dihedral::{STEEP, around};
-pub(crate) use quartic_cell::{Cell, QuarticJet};
+pub(crate) use quartic_cell::{Cell, Heights, QuarticJet};
 pub(crate) use sub_triangle::SubTriangle;
 pub(crate) use triangle_frame::{TriangleFrame, least_slope};
 

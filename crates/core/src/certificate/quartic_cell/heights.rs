@@ -54,12 +54,37 @@ impl Heights {
 
     /// The greatest height lies between these.
     pub(crate) fn range(&self) -> (f64, f64) {
-        let Self { ss, sr, rr, sss, ssr, srr, rrr, ssss, sssr, ssrr, srrr, rrrr } = *self;
-        // Second derivatives along the edges in their middles.
+        let (quadratic, rest) = (quadratic_height(self.bends()), self.rest());
+        ((quadratic - rest).max(0.0), quadratic + rest)
+    }
+
+    /// The least and the greatest value of the quadratic part, and how far off the heights may be from it at most.
+    pub(crate) fn about(&self) -> (f64, f64, f64) {
+        let (low, high) = quadratic_range(self.bends(), [0.0; 3]);
+        (low, high, self.rest())
+    }
+
+    /// The greatest height on either side where the surface's corners stand at the given ones over the plane, and by how much that
+    /// may be off at most.
+    pub(crate) fn lifted_range(&self, lifts: [f64; 3]) -> (f64, f64) {
+        let (low, high) = quadratic_range(self.bends(), lifts);
+        (high.max(-low), self.rest())
+    }
+
+    /// Second derivatives along the edges in their middles: from the first corner to the second, on to the third, and back.
+    #[inline]
+    fn bends(&self) -> [f64; 3] {
+        let Self { ss, sr, rr, sss, ssr, srr, rrr, ssss, ssrr, rrrr, .. } = *self;
         let first = 2.0 * ss + 3.0 * (sss + ssss);
         let last = 2.0 * rr + 3.0 * (rrr + rrrr);
         let both = 2.0 * (ss + rr - sr) + 3.0 * (sss + rrr + ssss + rrrr) - (ssr + srr) - ssrr;
-        let quadratic = quadratic_height([first, both, last]);
+        [first, both, last]
+    }
+
+    /// What the parts of third and fourth degree come to at most.
+    #[inline]
+    fn rest(&self) -> f64 {
+        let Self { sss, ssr, srr, rrr, ssss, sssr, ssrr, srrr, rrrr, .. } = *self;
         // Third derivatives along the edges at the centroid, and the bubble's.
         let [a, b, c, d] = [
             6.0 * sss + 8.0 * ssss + 2.0 * sssr,
@@ -79,8 +104,7 @@ impl Heights {
             24.0 * ssss - 12.0 * sssr + 4.0 * ssrr,
             24.0 * rrrr - 12.0 * srrr + 4.0 * ssrr,
         ];
-        let rest = cubic + QUARTIC * pairs.iter().fold(0.0f64, |most, x| most.max(x.abs()));
-        ((quadratic - rest).max(0.0), quadratic + rest)
+        cubic + QUARTIC * pairs.iter().fold(0.0f64, |most, x| most.max(x.abs()))
     }
 
     /// A bound for the greatest height by Bernstein coefficients over the parts that `levels` divisions into four give; parts that
@@ -89,8 +113,8 @@ impl Heights {
         self.lifted([0.0; 3], levels, enough)
     }
 
-    /// The least and the greatest height in a few places, where the surface's corners stand at the given ones over the plane.
-    pub(crate) fn sampled(&self, [first, second, third]: [f64; 3]) -> (f64, f64) {
+    /// The least and the greatest height in a few places.
+    pub(crate) fn sampled(&self) -> (f64, f64) {
         let Self { ss, sr, rr, sss, ssr, srr, rrr, ssss, sssr, ssrr, srrr, rrrr } = *self;
         let (by_s, by_r) = (ss + sss + ssss, rr + rrr + rrrr);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -99,13 +123,13 @@ impl Heights {
             let along = (((ssss * s + sss) * s + ss) * s - by_s) * s;
             let across = (((rrrr * r + rrr) * r + rr) * r - by_r) * r;
             let mixed = (sr + (ssr + sssr * s) * s + (srr + srrr * r) * r + ssrr * s * r) * s * r;
-            let height = along + across + mixed + first + (second - first) * s + (third - first) * r;
+            let height = along + across + mixed;
             (low, high) = (low.min(height), high.max(height));
         }
         (low, high)
     }
 
-    /// The same where the surface's corners stand at these heights over the plane.
+    /// [`Self::refined`] where the surface's corners stand at these heights over the plane.
     pub(crate) fn lifted(&self, [first, second, third]: [f64; 3], levels: u32, enough: f64) -> f64 {
         let mut coefficients = self.bernstein();
         let (along, across) = (0.25 * (second - first), 0.25 * (third - first));
@@ -202,6 +226,32 @@ fn halved_row<const K: usize>(net: &[f64; 15], halves: &mut [[f64; 15]; 2]) {
             row[j] = 0.5 * (row[j] + row[j + 1]);
         }
     }
+}
+
+/// The least and the greatest value of a quadratic, by its second derivatives along the edges as in [`quadratic_height`] and its
+/// values at the corners.
+fn quadratic_range([p, q, s]: [f64; 3], [a, b, c]: [f64; 3]) -> (f64, f64) {
+    let (mut low, mut high) = (a.min(b).min(c), a.max(b).max(c));
+    let mut take = |value: f64| (low, high) = (low.min(value), high.max(value));
+    for (bend, from, to) in [(p, a, b), (q, b, c), (s, c, a)] {
+        let rise = to - from;
+        // Where the derivative along the edge vanishes.
+        if 2.0 * rise.abs() < bend.abs() {
+            take(0.5 * (from + to) - 0.125 * bend - 0.5 * rise * rise / bend);
+        }
+    }
+    // Where both derivatives from the first corner do; between the values along the edges if the quadratic is a saddle.
+    let mixed = p + s - q;
+    let determinant = 4.0 * p * s - mixed * mixed;
+    if determinant > 0.0 {
+        let (by_second, by_third) = (p - 2.0 * (b - a), s - 2.0 * (c - a));
+        let second = (2.0 * s * by_second - mixed * by_third) / determinant;
+        let third = (2.0 * p * by_third - mixed * by_second) / determinant;
+        if second > 0.0 && third > 0.0 && second + third < 1.0 {
+            take(a - 0.25 * (second * by_second + third * by_third));
+        }
+    }
+    (low, high)
 }
 
 /// The greatest height of a quadratic that is 0 at the corners, by its second derivatives along the edges from the first

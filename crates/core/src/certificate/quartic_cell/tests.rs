@@ -180,17 +180,12 @@ fn triangles_off_the_surface_are_bounded() {
         let aside = aside.into_iter().fold(0.0, f64::max);
         let moved = steps.map(DVec3::length).into_iter().fold(0.0, f64::max);
         let deviation = jet.beside(&cell, &frame, [false; 3]).deviation_off(bound, moved, aside);
-        let (sampled, mut highest, mut farthest) = (heights.sampled(lifts), 0.0f64, 0.0f64);
+        let (mut highest, mut farthest) = (0.0f64, 0.0f64);
         for weights in grid(GRID) {
             let [u, v] = place(&cell, weights);
             let point = piece.point(u, v);
             highest = highest.max(frame.height(point).abs());
             farthest = farthest.max(frame.squared(point).sqrt());
-        }
-        for weights in grid(4) {
-            let [u, v] = place(&cell, weights);
-            let height = frame.height(piece.point(u, v));
-            assert!(height <= sampled.1 + 1e-12 && height >= sampled.0 - 1e-12, "round {round}: {sampled:?}");
         }
         assert!(highest <= bound + 1e-12, "round {round}: {highest} {bound}");
         assert!(farthest <= deviation.own + 1e-12, "round {round}: {farthest} {deviation:?}");
@@ -198,6 +193,43 @@ fn triangles_off_the_surface_are_bounded() {
         tight += usize::from(bound <= 1.06 * highest);
     }
     assert!(counted > 1700 && tight * 10 > counted * 9, "{tight} of {counted}");
+}
+
+/// The range over a plane off the corners: nothing is farther off it than it says, and some point is as near to it.
+#[test]
+fn ranges_over_planes_off_the_corners_hold() {
+    let mut numbers = Numbers(11);
+    let mut tight = 0;
+    for round in 0..3000 {
+        let piece = numbers.piece([0.002, 0.02, 0.1, 0.4][round % 4]);
+        let (jet, cell) = (QuarticJet::of(&piece), numbers.cell());
+        let frame = TriangleFrame::new(cell.0.map(|[u, v]| piece.point(u, v)));
+        if frame.is_flat() {
+            continue;
+        }
+        let heights = jet.heights(&cell, frame.normal());
+        let size = [0.0, 1.0, 0.3][round % 3] * heights.range().1;
+        let lifts = [0.0; 3].map(|_: f64| size * numbers.next());
+        let ((most, rest), (low, high, _)) = (heights.lifted_range(lifts), heights.about());
+        let sampled = heights.sampled();
+        for weights in grid(4) {
+            let [u, v] = place(&cell, weights);
+            let height = frame.height(piece.point(u, v));
+            assert!(height <= sampled.1 + 1e-12 && height >= sampled.0 - 1e-12, "round {round}: {sampled:?}");
+        }
+        let mut highest = 0.0f64;
+        for weights in grid(GRID) {
+            let [u, v] = place(&cell, weights);
+            let height = frame.height(piece.point(u, v));
+            let lift: f64 = (0..3).map(|i| weights[i] * lifts[i]).sum();
+            highest = highest.max((height + lift).abs());
+            assert!(low - rest - 1e-12 <= height && height <= high + rest + 1e-12, "round {round}");
+        }
+        assert!(highest <= most + rest + 1e-12, "round {round}: {highest} {most} {rest}");
+        assert!(most - rest <= 1.003 * highest + 1e-12, "round {round}: {highest} {most} {rest}");
+        tight += usize::from(rest < 0.1 * most);
+    }
+    assert!(tight > 300, "{tight}");
 }
 
 /// The coefficients in Bernstein's basis of a polynomial of fourth degree at most, by its values: no more than rounding is lost.

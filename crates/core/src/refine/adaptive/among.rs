@@ -1,6 +1,7 @@
 //! Emission where triangles are looked at among their neighbours, all of them: for goals beside distances, and for vertices
 //! that are moved off the surface.
 
+use super::changes::{Changes, Moves};
 use super::emit::Emission;
 use super::emitted::Sources;
 use super::judge::Goal;
@@ -9,7 +10,7 @@ use super::offsets::Bulges;
 use super::quadtree::Place;
 use super::result::Outcome;
 use super::{ADDED, Engine, Plan, marked};
-use crate::progress::{Cancelled, Stage};
+use crate::progress::Stage;
 use crate::refine::RefineError;
 use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{Exact, ExactStop};
@@ -40,8 +41,9 @@ impl Engine<'_> {
     ) -> Result<Option<Outcome>, RefineError> {
         let mut bulges = Bulges::default();
         let mut measured: Vec<Measured> = Vec::new();
-        // What changed since triangles were measured last.
+        // What was changed since triangles were measured last, and how vertices were moved then.
         let mut is_new = vec![false; plan.closed.len()];
+        let mut before = None;
         // Heights that are good enough, where it is known.
         let allowed = if self.control.criteria.is_none() { goal.allowed(0) } else { 0.0 };
         loop {
@@ -65,14 +67,18 @@ impl Engine<'_> {
                 emission.shift(offsets, self.watch)?;
             }
             self.watch.stage(Stage::Bounding, None)?;
-            let around = marked(&self.around(core::mem::replace(&mut is_new, vec![false; touched.len()]))?);
+            let is_touched = core::mem::replace(&mut is_new, vec![false; touched.len()]);
+            let edges = (&self.edges, &plan.chains);
+            let changes = Changes::since(before.as_ref(), is_touched, &emission, edges, self.watch)?;
             let sources = self.sources(&plan, &emission);
-            let found = measure(&sources, self.watch, goal, f64::INFINITY, &around)?;
+            let faces = changes.faces(&emission, self.watch)?;
+            let found = measure(&sources, self.watch, (goal, f64::INFINITY), (&faces, Some(&changes)))?;
             if measured.is_empty() {
                 measured = found;
             } else {
-                let faces = around.iter().zip(found);
-                self.watch.each(faces, |(&face, found)| measured[face as usize] = found)?;
+                self.watch.each(faces.iter().zip(found), |(&face, found)| {
+                    measured[face as usize].replace(found, changes.is_touched(face));
+                })?;
             }
             let failing: Vec<(Place, f64)> =
                 measured.iter().flat_map(|face| &face.failing).copied().collect();
@@ -81,30 +87,12 @@ impl Engine<'_> {
             let Some(is_dirty) = is_dirty else {
                 return Ok(Some(Outcome { plan, emission, measured: Some(measured) }));
             };
+            before = Some(Moves::of(&mut emission, &plan.chains));
             plan.emission = Some(emission);
             if !self.carry_out(&mut plan, is_dirty, most)? {
                 return Ok(None);
             }
         }
-    }
-
-    /// The faces whose triangles may come to something else after changes in some: moved vertices depend on the triangles around
-    /// them, triangles on those beside them.
-    fn around(&self, is_touched: Vec<bool>) -> Result<Vec<bool>, Cancelled> {
-        let triangles = self.control.mesh.triangles();
-        let mut is_met = vec![false; self.control.mesh.vertex_count()];
-        self.watch.each(triangles.iter().zip(&is_touched), |(triangle, &is_touched)| {
-            if is_touched {
-                triangle.iter().for_each(|&vertex| is_met[vertex as usize] = true);
-            }
-        })?;
-        let mut is_around = is_touched;
-        self.watch.each((0..).zip(triangles), |(face, triangle)| {
-            if triangle.iter().any(|&vertex| is_met[vertex as usize]) {
-                self.mark(face, &mut is_around);
-            }
-        })?;
-        Ok(is_around)
     }
 
     /// Divides the leaves that fail, and marks the faces that this changes; `None` if there are none that may be. With heights that

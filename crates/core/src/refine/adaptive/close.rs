@@ -23,6 +23,8 @@ pub(super) struct Closed {
     pub(super) vertices: u32,
     /// Triangles.
     pub(super) triangles: u32,
+    /// Leaves.
+    leaves: usize,
     /// For each leaf with two split edges, in the order of the walk, whether its diagonal starts at the unsplit edge's end.
     pub(super) diagonals: Vec<bool>,
     /// What was judged here.
@@ -32,11 +34,11 @@ pub(super) struct Closed {
     /// Leaves that pass on conditions, in the order of the walk.
     pub(super) conditions: Vec<Condition>,
     /// What was said of leaves, by the edges that were split, for the next walk.
-    pub(super) verdicts: Verdicts,
+    verdicts: Verdicts,
 }
 
 /// What was said of leaves in the order of the walk.
-pub(super) type Verdicts = Vec<Judged>;
+type Verdicts = Vec<Judged>;
 
 /// A leaf with split edges, or one that was made for its neighbours' sake.
 #[derive(Clone, Debug)]
@@ -51,9 +53,10 @@ pub(super) struct Judged {
     verdict: Option<(Verdict, bool)>,
 }
 
-/// Lists the leaves of a face that have to be judged, and counts its triangles.
+/// Lists the leaves of a face that have to be judged, and counts its triangles and all leaves.
 struct Lister {
     triangles: usize,
+    count: usize,
     /// The face's own edges.
     open: [bool; 3],
     rim: Rim,
@@ -65,6 +68,7 @@ impl Visitor for Lister {
 
     fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
         self.triangles += node.triangles();
+        self.count += 1 << (2 * node.depth);
         if node.is_plain() {
             if node.is_unjudged {
                 self.leaf(node, (0, 0), [None; 3]);
@@ -107,7 +111,7 @@ pub(super) fn close(
     (goal, max_levels): (&Goal, u32),
     edges: &Edges<'_>,
     (trees, chains): (&Trees, &Chains),
-    (allowance, known, is_kept): (&Allowance, &Verdicts, bool),
+    (allowance, known, is_kept): (&Allowance, &Closed, bool),
     (face, is_stopped): (u32, &IsStopped<'_>),
     knots: &mut Vec<Knot>,
 ) -> Closed {
@@ -116,15 +120,16 @@ pub(super) fn close(
     let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
     let at = (Place::root(face), Spot::WHOLE);
     let mut lister =
-        Lister { triangles: 0, open: control.open(face), rim: Rim::default(), leaves: Vec::new() };
+        Lister { triangles: 0, count: 0, open: control.open(face), rim: Rim::default(), leaves: Vec::new() };
     walk.node(trees.root(face), at, sides, Surface::Unknown, &mut lister);
     *knots = walk.knots;
-    let Lister { triangles, mut leaves, .. } = lister;
-    let mut closed = Closed { vertices: walk.next, triangles: triangles as u32, ..Closed::default() };
+    let Lister { triangles, count, mut leaves, .. } = lister;
+    let mut closed =
+        Closed { vertices: walk.next, triangles: triangles as u32, leaves: count, ..Closed::default() };
     if leaves.is_empty() {
         return closed;
     }
-    recall(known, &mut leaves);
+    recall(&known.verdicts, &mut leaves);
     if leaves.iter().any(|leaf| leaf.verdict.is_none()) {
         let closer = Closer { judge: goal.judge(control, max_levels, face), allowance };
         closer.judge(control.piece(face).surface(control.rules), 0, &mut leaves, is_stopped);
@@ -150,6 +155,16 @@ fn recall(known: &Verdicts, leaves: &mut Verdicts) {
 }
 
 impl Closed {
+    /// Forgets what is known of the tree and its leaves: it was replaced.
+    pub(super) fn forget(&mut self) {
+        (self.leaves, self.verdicts) = (0, Verdicts::new());
+    }
+
+    /// Whether the triangles are the same if those along the edges are: in between leaves were only divided.
+    pub(super) fn has_triangles_of(&self, other: &Self) -> bool {
+        self.leaves == other.leaves && self.diagonals == other.diagonals
+    }
+
     /// Keeps what was said of leaves.
     fn take(&mut self, leaves: &Verdicts, max_levels: u32) {
         let mut extent = Extent::NONE;

@@ -6,12 +6,13 @@
 
 use std::collections::HashSet;
 
+use super::changes::Changes;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
 use super::judge::{DIVISIONS, Goal, HALVINGS};
 use super::quadtree::Place;
 use super::settle::{beside, sharp_edges};
-use crate::certificate::{Deviation, Effort, Pieces, SubTriangle, TriangleFrame, exceeds};
+use crate::certificate::{Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds};
 use crate::criterion::{Apart, Criteria, Region};
 use crate::patch::{LimitPoint, Rules};
 use crate::progress::{Cancelled, SharedWatch};
@@ -41,14 +42,13 @@ pub(super) struct Measured {
     pub(super) failing: Vec<(Place, f64)>,
 }
 
-/// Looks at the triangles of some control faces. Bounds of distances below `length`, of triangles that do not fail, need not
-/// be tight.
+/// Looks at the triangles of some control faces, or those of them that changes concern. Bounds of distances below `length`, of
+/// triangles that do not fail, need not be tight.
 pub(super) fn measure(
     sources: &Sources<'_>,
     watch: &SharedWatch<'_>,
-    goal: &Goal,
-    length: f64,
-    faces: &[u32],
+    (goal, length): (&Goal, f64),
+    (faces, changes): (&[u32], Option<&Changes>),
 ) -> Result<Vec<Measured>, Cancelled> {
     let sharp = sharp_edges(sources.emission, watch)?;
     let measured = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
@@ -60,6 +60,7 @@ pub(super) fn measure(
                 emission: sources.emission,
                 criteria: sources.control.criteria.as_ref(),
                 sharp: &sharp,
+                changes: changes.filter(|changes| !changes.is_touched(face)),
                 limit: goal.allowed(face),
                 length,
                 found: none,
@@ -78,6 +79,8 @@ struct Measuring<'a> {
     emission: &'a Emission,
     criteria: Option<&'a Criteria>,
     sharp: &'a HashSet<u32>,
+    /// Others need not be looked at.
+    changes: Option<&'a Changes>,
     /// Greatest value.
     limit: f64,
     length: f64,
@@ -86,6 +89,9 @@ struct Measuring<'a> {
 
 impl Beholder for Measuring<'_> {
     fn triangle<'p>(&mut self, emitted: &Emitted, mut over: Over<'_, 'p>, rules: &'p Rules<'p>) {
+        if self.changes.is_some_and(|changes| !changes.concern(self.emission, emitted.number)) {
+            return;
+        }
         let among = Among::of(self.emission, self.sharp, emitted);
         let cone = match (self.criteria.filter(|criteria| criteria.has_cones()), &over) {
             (None, _) => 0.0,
@@ -94,44 +100,48 @@ impl Beholder for Measuring<'_> {
             }
             (Some(criteria), Over::General(_, corners)) => among.cone(criteria, emitted.place, corners),
         };
-        let attained = self.attained(&among, emitted, &mut over, rules);
-        if let Some(value) = attained.filter(|&height| height > self.limit) {
-            return self.found.fail(emitted.place, Value { bound: f64::INFINITY, value, pixels: 0.0 });
+        // Heights that are met, and about the greatest.
+        let height = match &mut over {
+            Over::Regular(ground, cell, _) => {
+                let heights = ground.jet().heights(cell, among.frame.normal());
+                Height::Regular(heights.lifted_range(among.lifts), heights)
+            }
+            Over::General(pieces, _) => Height::General(self.attained(&among, emitted, pieces, rules)),
+        };
+        if self.fails_for_sure(height.least()) {
+            let value = Value { bound: f64::INFINITY, value: height.least(), pixels: 0.0 };
+            return self.found.fail(emitted.place, value);
         }
-        let mut best: Option<(Value, f64)> = None;
+        let mut best: Option<Value> = None;
         let mut is_enough = |deviation: Deviation| {
             let value = self.value(&among, &deviation);
-            // What counts alone has no height of its own.
-            let height = (deviation.height - deviation.across).max(0.0);
-            let (value, height) =
-                best.map_or((value, height), |(known, least)| (value.least(&known), height.min(least)));
-            best = Some((value, height));
+            let value = best.map_or(value, |known| value.least(&known));
+            best = Some(value);
             value.value <= self.limit && value.bound <= self.length
         };
-        match over {
-            Over::Regular(ground, cell, spot) => {
-                let heights = ground.jet().heights(&cell, among.frame.normal());
+        let highest = match (over, height) {
+            (Over::Regular(ground, cell, spot), Height::Regular((height, rest), heights)) => {
                 let beside = ground.jet().beside(&cell, &among.frame, emitted.open);
                 let off = |height| beside.deviation_off(height, among.moved, among.aside);
-                let first = match self.high_enough(&among, &off(0.0)) {
-                    Some(enough) => heights.lifted(among.lifts, DIVISIONS, enough),
-                    None if among.moved > 0.0 => heights.lifted(among.lifts, 1, 0.0),
-                    None => heights.range().1,
-                };
-                if !is_enough(off(first)) && !is_enough(off(heights.lifted(among.lifts, DIVISIONS, 0.0))) {
+                let refined = || heights.lifted(among.lifts, DIVISIONS, self.high_enough(&among, &off(0.0)));
+                if !is_enough(off(height + rest)) && !is_enough(off(refined())) {
                     let net = ground.net(spot, emitted.part);
                     let deviation = net.deviation(&among.frame, rules, self.effort(&among, emitted));
                     is_enough(deviation.off(among.moved, among.aside));
                 }
+                height
             }
-            Over::General(pieces, _) => {
-                is_enough(self.by_pieces(&among, emitted, pieces, rules));
+            (Over::General(pieces, _), height) => {
+                let deviation = self.by_pieces(&among, emitted, pieces, rules);
+                is_enough(deviation);
+                // What counts alone has no height of its own.
+                height.least().max(deviation.height - deviation.across)
             }
-        }
-        let Some((value, height)) = best else { return };
-        let height = attained.unwrap_or(height);
-        if exceeds(height, self.found.highest.0) {
-            self.found.highest = (height, emitted.place);
+            (Over::Regular(..), Height::General(height)) => height,
+        };
+        let Some(value) = best else { return };
+        if exceeds(highest, self.found.highest.0) {
+            self.found.highest = (highest, emitted.place);
         }
         let value = Value { value: if exceeds(value.value, cone) { value.value } else { cone }, ..value };
         self.found.add(emitted.place, &value);
@@ -152,6 +162,22 @@ impl Measured {
         self.pixels = self.pixels.max(value.pixels);
     }
 
+    /// Takes what was found of all triangles of the control face, or adds what was of some.
+    pub(super) fn replace(&mut self, found: Self, is_all: bool) {
+        if is_all {
+            *self = found;
+            return;
+        }
+        if exceeds(found.worst.0, self.worst.0) {
+            self.worst = found.worst;
+        }
+        if exceeds(found.highest.0, self.highest.0) {
+            self.highest = found.highest;
+        }
+        (self.value, self.pixels) = (self.value.max(found.value), self.pixels.max(found.pixels));
+        self.failing.extend(found.failing);
+    }
+
     fn fail(&mut self, place: Place, value: Value) {
         self.add(place, &value);
         fail(&mut self.failing, place, value.value);
@@ -167,39 +193,35 @@ pub(super) fn fail(failing: &mut Vec<(Place, f64)>, place: Place, value: f64) {
 }
 
 impl Measuring<'_> {
-    /// The greatest height of a few points of the surface over a triangle: where that is too much it fails for sure, and needs no
-    /// bound, as long as it is divided. Nobody who asks for tight bounds or for more than distances is told that.
+    /// Whether a triangle with a point of the surface so high over it fails for sure: then it needs no bound, as long as it is
+    /// divided. Nobody who asks for tight bounds or for more than distances is told that.
+    fn fails_for_sure(&self, height: f64) -> bool {
+        self.length.is_infinite() && self.criteria.is_none() && height > self.limit
+    }
+
+    /// The greatest height of a few points of a piece that is not regular.
     fn attained<'p>(
         &self,
         among: &Among,
         emitted: &Emitted,
-        over: &mut Over<'_, 'p>,
+        pieces: &mut Pieces<'p>,
         rules: &'p Rules<'p>,
-    ) -> Option<f64> {
-        if self.length.is_finite() || self.criteria.is_some() {
-            return None;
+    ) -> f64 {
+        if self.length.is_finite() || self.criteria.is_some() || emitted.part != SubTriangle::Whole {
+            return 0.0;
         }
-        match over {
-            Over::Regular(ground, cell, _) => {
-                let (low, high) = ground.jet().heights(cell, among.frame.normal()).sampled(among.lifts);
-                Some(high.max(-low))
-            }
-            Over::General(pieces, _) if emitted.part == SubTriangle::Whole => {
-                let refined = pieces.refined(rules);
-                let height = |edge| among.frame.height(refined.middle(edge).position).abs();
-                Some(height(0).max(height(1)).max(height(2)))
-            }
-            Over::General(..) => None,
-        }
+        let refined = pieces.refined(rules);
+        let height = |edge| among.frame.height(refined.middle(edge).position).abs();
+        height(0).max(height(1)).max(height(2))
     }
 
-    /// The height over a triangle that is surely good enough, given the deviation for none: nobody needs to know it better. `None`
-    /// where there is none, or where more counts than distances.
-    fn high_enough(&self, among: &Among, flat: &Deviation) -> Option<f64> {
+    /// The height over a triangle that is surely good enough, given the deviation for none: nobody needs to know it better. 0 where
+    /// there is none, or where more counts than distances.
+    fn high_enough(&self, among: &Among, flat: &Deviation) -> f64 {
         let target = self.limit.min(self.length);
         let can_be = self.criteria.is_none() && target.is_finite() && flat.is_within(among.slopes);
         let height = flat.height_within(target, among.chord) - flat.height;
-        (can_be && height > 0.0).then_some(ROUNDED * height)
+        if can_be { (ROUNDED * height).max(0.0) } else { 0.0 }
     }
 
     fn by_pieces<'p>(
@@ -237,6 +259,24 @@ impl Measuring<'_> {
         let region = among.region().grown(apart.own);
         let value = criteria.distance_ratio(&apart, &region);
         Value { bound, value, pixels: criteria.pixels(&apart, &region).unwrap_or(0.0) }
+    }
+}
+
+/// The height of the surface over a triangle, on either side.
+enum Height {
+    /// That of the quadratic part, by how much it may be off, and all parts.
+    Regular((f64, f64), Heights),
+    /// What is met in a few places.
+    General(f64),
+}
+
+impl Height {
+    /// Some point stands as high as this.
+    fn least(&self) -> f64 {
+        match self {
+            Self::Regular((height, rest), _) => height - rest,
+            Self::General(height) => *height,
+        }
     }
 }
 

@@ -17,6 +17,7 @@ mod among;
 mod balance;
 mod budget;
 mod chains;
+mod changes;
 mod close;
 mod decide;
 mod emit;
@@ -25,6 +26,7 @@ mod judge;
 mod leaf;
 mod measure;
 mod offsets;
+mod plan;
 mod probe;
 mod quadtree;
 mod result;
@@ -47,11 +49,12 @@ use crate::patch::large_rings::LargeRings;
 use crate::progress::{Observer, SharedWatch, Stage};
 use crate::scheme::Scheme;
 use balance::{Pending, balance};
-use chains::Chains;
-use close::{Closed, Verdicts, close};
-use decide::{Control, Decision, decide};
+use chains::{Chains, first_of};
+use close::close;
+use decide::{Control, decide};
 use emit::{Emission, Extend};
 use judge::Goal;
+use plan::Plan;
 use quadtree::{Edges, Place, Trees};
 use result::Outcome;
 
@@ -181,23 +184,6 @@ pub(super) struct Engine<'a> {
     rounding: f64,
 }
 
-/// Trees whose closed leaves pass, and what emitting them takes.
-pub(super) struct Plan {
-    goal: Goal,
-    decision: Decision,
-    chains: Chains,
-    closed: Vec<Closed>,
-    triangles: usize,
-    /// Leaves fail that must not be divided.
-    has_failed: bool,
-    /// By control face whose leaves that pass on conditions do so, the greatest bound of one, and the leaf.
-    settled: Vec<Option<(f64, Place)>>,
-    /// Control faces that were walked over since the last emission.
-    is_touched: Vec<bool>,
-    /// What was emitted last, as far as it was.
-    emission: Option<Emission>,
-}
-
 impl Engine<'_> {
     /// The value that is good enough for all triangles: a distance where nothing else counts, else 1; 0 where nothing is.
     fn floor(&self, tolerance: Option<f64>) -> f64 {
@@ -248,18 +234,7 @@ impl Engine<'_> {
             return Ok(None);
         };
         let faces = self.control.mesh.face_count();
-        let closed = vec![Closed::default(); faces];
-        let mut plan = Plan {
-            goal,
-            decision,
-            chains: Chains::default(),
-            closed,
-            triangles: 0,
-            has_failed: false,
-            settled: vec![None; faces],
-            is_touched: vec![true; faces],
-            emission: None,
-        };
+        let mut plan = Plan::of(goal, decision, faces);
         let fits = self.carry_out(&mut plan, vec![true; faces], most)?
             && (self.is_settled_later() || self.settle(&mut plan, most)?);
         Ok(fits.then_some(plan))
@@ -274,26 +249,15 @@ impl Engine<'_> {
         wanting: &[u32],
         most: usize,
     ) -> Result<Option<Plan>, RefineError> {
-        let Plan { decision, chains, closed, triangles, has_failed, settled, .. } = plan;
-        let mut finer = Plan {
-            goal,
-            decision: decision.clone(),
-            chains: chains.clone(),
-            closed: closed.clone(),
-            triangles: *triangles,
-            has_failed: *has_failed,
-            settled: settled.clone(),
-            is_touched: vec![true; closed.len()],
-            emission: None,
-        };
+        let mut finer = plan.with_goal(goal);
         let again: Vec<_> = wanting.iter().map(|&face| (face, None)).collect();
         let control = (self.control, self.watch);
         if !finer.decision.divide(control, &finer.goal, &self.edges, (self.max_levels, most), &again)? {
             return Ok(None);
         }
         finer.decision.begin_again();
-        let mut is_dirty = vec![false; closed.len()];
-        wanting.iter().for_each(|&face| finer.closed[face as usize].verdicts = Verdicts::default());
+        let mut is_dirty = vec![false; plan.closed.len()];
+        wanting.iter().for_each(|&face| finer.closed[face as usize].forget());
         wanting.iter().for_each(|&face| self.mark(face, &mut is_dirty));
         let fits = self.carry_out(&mut finer, is_dirty, most)? && self.settle(&mut finer, most)?;
         Ok(fits.then_some(finer))
@@ -317,7 +281,7 @@ impl Engine<'_> {
                 return Ok(true);
             }
             is_dirty.fill(false);
-            again.iter().for_each(|&face| plan.closed[face as usize].verdicts = Verdicts::default());
+            again.iter().for_each(|&face| plan.closed[face as usize].forget());
             again.iter().for_each(|&face| self.mark(face, &mut is_dirty));
         }
     }
@@ -404,7 +368,7 @@ impl Engine<'_> {
                 let walks = dirty[block].iter().map(|&face| {
                     let allowance = &decision.allowances[face as usize];
                     let trees = (&decision.trees, &chains);
-                    let known = &plan.closed[face as usize].verdicts;
+                    let known = &plan.closed[face as usize];
                     close(
                         control,
                         (&plan.goal, max_levels),
@@ -417,9 +381,18 @@ impl Engine<'_> {
                 });
                 walks.collect::<Vec<_>>()
             })?;
+            // Where conditions are looked at they are emitted with the triangles, and others may have come about.
+            let has_conditions = !self.is_settled_later();
             self.watch.each(dirty.iter().zip(found.into_iter().flatten()), |(&face, found)| {
-                plan.closed[face as usize] = found;
-                plan.is_touched[face as usize] = true;
+                let known = core::mem::replace(&mut plan.closed[face as usize], found);
+                let found = &plan.closed[face as usize];
+                let is_same = !has_conditions
+                    && known.has_triangles_of(found)
+                    && (3 * face..3 * face + 3).all(|h| {
+                        let owner = first_of(edges, h);
+                        chains.own(owner).1 == plan.chains.own(owner).1
+                    });
+                plan.is_touched[face as usize] |= !is_same;
                 // Conditions count on the triangles beside, which may have been closed in another way.
                 plan.settled[face as usize] = None;
                 for twin in (3 * face..3 * face + 3).filter_map(|h| edges.twin(h)) {
@@ -475,26 +448,4 @@ fn block(faces: usize) -> usize {
 
 fn marked(is_marked: &[bool]) -> Vec<u32> {
     (0..).zip(is_marked).filter(|&(_, &is_marked)| is_marked).map(|(face, _)| face).collect()
-}
-
-impl Plan {
-    /// The greatest bound of a face's triangles.
-    fn bound(&self, face: u32) -> f64 {
-        let closing = self.closed[face as usize].extent.as_ref().map_or(0.0, |extent| extent.bound);
-        let settled = self.settled[face as usize].map_or(0.0, |(bound, _)| bound);
-        closing.max(settled).max(self.decision.bound(face))
-    }
-
-    /// The faces whose leaves have the greatest bounds first.
-    fn faces_by_bound(&self) -> Vec<(f64, u32)> {
-        let mut order: Vec<(f64, u32)> =
-            (0..self.closed.len() as u32).map(|face| (self.bound(face), face)).collect();
-        order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        order
-    }
-
-    /// The greatest bound of all triangles.
-    fn worst(&self) -> f64 {
-        (0..self.closed.len() as u32).map(|face| self.bound(face)).fold(0.0, f64::max)
-    }
 }

@@ -27,6 +27,9 @@ const BLOCK: usize = 64;
 /// Where all heights around can be within this part of what is allowed, vertices move no farther than they have to for that.
 const EASY: f64 = 0.5;
 
+/// Parts of third and fourth degree below this part of the range are not worth a closer look.
+const SMOOTH: f64 = 0.05;
+
 /// Heights in a range of so many times what is allowed on either side are too much, wherever the corners are.
 const HOPELESS: f64 = 2.0;
 
@@ -150,7 +153,9 @@ impl Beholder for Looking<'_> {
         let (low, high) = match over {
             Over::Regular(ground, cell, _) => {
                 let [a, b, c] = corners;
-                ground.jet().heights(&cell, unit_or_zero((b - a).cross(c - a))).sampled([0.0; 3])
+                let heights = ground.jet().heights(&cell, unit_or_zero((b - a).cross(c - a)));
+                let (low, high, rest) = heights.about();
+                if rest < SMOOTH * (high - low) { (low, high) } else { heights.sampled() }
             }
             Over::General(pieces, _) => {
                 let frame = TriangleFrame::new(corners);

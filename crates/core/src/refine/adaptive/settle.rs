@@ -196,26 +196,11 @@ mod tests {
     use super::super::with_engine;
     use super::*;
     use crate::certificate::Deviation;
-    use crate::mesh::Mesh;
-    use crate::models;
+    use crate::models::stirred;
     use crate::patch::LimitPoint;
     use crate::progress::unobserved;
     use crate::refine::ExactOptions;
     use crate::scheme::Loop;
-
-    /// Points on a model's, each off by up to a share of the diagonal.
-    fn stirred(name: &str, seed: u64) -> Mesh {
-        let soup = models::find(name).unwrap().soup();
-        let mesh = Mesh::from_soup(&soup, &Default::default()).unwrap().0;
-        let mut state = seed;
-        let size = [0.0, 0.01, 0.05, 0.2][seed as usize % 4] * mesh.diagonal();
-        let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            size * ((state >> 11) as f64 / (1u64 << 52) as f64 - 1.0)
-        };
-        let positions = mesh.positions().iter().map(|p| p.map(|x| x + next())).collect();
-        mesh.with_positions(positions).unwrap()
-    }
 
     /// Runs on the plans of some stirred models.
     fn with_plans(models: &[(&str, u64)], mut run: impl FnMut(&Engine<'_>, Plan, &str)) {

@@ -1,0 +1,238 @@
+//! What is not measured again would come to the same: everything that it depends on is, bit by bit.
+
+use std::collections::HashSet;
+use std::f64::consts::TAU;
+
+use super::super::emitted::{Beholder, Emitted, Over, Sources};
+use super::super::judge::Goal;
+use super::super::measure::{Measured, measure};
+use super::super::offsets::Bulges;
+use super::super::quadtree::{Place, is_split};
+use super::super::settle::{beside, sharp_edges};
+use super::super::{Engine, Plan, marked, with_engine};
+use super::*;
+use crate::certificate::SubTriangle;
+use crate::mesh::{Mesh, PolygonSoup};
+use crate::models::{stir, stirred};
+use crate::patch::Rules;
+use crate::progress::unobserved;
+use crate::refine::ExactOptions;
+use crate::scheme::Loop;
+
+/// Three sheets that meet at an edge, and are cut there.
+fn book() -> Mesh {
+    let (pages, rows, columns) = (3, 5, 3);
+    let mut soup = PolygonSoup::default();
+    soup.positions.extend((0..rows).map(|row| [0.0, 0.0, f64::from(row)]));
+    for page in 0..pages {
+        let (sin, cos) = (TAU * f64::from(page) / f64::from(pages)).sin_cos();
+        for column in 1..=columns {
+            let out = f64::from(column);
+            let at = |row| [out * cos, out * sin, f64::from(row) + 0.3 * f64::from((row * column) % 2)];
+            soup.positions.extend((0..rows).map(at));
+        }
+        let number = |column: u32, row: u32| {
+            let own = if column == 0 { 0 } else { 1 + page as u32 * columns as u32 + column - 1 };
+            own * rows as u32 + row
+        };
+        for (column, row) in
+            (0..columns as u32).flat_map(|column| (0..rows as u32 - 1).map(move |row| (column, row)))
+        {
+            let (next, above) = (column + 1, row + 1);
+            soup.faces.push(&[number(column, row), number(next, row), number(next, above)]);
+            soup.faces.push(&[number(column, row), number(next, above), number(column, above)]);
+        }
+    }
+    let mesh = Mesh::from_soup(&soup, &Default::default()).unwrap().0;
+    assert!(!mesh.junctions().edges.is_empty());
+    mesh
+}
+
+/// All that a triangle's measurement depends on.
+#[derive(Debug, PartialEq)]
+struct Known {
+    place: Place,
+    part: SubTriangle,
+    open: [bool; 3],
+    corners: [[f64; 3]; 3],
+    moves: [[f64; 3]; 3],
+    around: (f64, [f64; 3]),
+}
+
+/// Lists that of a control face's triangles.
+struct Listing<'a> {
+    emission: &'a Emission,
+    sharp: &'a HashSet<u32>,
+    found: Listed,
+}
+
+impl Beholder for Listing<'_> {
+    fn triangle<'p>(&mut self, emitted: &Emitted, _: Over<'_, 'p>, _: &'p Rules<'p>) {
+        let Emitted { number, vertices, place, part, open } = *emitted;
+        let corners = vertices.map(|vertex| self.emission.positions[vertex as usize]);
+        let moves = vertices.map(|vertex| self.emission.step(vertex).to_array());
+        let around = beside(self.emission, self.sharp, number);
+        self.found.push((number, Known { place, part, open, corners, moves, around }));
+    }
+}
+
+/// With the numbers of the triangles.
+type Listed = Vec<(u32, Known)>;
+
+fn listed(sources: &Sources<'_>, sharp: &HashSet<u32>, face: u32) -> Listed {
+    let mut listing = Listing { emission: sources.emission, sharp, found: Vec::new() };
+    sources.show(face, &|| false, &mut listing);
+    listing.found
+}
+
+/// Divides a leaf of each of some control faces.
+fn divide(engine: &Engine<'_>, plan: &mut Plan, next: &mut impl FnMut(usize) -> usize) {
+    let mut is_dirty = vec![false; plan.closed.len()];
+    for _ in 0..1 + plan.closed.len() / 40 {
+        let mut place = Place::root(next(plan.closed.len()) as u32);
+        let mut word = plan.decision.trees.root(place.face);
+        while is_split(word) {
+            let child = next(4);
+            (word, place) = (plan.decision.trees.child(word, child), place.child(child));
+        }
+        engine.mark(place.face, &mut is_dirty);
+        let split = |place: Place| engine.mark(place.face, &mut is_dirty);
+        engine.split(&mut plan.decision.trees, place, split).unwrap();
+    }
+    assert!(engine.carry_out(plan, is_dirty, usize::MAX).unwrap());
+}
+
+/// What was found with nothing but changes measured holds what is found with all measured anew.
+fn assert_holds(found: &[Measured], anew: &[Measured], name: &str) {
+    for (face, (found, anew)) in found.iter().zip(anew).enumerate() {
+        let greatest = |face: &Measured| [face.worst.0, face.highest.0, face.value, face.pixels];
+        let pairs = greatest(found).into_iter().zip(greatest(anew));
+        assert!(pairs.into_iter().all(|(found, anew)| found >= anew), "{name}, {face}: {found:?} {anew:?}");
+        let is_known = anew.failing.iter().all(|(place, value)| {
+            found.failing.iter().any(|(known, found)| known == place && found >= value)
+        });
+        assert!(is_known, "{name}, {face}: {found:?} {anew:?}");
+    }
+}
+
+/// Rounds of random divisions with vertices moved after each, as balancing does it.
+fn rounds(name: &str, mesh: &Mesh, (share, seed): (f64, u64), counts: &mut [usize; 2]) {
+    let mut state = seed;
+    let mut next = |below: usize| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 33) as usize % below
+    };
+    let limit = share * mesh.diagonal();
+    let options = ExactOptions::default().tolerance(limit).balance(true);
+    with_engine(mesh, &Loop, &options, &mut unobserved, |engine| {
+        let (goal, watch) = (Goal::Within(limit), engine.watch);
+        let mut plan = engine.plan(Goal::Within(2.0 * limit), usize::MAX)?.unwrap();
+        let faces: Vec<u32> = (0..plan.closed.len() as u32).collect();
+        let (mut bulges, mut measured) = (Bulges::default(), Vec::<Measured>::new());
+        let mut before: Option<(Moves, Vec<Listed>)> = None;
+        for round in 0..4 {
+            let name = format!("{name}, round {round}");
+            let touched = plan.is_touched.clone();
+            let kept = plan.emission.take();
+            let anew = engine.emit_some(&plan, None)?;
+            plan.emission = kept;
+            let mut emission = engine.emit_all(&mut plan)?;
+            assert_eq!((&emission.triangles, &emission.twins), (&anew.triangles, &anew.twins), "{name}");
+            assert_eq!(emission.normals, anew.normals, "{name}");
+            bulges.look(&engine.sources(&plan, &emission), watch, &marked(&touched), limit)?;
+            let offsets = bulges.offsets(engine.control, &emission, limit, watch)?;
+            let mut all_bulges = Bulges::default();
+            all_bulges.look(&engine.sources(&plan, &emission), watch, &faces, limit)?;
+            assert_eq!(offsets, all_bulges.offsets(engine.control, &emission, limit, watch)?, "{name}");
+            emission.shift(offsets, watch)?;
+            let edges = (&engine.edges, &plan.chains);
+            let moves = before.as_ref().map(|(moves, _)| moves);
+            let changes = Changes::since(moves, touched, &emission, edges, watch)?;
+            let sources = engine.sources(&plan, &emission);
+            let sharp = sharp_edges(&emission, watch)?;
+            let known: Vec<_> = faces.iter().map(|&face| listed(&sources, &sharp, face)).collect();
+            let changed = changes.faces(&emission, watch)?;
+            if let Some((_, before)) = &before {
+                for (&face, (known, before)) in faces.iter().zip(known.iter().zip(before)) {
+                    if changes.is_touched(face) {
+                        assert!(changed.contains(&face));
+                        continue;
+                    }
+                    assert_eq!(known.len(), before.len(), "{name}, {face}");
+                    for ((number, known), (_, before)) in known.iter().zip(before) {
+                        let is_concerned = changes.concern(&emission, *number);
+                        assert!(is_concerned || known == before, "{name}, {face}: {known:?} {before:?}");
+                        assert!(!is_concerned || changed.contains(&face));
+                        counts[usize::from(is_concerned)] += 1;
+                    }
+                }
+            }
+            let found = measure(&sources, watch, (&goal, f64::INFINITY), (&changed, Some(&changes)))?;
+            let anew = measure(&sources, watch, (&goal, f64::INFINITY), (&faces, None))?;
+            if measured.is_empty() {
+                measured = found;
+            } else {
+                for (&face, found) in changed.iter().zip(found) {
+                    measured[face as usize].replace(found, changes.is_touched(face));
+                }
+            }
+            assert_holds(&measured, &anew, &name);
+            before = Some((Moves::of(&mut emission, &plan.chains), known));
+            plan.emission = Some(emission);
+            divide(engine, &mut plan, &mut next);
+        }
+        Ok(())
+    })
+    .unwrap();
+}
+
+/// Nothing that a skipped measurement depends on has changed: also at boundaries, sharp edges and where sheets were cut.
+#[test]
+fn what_is_not_measured_again_is_the_same() {
+    let mut counts = [0; 2];
+    for seed in 1..3 {
+        for (name, share) in [
+            ("icosphere", 2e-3),
+            ("torus", 2e-3),
+            ("sheet", 1e-3),
+            ("head", 3e-3),
+            ("cup", 2e-3),
+            ("spike", 1e-2),
+        ] {
+            rounds(name, &stirred(name, seed), (share, seed), &mut counts);
+        }
+        let sharp = |name: &str| stirred(name, seed).with_creases_above(0.5).unwrap();
+        rounds("sharp torus", &sharp("torus"), (2e-3, seed), &mut counts);
+        rounds("sharp cube", &sharp("cube"), (1e-3, seed), &mut counts);
+        rounds("book", &stir(book(), seed), (2e-3, seed), &mut counts);
+    }
+    assert!(counts[0] > 10_000 && counts[1] > 1_000, "{counts:?}");
+}
+
+/// What balancing, and dividing for angles, come to is what all triangles come to when they are measured in the end.
+#[test]
+fn rounds_end_with_what_is_found_anew() {
+    for (name, seed) in [("icosphere", 1), ("head", 2), ("sheet", 1), ("spike", 2), ("cup", 0)] {
+        let mesh = stirred(name, seed);
+        let limit = 1e-3 * mesh.diagonal();
+        let options = ExactOptions::default().tolerance(limit);
+        for options in [options.clone().balance(true), options.clone().angle(0.2)] {
+            with_engine(&mesh, &Loop, &options, &mut unobserved, |engine| {
+                let goal = Goal::Within(if engine.is_balanced { limit } else { 1.0 });
+                let outcome = if engine.is_balanced {
+                    engine.balanced(limit, usize::MAX)?
+                } else {
+                    let plan = engine.plan(goal.clone(), usize::MAX)?.unwrap();
+                    engine.emit_among(plan, &goal, (usize::MAX, false))?
+                };
+                let outcome = outcome.unwrap();
+                let faces: Vec<u32> = (0..outcome.plan.closed.len() as u32).collect();
+                let sources = engine.sources(&outcome.plan, &outcome.emission);
+                let anew = measure(&sources, engine.watch, (&goal, f64::INFINITY), (&faces, None))?;
+                assert_holds(&outcome.measured.unwrap(), &anew, name);
+                Ok(())
+            })
+            .unwrap();
+        }
+    }
+}
