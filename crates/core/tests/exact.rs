@@ -265,9 +265,8 @@ fn balancing_ends_after_a_few_rounds() {
     }
 }
 
-/// At a crease each side has its own normal: on a prism with flat caps the caps' are along the axis.
-#[test]
-fn sides_of_a_crease_have_normals_of_their_own() {
+/// A prism with sharp flat caps.
+fn prism() -> Mesh {
     let sides = 12;
     let mut soup = limitmesh::PolygonSoup::default();
     for z in [0.0, 1.0] {
@@ -284,7 +283,13 @@ fn sides_of_a_crease_have_normals_of_their_own() {
         soup.faces.push(&[i, j, sides + j, sides + i]);
     }
     let (control, _) = Mesh::from_soup(&soup, &Default::default()).unwrap();
-    let control = control.with_creases_above(60f64.to_radians()).unwrap();
+    control.with_creases_above(60f64.to_radians()).unwrap()
+}
+
+/// At a crease each side has its own normal: on a prism with flat caps the caps' are along the axis.
+#[test]
+fn sides_of_a_crease_have_normals_of_their_own() {
+    let control = prism();
     let result = exact(&control, &Loop, &ExactOptions::default().tolerance(0.002)).unwrap();
     result.mesh.validate().unwrap();
     assert!(!result.mesh.tags().creases.is_empty());
@@ -355,6 +360,29 @@ fn budgets_beyond_all_numbers_end_at_other_caps() {
         let result = exact(&control, &Loop, &options).unwrap();
         result.mesh.validate().unwrap();
         assert_eq!(result.mesh.face_count(), control.face_count() << 6);
+    }
+}
+
+/// Where levels end the division before a number of triangles is reached, that is seen soon: by some plans, not by thousands. On the
+/// prism the flat caps are not divided before distances are as small as rounding.
+#[test]
+fn budgets_see_that_levels_are_used_up() {
+    let (cube, prism) = (model("cube"), prism());
+    let cases = [
+        (&cube, 1, 4 * cube.face_count() + 1),
+        (&cube, 2, usize::MAX),
+        (&prism, 0, 1_000),
+        (&prism, 2, 1_000),
+    ];
+    for (control, levels, budget) in cases {
+        let options = ExactOptions::default().max_levels(levels).max_triangles(None).triangles(budget);
+        let mut rounds = 0;
+        let result = exact_observed(control, &Loop, &options, &mut |progress| {
+            rounds = if progress.stage == Stage::Refining { progress.done.max(rounds) } else { rounds };
+            ControlFlow::Continue(())
+        });
+        assert_eq!(result.unwrap().mesh.face_count(), control.face_count() << (2 * levels));
+        assert!(rounds <= 60, "{rounds} rounds for {levels} levels");
     }
 }
 

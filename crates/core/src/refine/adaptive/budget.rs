@@ -47,6 +47,9 @@ const FOR_ONE: f64 = 2.9;
 /// From one guess to the next distances fall by this much at most.
 const MOST_APART: f64 = 8.0;
 
+/// After more plans in a row than these that brought nothing, distances fall ever faster.
+const MOST_IDLE: u32 = 2;
+
 /// Plans beyond the budget are counted to the end up to so many more triangles (one in so many): then the next guess is better.
 const COUNTED_BEYOND: usize = 4;
 
@@ -111,6 +114,8 @@ pub(super) fn search(
     let aim = AIM * most as f64;
     // How often the same end was moved, up to twice.
     let (mut fitted, mut moved) = (true, 0);
+    // Plans in a row that brought nothing: where levels end the division, no distance does.
+    let mut idle = 0u32;
     let is_near = |high: f64, low: f64, triangles: usize| {
         high <= low * if triangles < enough { 1.0 + NEAR } else { PROMISED }
     };
@@ -134,6 +139,9 @@ pub(super) fn search(
             // Where many triangles pass at once much less may take hardly more.
             next = (high / PROMISED).max(low);
         }
+        if idle > MOST_IDLE && (low == 0.0 || best.triangles >= enough) {
+            next = if low > 0.0 { (high * low).sqrt() } else { high / MOST_APART.powi(1 << idle) };
+        }
         if !(next < high && next > low) {
             break;
         }
@@ -146,6 +154,7 @@ pub(super) fn search(
         fitted = fits;
         match found {
             Some(plan) if fits => {
+                idle = if plan.triangles > best.triangles { 0 } else { idle + 1 };
                 power = growth.power((high, best.triangles), (next, plan.triangles));
                 (high, best) = (next, plan);
             }
