@@ -41,6 +41,9 @@ const MOST_SAMPLED_LEVELS: usize = 6;
 /// A lower bound beyond this part of the upper one is good enough.
 const NARROW: f64 = 0.99;
 
+/// The same where a tolerance is met.
+const MET_NARROW: f64 = 0.9;
+
 /// Upper bounds so many times the lower one are taken again.
 const WIDE: f64 = 1.2;
 
@@ -59,8 +62,13 @@ const LOOKED_AT: u32 = 1 << 14;
 /// How often that is done.
 const MOST_TIGHTENINGS: usize = 6;
 
-/// Control faces that were looked at, and which known leaf of theirs.
-type Probed = HashSet<(u32, Option<Place>)>;
+/// What was looked at for lower bounds.
+struct Probed {
+    /// Control faces, and which known leaf of theirs.
+    leaves: HashSet<(u32, Option<Place>)>,
+    /// A lower bound beyond this part of the upper one is good enough.
+    enough: f64,
+}
 
 /// The certified interval; `measured` by control face where all triangles were looked at among their neighbours, `is_met` if a
 /// tolerance is: then nobody waits for a tighter bound.
@@ -82,7 +90,8 @@ pub(super) fn probe(
     let mut highest: Vec<(f64, Place)> =
         measured.iter().flat_map(|all| all.iter().map(|face| face.highest)).collect();
     sort(&mut highest, watch)?;
-    let mut probed = Probed::new();
+    let enough = if is_met { MET_NARROW } else { NARROW };
+    let mut probed = Probed { leaves: HashSet::new(), enough };
     let mut is_known = vec![measured.is_some(); worst.len()];
     lower(engine, (plan, emission), &mesh, (&highest, |_| true, &mut probed), &mut best)?;
     // By control face, the lower bound for which it was looked at.
@@ -158,11 +167,11 @@ fn lower(
     let most = order.first().map_or(0.0, |&(promise, _)| promise);
     let most_probed = PROBED.min(FEWEST_PROBED + MOST_BOXES / mesh.boxes.len().max(1));
     for &(promise, place) in order.iter().take(most_probed) {
-        if promise <= best.lower || best.lower > NARROW * most {
+        if promise <= best.lower || best.lower > probed.enough * most {
             break;
         }
         let leaf = is_leaf(place).then_some(place);
-        if !probed.insert((place.face, leaf)) {
+        if !probed.leaves.insert((place.face, leaf)) {
             continue;
         }
         for point in farthest(engine, plan, emission, place.face, leaf)? {
