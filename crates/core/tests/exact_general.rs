@@ -41,7 +41,7 @@ fn tagged(mesh: Mesh, seed: u64) -> Mesh {
 /// The greatest distance found between a refined mesh and the limit surface.
 fn sampled(control: &Mesh, scheme: &dyn Scheme, mesh: &Mesh, levels: usize) -> f64 {
     let reference = limit_reference(control, scheme, levels).unwrap();
-    let samples = SamplingOptions::default().samples(100_000);
+    let samples = SamplingOptions::default().samples(25_000);
     hausdorff(mesh.as_triangles(), reference.as_triangles(), &samples).unwrap().symmetric()
 }
 
@@ -76,7 +76,7 @@ fn tags_that_fade_leave_no_crease() {
 fn butterfly_passes_through_the_control_vertices_and_its_limit() {
     for name in ["tetrahedron", "cube", "sheet", "spike", "sphere", "teddy"] {
         let control = model(name);
-        let tolerance = 0.006 * control.diagonal();
+        let tolerance = 0.01 * control.diagonal();
         let scheme = &ModifiedButterfly;
         let result = exact(&control, scheme, &ExactOptions::default().tolerance(tolerance)).unwrap();
         result.mesh.validate().unwrap();
@@ -84,7 +84,7 @@ fn butterfly_passes_through_the_control_vertices_and_its_limit() {
         assert!(!result.error.certified);
         assert_eq!(&result.mesh.positions()[..control.vertex_count()], control.positions(), "{name}");
         vertices_are_of_uniform_refinement(&control, scheme, &result, name);
-        let found = sampled(&control, scheme, &result.mesh, 5);
+        let found = sampled(&control, scheme, &result.mesh, 4);
         assert!(result.error.lower <= result.error.upper);
         assert!(
             (0.85..1.05).contains(&(found / result.error.upper)),
@@ -131,7 +131,7 @@ fn threads_change_nothing() {
     let tagged = tagged(model("sheet"), 11);
     let plain = model("cube");
     let run = || {
-        let options = |control: &Mesh| ExactOptions::default().tolerance(0.005 * control.diagonal());
+        let options = |control: &Mesh| ExactOptions::default().tolerance(0.01 * control.diagonal());
         let loop_result = exact(&tagged, &Loop, &options(&tagged)).unwrap();
         let butterfly = exact(&plain, &ModifiedButterfly, &options(&plain)).unwrap();
         [loop_result, butterfly].map(|found| (found.mesh, found.normals, found.error))

@@ -410,21 +410,21 @@ proptest! {
 
     #[test]
     fn soups_agree_with_brute_force(a in soup(), b in soup()) {
-        agree(&a, &b, &CertifiedOptions::default(), 20);
+        agree(&a, &b, &CertifiedOptions::default(), 14);
     }
 
     #[test]
     fn sheets_agree_with_brute_force(a in sheet(0.1), b in sheet(0.1)) {
-        agree(&a, &b, &CertifiedOptions::default(), 7);
+        agree(&a, &b, &CertifiedOptions::default(), 5);
     }
 
     #[test]
     fn rough_sheets_agree_with_brute_force(a in sheet(0.9), b in sheet(0.9)) {
-        agree(&a, &b, &CertifiedOptions::default(), 7);
+        agree(&a, &b, &CertifiedOptions::default(), 5);
     }
 
     #[test]
     fn crumpled_surfaces_agree_with_brute_force(a in crumpled(0.6), b in crumpled(0.2)) {
-        agree(&a, &b, &CertifiedOptions::default(), 7);
+        agree(&a, &b, &CertifiedOptions::default(), 5);
     }
 }
