@@ -71,6 +71,9 @@ const ADDED: usize = 6;
 /// that was too little.
 const RESERVE: usize = 100;
 
+/// Under a budget an even division that is nearer is taken where what is proven of it is at most so many times as far.
+const PROVEN_ALIKE: f64 = 1.25;
+
 /// Refines until the goals are met, or as far as the caps allow.
 pub(super) fn adaptive(
     mesh: &Mesh,
@@ -213,11 +216,12 @@ impl Engine<'_> {
             let is_best = stop == ExactStop::Met || floor > 0.0;
             let even = if is_best { None } else { self.even(outcome.plan.worst(), most)? };
             let Some(even) = even else { return outcome.finish(self, stop, options) };
-            // Evenly curved models are best divided evenly, though drifts may allow to prove less of that. Lower
+            // Evenly curved models are best divided evenly, as long as drifts allow to prove about as much of that. Lower
             // bounds are found distances, within some per cent of the truth where all triangles are looked at.
             let worst_first = outcome.looked_at(self)?.finish(self, stop, options)?;
             let even = even.looked_at(self)?.finish(self, stop, options)?;
-            let is_better = even.error.lower < worst_first.error.lower;
+            let is_better = even.error.lower < worst_first.error.lower
+                && even.error.upper <= PROVEN_ALIKE * worst_first.error.upper;
             return Ok(if is_better { even } else { worst_first });
         }
     }
