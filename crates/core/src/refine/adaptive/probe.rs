@@ -95,7 +95,7 @@ pub(super) fn probe(
     let mut is_known = vec![measured.is_some(); worst.len()];
     lower(engine, (plan, emission), &mesh, (&highest, |_| true, &mut probed), &mut best)?;
     // By control face, the lower bound for which it was looked at.
-    let mut tightened = vec![0.0; worst.len()];
+    let mut tightened: Vec<Option<f64>> = vec![None; worst.len()];
     let again = |length: f64, faces: &[u32], worst: &mut [(f64, Place)], is_known: &mut [bool]| {
         let nothing = Goal::Within(f64::INFINITY);
         let found = measure(&engine.sources(plan, emission), watch, (&nothing, length), (faces, None))?;
@@ -124,8 +124,9 @@ pub(super) fn probe(
         }
         // Bounds that are good enough for the goals need not be tight.
         let loose = order.iter().take_while(|&&(bound, _)| bound > best.lower).map(|(_, place)| place.face);
-        let loose =
-            loose.filter(|&face| WIDE * tightened[face as usize] < best.lower).take(TIGHTENED << round);
+        let loose = loose
+            .filter(|&face| tightened[face as usize].is_none_or(|known| WIDE * known < best.lower))
+            .take(TIGHTENED << round);
         let loose: Vec<u32> = loose
             .take_while(|&face| {
                 let count = emission.triangles_of(face).len();
@@ -138,7 +139,7 @@ pub(super) fn probe(
             break;
         }
         again(NARROW * best.lower, &loose, &mut worst, &mut is_known)?;
-        loose.iter().for_each(|&face| tightened[face as usize] = best.lower);
+        loose.iter().for_each(|&face| tightened[face as usize] = Some(best.lower));
     }
     if !best.certified {
         best.upper = estimated(engine, plan, &worst, &mesh, &mut best)?;
