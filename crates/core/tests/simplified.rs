@@ -46,6 +46,10 @@ fn a_cap_holds_for_the_result() {
     assert_eq!((fitting.stop, fitting.mesh == free.mesh), (ExactStop::Met, true));
     let capped = simplified(&control, within(tolerance).max_triangles(Some(count / 2)));
     assert_eq!(capped.stop, ExactStop::TriangleCap);
+    let below = ExactOptions::default().optimize(true).triangles(count).max_triangles(Some(count / 2));
+    let below = exact(&control, &Loop, &below).unwrap();
+    assert_eq!(below.stop, ExactStop::TriangleCap);
+    assert!(below.mesh.face_count() <= count / 2);
     assert!((count / 2 - 1..=count / 2).contains(&capped.mesh.face_count()));
     assert!(capped.error.upper > tolerance);
     check_interval(&control, &capped);

@@ -81,6 +81,7 @@ pub(super) fn simplified(
     let count = collapsed.mesh.face_count();
     let stop = match options.triangles {
         _ if is_met => ExactStop::Met,
+        Some(goal) if options.max_triangles.is_some_and(|cap| cap < goal) => ExactStop::TriangleCap,
         Some(goal) if count <= goal => ExactStop::Triangles,
         _ if fine.stop == ExactStop::Met => ExactStop::TriangleCap,
         _ => fine.stop,
