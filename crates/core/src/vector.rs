@@ -19,3 +19,29 @@ pub(crate) fn unit_or_zero(v: DVec3) -> DVec3 {
     let greatest = v.abs().max_element();
     if greatest > 0.0 && greatest.is_finite() { (v / greatest).normalize_or_zero() } else { DVec3::ZERO }
 }
+
+/// The length of a box's diagonal, for any size whose length is finite.
+pub(crate) fn diagonal(low: DVec3, high: DVec3) -> f64 {
+    let sides = high - low;
+    let length = sides.length();
+    if (1e-150..1e150).contains(&length) {
+        return length;
+    }
+    // Scaled first: squares of very large or small sides overflow or vanish.
+    let greatest = sides.max_element();
+    if greatest > 0.0 && greatest.is_finite() { greatest * (sides / greatest).length() } else { length }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn diagonals_of_any_size_have_a_length() {
+        for size in [1e-310, 1e-200, 1.0, 1e200, 1e307] {
+            let length = diagonal(DVec3::splat(-size), DVec3::new(2.0, 5.0, -1.0) * size);
+            assert!((length / size - 45f64.sqrt()).abs() < 1e-9, "{size}: {length}");
+        }
+        assert_eq!(diagonal(DVec3::ONE, DVec3::ONE), 0.0);
+    }
+}

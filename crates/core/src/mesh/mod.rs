@@ -28,7 +28,7 @@ pub use topology::{RingNeighbours, Topology};
 
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::ring::{EdgeShape, RingShape};
-use crate::vector::{DVec3, unit_or_zero, vector};
+use crate::vector::{DVec3, diagonal, unit_or_zero, vector};
 
 /// What can be wrong with the data a mesh is made of.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -158,7 +158,7 @@ impl<'a> Triangles<'a> {
 
     /// Length of the bounding box's diagonal; 0 without positions.
     pub fn diagonal(&self) -> f64 {
-        self.bounding_box().map_or(0.0, |[low, high]| vector(low).distance(vector(high)))
+        self.bounding_box().map_or(0.0, |[low, high]| diagonal(vector(low), vector(high)))
     }
 }
 

@@ -18,7 +18,7 @@ use super::frame::{Frame, Located, distance};
 use crate::geometry::{Foot, closest_to_origin};
 use crate::mesh::Triangles;
 use crate::progress::{Cancelled, Observer, Stage, Watch, unobserved};
-use crate::vector::{DVec3, vector};
+use crate::vector::{DVec3, diagonal, vector};
 
 /// Children of a node.
 const WIDTH: usize = 4;
@@ -184,7 +184,7 @@ impl<'a> Bvh<'a> {
 
     /// Length of the diagonal of that box.
     pub fn diagonal(&self) -> f64 {
-        distance(self.bounds[0], self.bounds[1])
+        diagonal(self.bounds[0], self.bounds[1])
     }
 
     /// Bytes that the hierarchy takes beside the surface it borrows.
