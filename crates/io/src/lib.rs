@@ -34,4 +34,4 @@ mod write;
 pub use error::{Flaw, Place, ReadError, WriteError};
 pub use format::{Format, UnknownFormat};
 pub use read::{read, read_bytes};
-pub use write::{Output, Property, PropertyValues, WriteOptions, write, write_to, write_whole};
+pub use write::{Output, Property, PropertyValues, WriteOptions, rounding, write, write_to, write_whole};

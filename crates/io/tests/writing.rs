@@ -5,7 +5,7 @@
 
 use limitmesh::mesh::{CornerTag, CreaseTag, PolygonSoup, Triangles};
 use limitmesh_io::{
-    Format, Output, Property, WriteError, WriteOptions, read_bytes, write, write_to, write_whole,
+    Format, Output, Property, WriteError, WriteOptions, read_bytes, rounding, write, write_to, write_whole,
 };
 use proptest::prelude::*;
 use std::fs;
@@ -34,6 +34,31 @@ fn any_finite() -> impl Strategy<Value = f64> {
 
 fn any_f32() -> impl Strategy<Value = f64> {
     any::<u32>().prop_map(f32::from_bits).prop_filter("finite", |x| x.is_finite()).prop_map(f64::from)
+}
+
+proptest! {
+    /// Positions are as far from those that are read back as is told, at most.
+    #[test]
+    fn rounding_is_what_reading_back_shows(
+        positions in proptest::collection::vec([-1e6..1e6, -10.0..10.0, -1e-40..1e-40], 3..12),
+    ) {
+        let positions: Vec<[f64; 3]> = positions.into_iter().map(|[x, y, z]| [x, y, z]).collect();
+        let triangles: Vec<[u32; 3]> = (2..positions.len() as u32).map(|i| [i - 2, i - 1, i]).collect();
+        let output = Output::new(Triangles { positions: &positions, triangles: &triangles });
+        for (format, ascii) in [(Format::Stl, false), (Format::Stl, true), (Format::Ply, false), (Format::Obj, false)] {
+            let told = rounding(format, &WriteOptions::default().ascii(ascii), &positions);
+            let soup = read_back(format, &output, ascii);
+            let corners: Vec<u32> = soup.faces.iter().flatten().copied().collect();
+            let mut most = 0.0f64;
+            for (&vertex, &read) in triangles.as_flattened().iter().zip(&corners) {
+                let (from, to) = (positions[vertex as usize], soup.positions[read as usize]);
+                let squared: f64 = (0..3).map(|axis| (from[axis] - to[axis]).powi(2)).sum();
+                most = most.max(squared.sqrt());
+            }
+            prop_assert!((told - most).abs() <= 1e-9 * told + 1e-60, "{told} {most}");
+            prop_assert!(told == 0.0 || format == Format::Stl && !ascii);
+        }
+    }
 }
 
 /// Everything that can be known of a surface.

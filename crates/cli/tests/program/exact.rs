@@ -373,3 +373,34 @@ fn estimates_are_not_called_certified() {
     assert!(error["upper_percent"].as_f64().expect("a number") <= 1.0);
     assert!(told.stderr.contains("by samples, not certified"), "{}", told.stderr);
 }
+
+/// Binary STL rounds coordinates: what it loses counts among the distance.
+#[test]
+fn what_a_format_rounds_is_part_of_the_distance() {
+    let folder = folder();
+    let cube = folder.path().join("far.obj");
+    let mut text = String::new();
+    for corner in 0..8 {
+        let [x, y, z] = [0, 1, 2].map(|axis| 500_000.37 + f64::from(corner >> axis & 1));
+        text += &format!("v {x} {y} {z}\n");
+    }
+    for face in [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]] {
+        text += &format!("f {} {} {} {}\n", face[0], face[1], face[2], face[3]);
+    }
+    std::fs::write(&cube, text).expect("a folder to write to");
+    let input = cube.to_str().expect("a name");
+    let kept = refine(0, input, &folder.path().join("kept.ply"), "--tolerance 0.004");
+    assert!(number(&kept["error"]["upper"]) <= 0.004);
+    for (name, code) in [("rounded.stl", 3), ("kept.stl", 0)] {
+        let output = folder.path().join(name);
+        let options = if code == 0 { "--tolerance 0.004 --ascii" } else { "--tolerance 0.004" };
+        let report =
+            run(&format!("refine {input} -o {{}} --report - {options}"), &[&output]).expect(code).json();
+        let told = number(&report["error"]["upper"]);
+        assert_eq!(told > 0.004, code == 3, "{told}");
+        let measured = run(&format!("measure {{}} --limit-of {input} --certified --json"), &[&output]);
+        let lower = number(&measured.expect(0).json()["hausdorff"]["lower"]);
+        assert!(lower <= told, "{lower} {told}");
+        assert_eq!(lower > 0.004, code == 3, "{lower}");
+    }
+}

@@ -112,6 +112,16 @@ impl WriteOptions {
     }
 }
 
+/// The greatest distance from one of these positions to what a file of this format holds of it: 0 but for binary STL, which rounds
+/// coordinates to `f32`.
+pub fn rounding(format: Format, options: &WriteOptions, positions: &[[f64; 3]]) -> f64 {
+    if format != Format::Stl || options.ascii {
+        return 0.0;
+    }
+    let off = |x: f64| (x - f64::from(x as f32)).abs();
+    positions.iter().map(|&[x, y, z]| off(x).hypot(off(y)).hypot(off(z))).fold(0.0, f64::max)
+}
+
 /// Writes a mesh file in the format of its extension, whole or not at all (see [`write_whole`]).
 ///
 /// What the format cannot hold is left out: [`Output`] says which holds what. Positions keep every bit in

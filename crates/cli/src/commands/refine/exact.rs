@@ -4,6 +4,7 @@ use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
 use limitmesh::progress::Stage;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_observed};
+use limitmesh_io::{Format, WriteOptions};
 
 use super::provenance::Provenance;
 use super::{Refined, cameras, view, view_report};
@@ -19,6 +20,9 @@ use crate::report::{
 /// The tolerance where no goal is given: facets can hardly be seen then in a picture a thousand pixels wide.
 const USUAL_TOLERANCE: Extent = Extent::Percent(0.1);
 
+/// A part of the distance that rounding makes up and that is told.
+const NOTED: f64 = 0.01;
+
 /// The distance in pixels where cameras are given without one.
 const USUAL_PIXELS: f64 = 1.0;
 
@@ -27,6 +31,8 @@ pub(super) struct Goals {
     tolerance: Option<Extent>,
     /// Of the control mesh's bounding box.
     diagonal: f64,
+    /// How far the output's format may round a vertex.
+    rounding: f64,
     angle_degrees: Option<f64>,
     triangles: Option<usize>,
     pixels: Option<f64>,
@@ -48,6 +54,7 @@ impl Goals {
         Ok(Self {
             tolerance,
             diagonal: control.diagonal(),
+            rounding: most_rounding(arguments, control),
             angle_degrees: arguments.angle,
             triangles: exact.triangles,
             pixels: (!cameras.is_empty()).then(|| exact.pixels.unwrap_or(USUAL_PIXELS)),
@@ -73,7 +80,9 @@ impl Goals {
             options = options.view(view);
         }
         if let Some(length) = self.length() {
-            options = options.tolerance(length);
+            // What rounding takes afterwards, unless that is most of it.
+            let room = length - self.rounding;
+            options = options.tolerance(if room > 0.5 * length { room } else { length });
         }
         if let Some(degrees) = self.angle_degrees {
             options = options.angle(degrees.to_radians());
@@ -124,7 +133,10 @@ pub(super) fn run(
     };
     progress.stage(format!("refining {}", counted(control.face_count(), "triangle", "triangles")));
     let options = goals.options(arguments);
-    let found = exact_observed(control, arguments.scheme.scheme(), &options, &mut observer)?;
+    let mut found = exact_observed(control, arguments.scheme.scheme(), &options, &mut observer)?;
+    if let Some(note) = round(&mut found, goals, arguments) {
+        progress.note(note);
+    }
     let error = ErrorReport::new(&found.error, goals.diagonal);
     let outcome = outcome(&found, goals, &error, arguments);
     let achieved = achieved(&found, &error);
@@ -146,6 +158,41 @@ pub(super) fn run(
             open_cones: goals.angle_degrees.map(|_| open_cones),
         },
         outcome,
+    })
+}
+
+/// The format and options of the output, if it has a name.
+fn written(arguments: &RefineArguments) -> Option<(Format, WriteOptions)> {
+    let format = Format::from_path(arguments.output.as_deref()?).ok()?;
+    Some((format, WriteOptions::default().ascii(arguments.ascii)))
+}
+
+/// How far the output's format rounds a vertex at most: all lie in the box of the control mesh's.
+fn most_rounding(arguments: &RefineArguments, control: &Mesh) -> f64 {
+    let largest = control.positions().as_flattened().iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    // Half of the last place of `f32`, and of its least number, along each axis.
+    let most = 3f64.sqrt() * (largest * f64::from(f32::EPSILON) * 0.5 + 0.5 * f64::from(f32::from_bits(1)));
+    let is_rounded = written(arguments)
+        .is_some_and(|(format, options)| limitmesh_io::rounding(format, &options, &[[0.1; 3]]) > 0.0);
+    if is_rounded { most } else { 0.0 }
+}
+
+/// Counts what writing rounds among the distance; a note where that is much of it.
+fn round(found: &mut Exact, goals: &Goals, arguments: &RefineArguments) -> Option<String> {
+    let (format, options) = written(arguments)?;
+    let rounding = limitmesh_io::rounding(format, &options, found.mesh.positions());
+    let proven = found.error.upper;
+    found.error.upper += rounding;
+    found.error.lower = (found.error.lower - rounding).max(0.0);
+    let is_beyond = goals.length().is_some_and(|length| proven <= length && found.error.upper > length);
+    if is_beyond && found.stop == ExactStop::Met {
+        found.stop = ExactStop::Rounding;
+    }
+    (rounding > NOTED * found.error.upper).then(|| {
+        format!(
+            "binary STL rounds vertices by up to {}; --ascii, PLY, OBJ and OFF keep them as they are",
+            upper_bound(rounding)
+        )
     })
 }
 
