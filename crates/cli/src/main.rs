@@ -1,4 +1,4 @@
-//! The `limitmesh` program: refine a triangle mesh by limit normals, measure it, compare methods, draw it.
+//! The `limitmesh` program: refine a triangle mesh within a distance of its limit surface, measure it, compare methods, draw it.
 //!
 //! Takes the command line, gives files, text on standard output and an exit code: 0 done, 1 bad input or
 //! output, 2 usage, 3 stopped short of what was asked. Messages go to standard error, so that a report or a
