@@ -42,7 +42,6 @@ proptest! {
     fn rounding_is_what_reading_back_shows(
         positions in proptest::collection::vec([-1e6..1e6, -10.0..10.0, -1e-40..1e-40], 3..12),
     ) {
-        let positions: Vec<[f64; 3]> = positions.into_iter().map(|[x, y, z]| [x, y, z]).collect();
         let triangles: Vec<[u32; 3]> = (2..positions.len() as u32).map(|i| [i - 2, i - 1, i]).collect();
         let output = Output::new(Triangles { positions: &positions, triangles: &triangles });
         for (format, ascii) in [(Format::Stl, false), (Format::Stl, true), (Format::Ply, false), (Format::Obj, false)] {
