@@ -37,14 +37,15 @@
 //! | [`scheme`] | subdivision schemes as masks on ring shapes |
 //! | [`limit`] | limit positions and normals of any scheme from its masks |
 //! | [`criterion`] | which faces are to be divided |
+//! | [`mod@closure`] | Figure 5's patterns: triangles whose edges are split, covered without cracks |
 //! | [`refine`] | exact refinement to a goal, uniform and the paper's stepwise refinement |
 //! | [`mod@simplify`] | edge collapse within a proven distance |
 //! | [`progress`] | what long functions tell while they work, and how they are cancelled |
 //! | [`measure`] | distances, sampled and certified, watertightness, triangle quality |
 
 mod certificate;
+pub mod closure;
 pub mod criterion;
-pub mod emit;
 mod geometry;
 pub mod index;
 pub mod limit;

@@ -18,6 +18,23 @@ fn model(name: &str) -> Mesh {
     Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
 }
 
+/// Without origins the rest of a result is the same.
+#[test]
+fn origins_are_only_told_to_those_who_ask() {
+    let mesh = model("cup");
+    let within = ExactOptions::default().tolerance(1e-3 * mesh.diagonal());
+    for options in [within.clone(), within.clone().balance(true), within.optimize(true)] {
+        let told = exact(&mesh, &Loop, &options.clone()).unwrap();
+        let untold = exact(&mesh, &Loop, &options.origins(false)).unwrap();
+        assert_eq!(told.origins.len(), told.mesh.vertex_count());
+        assert!(untold.origins.is_empty());
+        assert_eq!(told.mesh.positions(), untold.mesh.positions());
+        assert_eq!(told.mesh.triangles(), untold.mesh.triangles());
+        assert_eq!((&told.normals, &told.parents), (&untold.normals, &untold.parents));
+        assert_eq!(told.error, untold.error);
+    }
+}
+
 /// Every vertex is a vertex of the uniform refinement that is as deep, at the same place.
 #[test]
 fn vertices_lie_where_uniform_refinement_has_its_limits() {

@@ -36,6 +36,9 @@ pub struct ExactOptions {
     /// Collapses edges of a finer mesh as long as the goals allow ([`mod@crate::simplify`]): slower, and fewer triangles for
     /// the same distance. For a tolerance, a number of triangles, or both; not with [`Self::balance`]. Default: no.
     pub optimize: bool,
+    /// Tells where each vertex came from, [`Exact::origins`](super::Exact::origins), which is a quarter of what a result takes.
+    /// Default: yes.
+    pub origins: bool,
     /// Levels at most below the control faces: up to 30. Default: 24.
     pub max_levels: usize,
     /// Triangles at most, as a cap rather than a goal: reaching it is a failure to meet the others. Default: 50
@@ -68,6 +71,7 @@ impl Default for ExactOptions {
             triangles: None,
             balance: false,
             optimize: false,
+            origins: true,
             max_levels: USUAL_LEVELS,
             max_triangles: Some(USUAL_TRIANGLES),
             max_memory: None,
@@ -115,6 +119,12 @@ impl ExactOptions {
     /// Sets [`Self::optimize`].
     pub fn optimize(mut self, optimize: bool) -> Self {
         self.optimize = optimize;
+        self
+    }
+
+    /// Sets [`Self::origins`].
+    pub fn origins(mut self, origins: bool) -> Self {
+        self.origins = origins;
         self
     }
 

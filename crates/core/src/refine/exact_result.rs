@@ -61,7 +61,7 @@ pub struct Exact {
     /// The limit normals of triangles' corners at sharp edges, each of its own side, by the half-edge that leaves the corner,
     /// ascending; see [`Self::corner_normal`]. Empty without sharp edges, and after optimisation.
     pub sides: Vec<(u32, [f64; 3])>,
-    /// Where each vertex came from.
+    /// Where each vertex came from; empty unless [`ExactOptions::origins`](super::ExactOptions::origins) asks for it.
     pub origins: Vec<Origin>,
     /// The control face of each triangle; empty after optimisation, whose triangles reach over several.
     pub parents: Vec<u32>,

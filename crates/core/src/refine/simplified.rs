@@ -88,7 +88,10 @@ pub(super) fn simplified(
     };
     Ok(Exact {
         normals: collapsed.vertices.iter().map(|&v| fine.normals[v as usize]).collect(),
-        origins: collapsed.vertices.iter().map(|&v| fine.origins[v as usize]).collect(),
+        origins: match &fine.origins[..] {
+            [] => Vec::new(),
+            origins => collapsed.vertices.iter().map(|&v| origins[v as usize]).collect(),
+        },
         sides: Vec::new(),
         parents: Vec::new(),
         error,

@@ -1,7 +1,7 @@
 //! One step of refinement on the topology: which edges are split, what the new elements are called, and how
 //! they hang together. Knows no positions.
 
-use crate::emit::{Diagonal, Pattern, closure};
+use crate::closure::{Diagonal, Pattern, closure};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{MAX_FACES, Mesh, MeshError, NONE, Topology};
 use crate::parallel;

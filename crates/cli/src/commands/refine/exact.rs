@@ -72,7 +72,8 @@ impl Goals {
             .max_triangles(Some(arguments.max_triangles()))
             .max_memory(arguments.exact.max_memory)
             .balance(arguments.exact.balance)
-            .optimize(arguments.exact.optimize);
+            .optimize(arguments.exact.optimize)
+            .origins(arguments.exact.provenance);
         if let Some(pixels) = self.pixels {
             options = options.pixels(pixels, self.cameras.clone());
         }

@@ -37,6 +37,7 @@ const POLLED: u32 = 1 << 12;
 pub(super) struct Emission {
     pub(super) positions: Vec<[f64; 3]>,
     pub(super) normals: Vec<[f64; 3]>,
+    /// Empty where nobody asks for them.
     pub(super) origins: Vec<Origin>,
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) twins: Vec<u32>,
@@ -130,13 +131,13 @@ pub(super) enum Extend {
 /// Emits all leaves, or those of some control faces only. `closed` is what the walks over the faces found, `before` what was
 /// emitted last and the control faces that were walked over since: others are taken over as they are.
 ///
-/// With some faces only, other faces have no triangles and no vertices inside.
+/// With some faces only, other faces have no triangles and no vertices inside; `has_origins` if origins are asked for.
 pub(super) fn emit(
     (control, watch): (&Control<'_>, &SharedWatch<'_>),
     edges: &Edges<'_>,
     (decision, chains): (&Decision, &Chains),
     closed: &[Closed],
-    only: Option<&[Extend]>,
+    (only, has_origins): (Option<&[Extend]>, bool),
     before: Option<(&Emission, &[bool])>,
 ) -> Result<Emission, RefineError> {
     let faces = control.mesh.face_count();
@@ -171,7 +172,7 @@ pub(super) fn emit(
     let mut emission = Emission {
         positions: vec![[0.0; 3]; on_edges + inside],
         normals: vec![[0.0; 3]; on_edges + inside],
-        origins: nowhere(on_edges + inside, watch)?,
+        origins: nowhere(if has_origins { on_edges + inside } else { 0 }, watch)?,
         triangles: vec![[0; 3]; total],
         twins: vec![0; 3 * total],
         parents: vec![0; total],
@@ -247,6 +248,9 @@ fn corners(control: &Control<'_>, emission: &mut Emission, watch: &SharedWatch<'
     let count = control.mesh.vertex_count();
     emission.positions[..count].copy_from_slice(&control.positions);
     emission.normals[..count].copy_from_slice(control.sided.by_vertex());
+    if emission.origins.is_empty() {
+        return Ok(());
+    }
     watch.each((0..).zip(control.mesh.triangles()), |(face, triangle)| {
         for (corner, &vertex) in triangle.iter().enumerate() {
             let origin = &mut emission.origins[vertex as usize];
@@ -283,8 +287,8 @@ fn jobs<'a>(
     let count = control.mesh.vertex_count();
     let Emission { positions, normals, origins, triangles, twins, parents, borders, .. } = emission;
     let first = count as u32;
-    let (positions, normals, origins) =
-        (&mut positions[count..], &mut normals[count..], &mut origins[count..]);
+    let origins = origins.get_mut(count..).unwrap_or_default();
+    let (positions, normals) = (&mut positions[count..], &mut normals[count..]);
     let mut inside = Vertices { first, positions, normals, origins };
     let mut on_edges = inside.take(chains.count());
     let mut rest = (&mut triangles[..], &mut twins[..], &mut parents[..], &mut borders.half_edges[..]);

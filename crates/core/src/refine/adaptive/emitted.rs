@@ -10,7 +10,7 @@ use super::rim::{Rim, bits};
 use super::surface::{Ground, Spot, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
 use crate::certificate::{Cell, Pieces, SubTriangle};
-use crate::emit::{Diagonal, closure};
+use crate::closure::{Diagonal, closure};
 use crate::parallel::IsStopped;
 use crate::patch::{LimitPoint, Rules};
 

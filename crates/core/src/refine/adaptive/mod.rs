@@ -156,6 +156,7 @@ fn with_engine<T>(
         max_levels: options.max_levels as u32,
         watch: &watch,
         is_balanced: options.balance,
+        has_origins: options.origins,
         rounding,
     };
     watch.stage(Stage::Refining, None)?;
@@ -183,6 +184,8 @@ pub(super) struct Engine<'a> {
     watch: &'a SharedWatch<'a>,
     /// Vertices are moved off the surface.
     is_balanced: bool,
+    /// Vertices tell where they came from.
+    has_origins: bool,
     /// What rounding may do to a distance.
     rounding: f64,
 }
@@ -313,7 +316,8 @@ impl Engine<'_> {
     fn emit_some(&self, plan: &Plan, only: Option<&[Extend]>) -> Result<Emission, RefineError> {
         let before = plan.emission.as_ref().map(|emission| (emission, &plan.is_touched[..]));
         let chains = (&plan.decision, &plan.chains);
-        emit::emit((self.control, self.watch), &self.edges, chains, &plan.closed, only, before)
+        let extend = (only, self.has_origins);
+        emit::emit((self.control, self.watch), &self.edges, chains, &plan.closed, extend, before)
     }
 
     /// Emits all of a plan.

@@ -96,7 +96,9 @@ impl Kept<'_> {
             let (from, at) = (from..from + count, at..at + count);
             to.positions[at.clone()].copy_from_slice(&positions[from.clone()]);
             to.normals[at.clone()].copy_from_slice(&normals[from.clone()]);
-            to.origins[at].copy_from_slice(&origins[from]);
+            if !origins.is_empty() {
+                to.origins[at].copy_from_slice(&origins[from]);
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use super::super::rim::{Rim, bits};
 use super::super::surface::{Spot, Surface};
 use super::super::walk::{Knot, Node, Visitor};
 use super::fraction;
-use crate::emit::{Diagonal, closure};
+use crate::closure::{Diagonal, closure};
 use crate::mesh::NONE;
 use crate::parallel::IsStopped;
 use crate::patch::LimitPoint;
@@ -16,7 +16,7 @@ use crate::refine::exact_result::Origin;
 /// Rows that are written between two questions whether that is still of use.
 const ROWS: usize = 64;
 
-/// A run of vertices to be written: the first's number, then positions, normals, origins.
+/// A run of vertices to be written: the first's number, then positions, normals, and origins where they are asked for.
 pub(super) struct Vertices<'a> {
     pub(super) first: u32,
     pub(super) positions: &'a mut [[f64; 3]],
@@ -27,11 +27,10 @@ pub(super) struct Vertices<'a> {
 impl<'a> Vertices<'a> {
     /// Takes the first `count` off.
     pub(super) fn take(&mut self, count: usize) -> Vertices<'a> {
-        let (positions, normals, origins) = (
-            split_off(&mut self.positions, count),
-            split_off(&mut self.normals, count),
-            split_off(&mut self.origins, count),
-        );
+        let (positions, normals) =
+            (split_off(&mut self.positions, count), split_off(&mut self.normals, count));
+        let all = self.origins.len();
+        let origins = split_off(&mut self.origins, count.min(all));
         let first = self.first;
         self.first += count as u32;
         Vertices { first, positions, normals, origins }
@@ -41,7 +40,9 @@ impl<'a> Vertices<'a> {
         let at = (vertex - self.first) as usize;
         self.positions[at] = point.position.to_array();
         self.normals[at] = point.normal.to_array();
-        self.origins[at] = origin;
+        if let Some(known) = self.origins.get_mut(at) {
+            *known = origin;
+        }
     }
 }
 
@@ -121,9 +122,11 @@ impl Writer<'_> {
                 &mut self.inside.positions[row.clone()],
                 &mut self.inside.normals[row],
             );
-            for i in 1..=count {
-                let leaf = own.leaf(node.depth, i, j);
-                self.inside.origins[at + i - 1] = self.origin([leaf.u, leaf.v]);
+            if !self.inside.origins.is_empty() {
+                for i in 1..=count {
+                    let leaf = own.leaf(node.depth, i, j);
+                    self.inside.origins[at + i - 1] = self.origin([leaf.u, leaf.v]);
+                }
             }
             at += count;
             if self.is_over(j) {
