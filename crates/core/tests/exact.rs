@@ -395,6 +395,7 @@ fn budgets_see_that_levels_are_used_up() {
     ];
     for (control, levels, budget) in cases {
         let options = ExactOptions::default().max_levels(levels).max_triangles(None).triangles(budget);
+        let options = options.flat_regions(false);
         let mut rounds = 0;
         let result = exact_observed(control, &Loop, &options, &mut |progress| {
             rounds = if progress.stage == Stage::Refining { progress.done.max(rounds) } else { rounds };

@@ -56,6 +56,13 @@ pub(crate) struct ExactArguments {
     #[arg(long)]
     pub(crate) optimize: bool,
 
+    /// Divide what lies in a plane like all the rest
+    ///
+    /// Otherwise a region of the surface that lies in a plane, such as the end of a cylinder with a creased rim, gets triangles
+    /// between the vertices of its rim and of the control mesh alone: as near to the surface with far fewer triangles.
+    #[arg(long)]
+    pub(crate) divide_flat: bool,
+
     /// Divide no part of a control face more often [1 to 24; default: 24]
     ///
     /// What was reached by then is written, and the exit code is 3.

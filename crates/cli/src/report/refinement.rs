@@ -129,6 +129,7 @@ pub(crate) struct ExactParametersReport {
     pub(crate) cameras: Vec<CameraReport>,
     pub(crate) balance: bool,
     pub(crate) optimize: bool,
+    pub(crate) divide_flat: bool,
     pub(crate) max_levels: usize,
     /// In bytes.
     pub(crate) max_memory: Option<usize>,

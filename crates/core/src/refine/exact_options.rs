@@ -39,6 +39,10 @@ pub struct ExactOptions {
     /// Tells where each vertex came from, [`Exact::origins`](super::Exact::origins), which is a quarter of what a result takes.
     /// Default: yes.
     pub origins: bool,
+    /// Regions of control faces whose limit surface lies in a plane are triangulated from their rims alone, with no vertices
+    /// inside but those of the control mesh; the set of points is the same, and so is its distance. Else their triangles follow the
+    /// hierarchy like all others. Not with [`Self::balance`]. Default: yes.
+    pub flat_regions: bool,
     /// Levels at most below the control faces: up to 30. Default: 24.
     pub max_levels: usize,
     /// Triangles at most, as a cap rather than a goal: reaching it is a failure to meet the others. Default: 50
@@ -72,6 +76,7 @@ impl Default for ExactOptions {
             balance: false,
             optimize: false,
             origins: true,
+            flat_regions: true,
             max_levels: USUAL_LEVELS,
             max_triangles: Some(USUAL_TRIANGLES),
             max_memory: None,
@@ -125,6 +130,12 @@ impl ExactOptions {
     /// Sets [`Self::origins`].
     pub fn origins(mut self, origins: bool) -> Self {
         self.origins = origins;
+        self
+    }
+
+    /// Sets [`Self::flat_regions`].
+    pub fn flat_regions(mut self, flat_regions: bool) -> Self {
+        self.flat_regions = flat_regions;
         self
     }
 

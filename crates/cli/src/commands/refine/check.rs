@@ -86,6 +86,7 @@ fn exact_options(arguments: &RefineArguments) -> anyhow::Result<()> {
         ("--camera-path", !exact.camera_path.is_empty()),
         ("--balance", exact.balance),
         ("--optimize", exact.optimize),
+        ("--divide-flat", exact.divide_flat),
         ("--max-memory", exact.max_memory.is_some()),
         ("--dry-run", exact.dry_run),
         ("--max-levels", exact.max_levels.is_some()),

@@ -73,6 +73,7 @@ impl Goals {
             .max_memory(arguments.exact.max_memory)
             .balance(arguments.exact.balance)
             .optimize(arguments.exact.optimize)
+            .flat_regions(!arguments.exact.divide_flat)
             .origins(arguments.exact.provenance);
         if let Some(pixels) = self.pixels {
             options = options.pixels(pixels, self.cameras.clone());
@@ -233,6 +234,7 @@ pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> Paramete
             cameras: goals.cameras.iter().map(CameraReport::from).collect(),
             balance: options.balance,
             optimize: options.optimize,
+            divide_flat: arguments.exact.divide_flat,
             max_levels: options.max_levels,
             max_memory: options.max_memory,
             provenance: arguments.exact.provenance,

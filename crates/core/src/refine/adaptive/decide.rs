@@ -7,6 +7,7 @@
 mod allowances;
 mod even_parts;
 
+use super::flat::FlatRegions;
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
@@ -43,6 +44,8 @@ pub(super) struct Control<'a> {
     /// Limit normals by side.
     pub(super) sided: SidedNormals,
     pub(super) rules: &'a Rules<'a>,
+    /// The faces whose surface is a part of a plane.
+    pub(super) flat: FlatRegions,
     /// What is asked; `None` where nothing but distances and numbers of triangles count.
     pub(super) criteria: Option<Criteria>,
 }
@@ -207,8 +210,9 @@ struct Decider<'a> {
     has_failed: bool,
     cell_rows: Box<CellRows>,
     marks: [Marks; MOST_TESTED],
-    /// Leaves that were not added to the count.
+    /// Leaves that were not added to the count, and so many of them count as one.
     leaves: usize,
+    weight: usize,
     count: &'a Count,
     is_stopped: &'a IsStopped<'a>,
 }
@@ -235,6 +239,7 @@ impl<'a> Decider<'a> {
             cell_rows: Box::default(),
             marks: Default::default(),
             leaves: 0,
+            weight: 1,
             count,
             is_stopped,
         }
@@ -248,6 +253,11 @@ impl<'a> Decider<'a> {
             return Found { extent, allowance, has_failed: false, conditions: Vec::new() };
         }
         self.judge = self.goal.judge(self.control, self.max_levels, face);
+        let weight = self.control.flat.weight(face);
+        if weight != self.weight {
+            self.tell();
+            self.weight = weight;
+        }
         let patch = self.control.patch(face);
         let corners = self.control.corners(face);
         (self.extent, self.has_failed) = (Extent::NONE, false);
@@ -284,7 +294,8 @@ impl<'a> Decider<'a> {
 
     /// Tells how many leaves were not told yet.
     fn tell(&mut self) {
-        self.count.leaves.fetch_add(core::mem::take(&mut self.leaves), Ordering::Relaxed);
+        let leaves = core::mem::take(&mut self.leaves).div_ceil(self.weight);
+        self.count.leaves.fetch_add(leaves, Ordering::Relaxed);
     }
 
     /// What triangles of a face count on at first.

@@ -22,6 +22,7 @@ mod close;
 mod decide;
 mod emit;
 mod emitted;
+mod flat;
 mod judge;
 mod leaf;
 mod measure;
@@ -53,6 +54,7 @@ use chains::{Chains, first_of};
 use close::close;
 use decide::{Control, decide};
 use emit::{Emission, Extend};
+use flat::FlatRegions;
 use judge::Goal;
 use plan::Plan;
 use quadtree::{Edges, Place, Trees};
@@ -138,9 +140,8 @@ fn with_engine<T>(
     join_copies(&mut positions, &mesh.junctions().vertices);
     let sharpness = Sharpness::of(mesh);
     let lasting = sharpness.lasting();
-    let rounding = probe::rounding(mesh, options.max_levels, &watch)?;
-    let criteria = criteria(mesh, options, rounding)?;
-    let control = Control {
+    let edges = Edges::of(mesh);
+    let mut control = Control {
         mesh,
         sharpness: &sharpness,
         large: LargeRings::of(mesh),
@@ -148,11 +149,17 @@ fn with_engine<T>(
         positions,
         sided,
         rules: &rules,
-        criteria,
+        flat: FlatRegions::default(),
+        criteria: None,
     };
+    if options.flat_regions && !options.balance {
+        control.flat = FlatRegions::of(&control, &edges, options, &watch)?;
+    }
+    let rounding = probe::rounding(mesh, options.max_levels, &watch)? + control.flat.rounding();
+    control.criteria = criteria(mesh, options, rounding)?;
     let engine = Engine {
         control: &control,
-        edges: Edges::of(mesh),
+        edges,
         max_levels: options.max_levels as u32,
         watch: &watch,
         is_balanced: options.balance,
@@ -335,6 +342,12 @@ impl Engine<'_> {
         Ok(emission)
     }
 
+    /// Triangles that a plan comes to.
+    fn triangles(&self, plan: &Plan) -> usize {
+        let own = |face: u32| plan.closed[face as usize].triangles as usize;
+        self.control.flat.count((self.control, &self.edges), &plan.chains, own)
+    }
+
     fn split(&self, trees: &mut Trees, place: Place, fresh: impl FnMut(Place)) -> Result<(), RefineError> {
         trees.split(place, fresh).then_some(()).ok_or_else(|| trees.too_many(4).into())
     }
@@ -408,7 +421,7 @@ impl Engine<'_> {
                 }
             })?;
             plan.chains = chains;
-            plan.triangles = plan.closed.iter().map(|face| face.triangles as usize).sum();
+            plan.triangles = self.triangles(plan);
             self.watch.round(plan.triangles)?;
             if plan.triangles > most {
                 return Ok(false);

@@ -1,8 +1,10 @@
 //! What is handed out: the emitted mesh with all that is known of it.
 
 use super::emit::Emission;
+use super::flat::Assembled;
 use super::judge::Goal;
 use super::measure::{Measured, measure};
+use super::settle::sharp_edges;
 use super::{BLOCK, Engine, Plan, block, probe, sides};
 use crate::certificate::{TriangleFrame, exceeds};
 use crate::criterion::{Criteria, Region};
@@ -84,7 +86,15 @@ impl Outcome {
         });
         let levels = levels?.into_iter().flatten().max().unwrap_or(0);
         drop(plan);
-        let Emission { positions, normals, origins, triangles, twins, parents, junctions, .. } = emission;
+        let sharp = sharp_edges(&emission, watch)?;
+        let Emission { positions, normals, origins, triangles, twins, parents, starts, junctions, .. } =
+            emission;
+        let whole =
+            Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions };
+        let corners = control.mesh.vertex_count();
+        let whole = control.flat.merge(whole, (&starts, &sharp), corners, watch)?;
+        let Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions } =
+            whole;
         let outgoing =
             outgoing_half_edges_polled(&triangles, &twins, positions.len(), &mut |_| watch.poll())?;
         let topology = Topology::from_parts(triangles, twins, outgoing);

@@ -1,0 +1,184 @@
+//! Regions of control faces whose limit surface is a part of a plane, such as the ends of a cylinder with creased rims.
+//!
+//! There the quadtrees only follow the rim: what they put inside adds nothing. Once everything is emitted, a region's triangles
+//! give way to the constrained Delaunay triangulation of its rim and its control vertices ([`merge`], [`planar`]). Distances do not
+//! change: a planar triangulation whose triangles all turn the same way and whose border is simple covers what is inside that
+//! border, so before and after it is the same set of points, and what is proven of the one holds for the other.
+//!
+//! A face is flat where the control points whose hull holds its piece of the surface lie in the plane. A triangulation of
+//! a region with the same control vertices and K vertices inside its rim's control edges has K triangles more than there are
+//! control faces, by Euler's formula, whatever its holes: so plans know their triangles without any triangulation.
+
+mod merge;
+mod planar;
+
+pub(super) use merge::Assembled;
+
+use super::chains::Chains;
+use super::decide::Control;
+use super::quadtree::Edges;
+use crate::index::HalfEdgeId;
+use crate::mesh::NONE;
+use crate::progress::{Cancelled, SharedWatch};
+use crate::refine::exact_options::ExactOptions;
+use crate::vector::{DVec3, vector};
+
+/// How far control points may be off a plane, as a part of the greatest coordinate: files in single precision round to half of this.
+const IN_PLANE: f64 = 2e-7;
+
+/// The same as a part of the tolerance.
+const OF_TOLERANCE: f64 = 1e-3;
+
+/// Faces whose unit normals differ by more than this are not looked at any closer.
+const ALIKE: f64 = 1e-3;
+
+/// So many leaves of a flat face count as one where memory is not limited: along a rim that is divided into hundreds of parts, half
+/// of them lie within a few parts of it.
+const WEIGHT: usize = 16;
+
+/// Control faces that one call takes together.
+const BLOCK: usize = 1024;
+
+/// A plane through a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane {
+    point: DVec3,
+    normal: DVec3,
+}
+
+impl Plane {
+    fn height(&self, point: DVec3) -> f64 {
+        (point - self.point).dot(self.normal)
+    }
+}
+
+/// The flat regions of a control mesh.
+#[derive(Default)]
+pub(super) struct FlatRegions {
+    /// By control face, its region; [`NONE`] where it is not flat. Empty without regions.
+    of_face: Vec<u32>,
+    /// By region, its faces, ascending, and its plane.
+    regions: Vec<(Vec<u32>, Plane)>,
+    /// How far the surface, and so what stands for it, may be off the planes.
+    apart: f64,
+    /// So many leaves of a flat face count as one while faces are divided.
+    weight: usize,
+}
+
+impl FlatRegions {
+    /// Finds the regions.
+    pub(super) fn of(
+        control: &Control<'_>,
+        edges: &Edges<'_>,
+        options: &ExactOptions,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Self, Cancelled> {
+        let mesh = control.mesh;
+        let size = mesh.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        let share = options.tolerance.map_or(f64::INFINITY, |tolerance| OF_TOLERANCE * tolerance);
+        let apart = share.min(IN_PLANE * size);
+        let found = watch.pieces(mesh.face_count(), BLOCK, |block| {
+            let flat = block.map(|face| face as u32).filter(|&face| may_be_flat(control, edges, face));
+            flat.collect::<Vec<u32>>()
+        })?;
+        let mut flat = found.concat();
+        if flat.is_empty() {
+            return Ok(Self::default());
+        }
+        // The largest faces know their planes best.
+        let area = |face: u32| mesh.face_normal_vector(face as usize).length_squared();
+        flat.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
+        let mut of_face = vec![NONE; mesh.face_count()];
+        let mut is_left = vec![false; mesh.face_count()];
+        flat.iter().for_each(|&face| is_left[face as usize] = true);
+        let mut regions = Vec::new();
+        for seed in flat {
+            watch.poll()?;
+            if !is_left[seed as usize] {
+                continue;
+            }
+            let point = vector(mesh.positions()[mesh.triangles()[seed as usize][0] as usize]);
+            let plane = Plane { point, normal: mesh.unit_face_normal(seed as usize) };
+            is_left[seed as usize] = false;
+            if !is_in(control, seed, &plane, apart) {
+                continue;
+            }
+            let mut faces = vec![seed];
+            let mut next = 0;
+            while let Some(&face) = faces.get(next) {
+                next += 1;
+                let open = control.open(face);
+                for edge in (0..3u32).filter(|&edge| !open[edge as usize]) {
+                    let Some(beside) = edges.twin(3 * face + edge).map(|twin| twin / 3) else { continue };
+                    if is_left[beside as usize] && is_in(control, beside, &plane, apart) {
+                        is_left[beside as usize] = false;
+                        faces.push(beside);
+                    }
+                }
+            }
+            faces.sort_unstable();
+            faces.iter().for_each(|&face| of_face[face as usize] = regions.len() as u32);
+            regions.push((faces, plane));
+        }
+        let weight = if options.max_memory.is_some() { 1 } else { WEIGHT };
+        Ok(Self { of_face, regions, apart, weight })
+    }
+
+    /// How much farther apart mesh and surface may be for what stands in the planes.
+    pub(super) fn rounding(&self) -> f64 {
+        if self.regions.is_empty() { 0.0 } else { 2.0 * self.apart }
+    }
+
+    /// How many leaves of a face count as one triangle while faces are divided: of those of flat faces most are not going to stay.
+    pub(super) fn weight(&self, face: u32) -> usize {
+        if self.region(face).is_some() { self.weight } else { 1 }
+    }
+
+    /// The region of a face.
+    pub(super) fn region(&self, face: u32) -> Option<u32> {
+        self.of_face.get(face as usize).copied().filter(|&region| region != NONE)
+    }
+
+    /// Triangles of a plan: `own` gives those of a face that is not flat.
+    pub(super) fn count(
+        &self,
+        (control, edges): (&Control<'_>, &Edges<'_>),
+        chains: &Chains,
+        own: impl Fn(u32) -> usize,
+    ) -> usize {
+        let count = |face: u32| {
+            if self.region(face).is_none() {
+                return own(face);
+            }
+            let rim = (3 * face..3 * face + 3).filter(|&h| self.is_rim((control, edges), h));
+            1 + rim.map(|h| chains.along(edges, h)).sum::<usize>()
+        };
+        (0..control.mesh.face_count() as u32).map(count).sum()
+    }
+
+    /// Whether a half-edge of a flat face is on the rim of its region.
+    fn is_rim(&self, (control, edges): (&Control<'_>, &Edges<'_>), h: u32) -> bool {
+        let is_sharp = control.lasting.edge(HalfEdgeId(h)) > 0.0;
+        is_sharp || edges.twin(h).is_none_or(|twin| self.region(twin / 3) != self.region(h / 3))
+    }
+}
+
+/// Whether a face may be flat: most are told apart by those beside them.
+fn may_be_flat(control: &Control<'_>, edges: &Edges<'_>, face: u32) -> bool {
+    let normal = control.mesh.unit_face_normal(face as usize);
+    let open = control.open(face);
+    let beside =
+        (0..3u32).filter(|&edge| !open[edge as usize]).filter_map(|edge| edges.twin(3 * face + edge));
+    let mut normals = beside.map(|twin| control.mesh.unit_face_normal(twin as usize / 3));
+    normal != DVec3::ZERO && normals.all(|other| other.distance_squared(normal) <= ALIKE * ALIKE)
+}
+
+/// Whether the surface over a face lies in a plane.
+fn is_in(control: &Control<'_>, face: u32, plane: &Plane, apart: f64) -> bool {
+    if control.mesh.unit_face_normal(face as usize).dot(plane.normal) <= 0.0 {
+        return false;
+    }
+    let mut is_in = true;
+    control.patch(face).for_each_hull_point(|point| is_in &= plane.height(point).abs() <= apart);
+    is_in
+}

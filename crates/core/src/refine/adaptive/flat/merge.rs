@@ -1,0 +1,313 @@
+//! Puts the triangulations of flat regions in the place of what was emitted there.
+
+use std::collections::{HashMap, HashSet};
+
+use super::{FlatRegions, Plane, planar};
+use crate::mesh::{Junctions, NONE, Tags};
+use crate::parallel::IsStopped;
+use crate::progress::{Cancelled, SharedWatch};
+use crate::refine::exact_result::Origin;
+use crate::vector::{DVec3, vector};
+
+/// Regions that one call takes together.
+const BLOCK: usize = 1;
+
+/// Twice the area of a triangle may be as far below zero by rounding, where the region is as large as one.
+const AREA_ROUNDING: f64 = 1e-14;
+
+/// Areas before and after may differ by this part.
+const SAME_AREA: f64 = 1e-9;
+
+/// What the emitted mesh consists of.
+pub(in super::super) struct Assembled {
+    pub(in super::super) positions: Vec<[f64; 3]>,
+    pub(in super::super) normals: Vec<[f64; 3]>,
+    /// Empty where nobody asks for them.
+    pub(in super::super) origins: Vec<Origin>,
+    pub(in super::super) triangles: Vec<[u32; 3]>,
+    pub(in super::super) twins: Vec<u32>,
+    pub(in super::super) parents: Vec<u32>,
+    pub(in super::super) tags: Tags,
+    /// Normals of corners at sharp edges, by half-edge, ascending.
+    pub(in super::super) sides: Vec<(u32, [f64; 3])>,
+    pub(in super::super) junctions: Junctions,
+}
+
+/// A region's triangles with their control faces, by control face.
+type Covering = Vec<([u32; 3], u32)>;
+
+impl FlatRegions {
+    /// Triangulates the regions anew. `starts` has the first triangle of each control face and one more, `sharp` the half-edges
+    /// along sharp edges, and `corners` is the number of control vertices, which all stay.
+    pub(in super::super) fn merge(
+        &self,
+        whole: Assembled,
+        (starts, sharp): (&[u32], &HashSet<u32>),
+        corners: usize,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Assembled, Cancelled> {
+        if self.regions.is_empty() {
+            return Ok(whole);
+        }
+        let coverings = watch.long_pieces(self.regions.len(), BLOCK, |block, is_stopped| {
+            block.map(|region| self.covering(region, &whole, (starts, sharp, corners), is_stopped)).collect()
+        })?;
+        let coverings: Vec<Option<Covering>> = coverings.into_iter().flat_map(|list: Vec<_>| list).collect();
+        if coverings.iter().all(Option::is_none) {
+            return Ok(whole);
+        }
+        self.replaced(whole, starts, &coverings, corners, watch)
+    }
+
+    /// The triangles of a region, if they can be fewer than those that were emitted.
+    fn covering(
+        &self,
+        region: usize,
+        whole: &Assembled,
+        (starts, sharp, corners): (&[u32], &HashSet<u32>, usize),
+        is_stopped: &IsStopped<'_>,
+    ) -> Option<Covering> {
+        let (faces, plane) = &self.regions[region];
+        let before = faces.iter().flat_map(|&face| starts[face as usize]..starts[face as usize + 1]);
+        let before: Vec<u32> = before.collect();
+        if before.len() == faces.len() {
+            return None;
+        }
+        let mut flat = Flattened::new(plane, self.apart, &whole.positions);
+        let (mut rim, mut along, mut area) = (Vec::new(), HashMap::new(), 0.0);
+        for &triangle in &before {
+            let vertices = whole.triangles[triangle as usize];
+            area += flat.area(vertices)?;
+            for (edge, &vertex) in vertices.iter().enumerate() {
+                let h = 3 * triangle + edge as u32;
+                let beyond = whole.twins[h as usize];
+                let is_within = beyond != NONE
+                    && !sharp.contains(&h)
+                    && self.region(whole.parents[beyond as usize / 3]) == Some(region as u32);
+                if !is_within {
+                    let ends = [vertex, vertices[(edge + 1) % 3]];
+                    along.insert(ends, whole.parents[triangle as usize]);
+                    rim.push(ends.map(|vertex| flat.number(vertex)));
+                } else if (vertex as usize) < corners {
+                    flat.number(vertex);
+                }
+            }
+        }
+        let points = flat.points()?;
+        let triangles = planar::triangulated(&points, &rim, &|| is_stopped())?;
+        let triangles: Vec<[u32; 3]> =
+            triangles.iter().map(|triangle| triangle.map(|point| flat.vertices[point as usize])).collect();
+        let mut after = 0.0;
+        for &triangle in &triangles {
+            after += flat.area(triangle)?;
+        }
+        let is_same = triangles.len() < before.len() && (after - area).abs() <= SAME_AREA * area;
+        is_same.then(|| by_face(triangles, &along))
+    }
+
+    /// The mesh with the coverings that there are.
+    fn replaced(
+        &self,
+        whole: Assembled,
+        starts: &[u32],
+        coverings: &[Option<Covering>],
+        corners: usize,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Assembled, Cancelled> {
+        let covering = |face: u32| self.region(face).and_then(|region| coverings[region as usize].as_ref());
+        let (mut triangles, mut parents) = (Vec::new(), Vec::new());
+        let mut first_new = vec![NONE; whole.triangles.len()];
+        // By its ends, each half-edge of the new triangles.
+        let (mut new, mut fresh) = (HashMap::new(), Vec::new());
+        watch.each(0..starts.len() as u32 - 1, |face| {
+            let before = starts[face as usize]..starts[face as usize + 1];
+            let Some(covering) = covering(face) else {
+                for triangle in before {
+                    first_new[triangle as usize] = triangles.len() as u32;
+                    triangles.push(whole.triangles[triangle as usize]);
+                    parents.push(face);
+                }
+                return;
+            };
+            let first = covering.partition_point(|&(_, parent)| parent < face);
+            for &(triangle, _) in covering[first..].iter().take_while(|&&(_, parent)| parent == face) {
+                for edge in 0..3 {
+                    let ends = [triangle[edge], triangle[(edge + 1) % 3]];
+                    let h = 3 * triangles.len() as u32 + edge as u32;
+                    new.insert(ends, h);
+                    fresh.push((ends, h));
+                }
+                triangles.push(triangle);
+                parents.push(face);
+            }
+        })?;
+        let ends = |h: u32| [0, 1].map(|i| whole.triangles[h as usize / 3][(h as usize + i) % 3]);
+        // What was inside a region is nowhere any more.
+        let moved = |h: u32| match first_new[h as usize / 3] {
+            NONE => new.get(&ends(h)).copied().unwrap_or(NONE),
+            first => 3 * first + h % 3,
+        };
+        let mut twins = vec![NONE; 3 * triangles.len()];
+        watch.each((0u32..).zip(&whole.twins), |(h, &twin)| {
+            let (now, beyond) = (moved(h), if twin == NONE { NONE } else { moved(twin) });
+            if now != NONE && beyond != NONE {
+                twins[now as usize] = beyond;
+            }
+        })?;
+        watch.each(fresh, |([from, to], h)| {
+            if let Some(&twin) = new.get(&[to, from]) {
+                twins[h as usize] = twin;
+            }
+        })?;
+        let sides = self.sides(&whole, (&triangles, &parents), coverings, &first_new, watch)?;
+        let mut renamed = vec![NONE; whole.positions.len()];
+        renamed[..corners].fill(0);
+        watch.each(triangles.as_flattened(), |&vertex| renamed[vertex as usize] = 0)?;
+        let kept: Vec<usize> = (0..renamed.len()).filter(|&vertex| renamed[vertex] == 0).collect();
+        watch.each((0..).zip(&kept), |(now, &vertex)| renamed[vertex] = now)?;
+        let name = |vertex: u32| renamed[vertex as usize];
+        watch.each(triangles.as_flattened_mut(), |vertex| *vertex = name(*vertex))?;
+        let (mut tags, mut junctions) = (whole.tags, whole.junctions);
+        tags.creases.iter_mut().for_each(|tag| tag.vertices = tag.vertices.map(name));
+        tags.corners.iter_mut().for_each(|tag| tag.vertex = name(tag.vertex));
+        junctions.vertices.rename(name);
+        let borders = core::mem::take(&mut junctions.edges);
+        borders.iter().for_each(|group| junctions.edges.push(group.iter().map(|&h| moved(h))));
+        let origins = if whole.origins.is_empty() { &[][..] } else { &kept[..] };
+        Ok(Assembled {
+            positions: kept.iter().map(|&vertex| whole.positions[vertex]).collect(),
+            normals: kept.iter().map(|&vertex| whole.normals[vertex]).collect(),
+            origins: origins.iter().map(|&vertex| whole.origins[vertex]).collect(),
+            triangles,
+            twins,
+            parents,
+            tags,
+            sides,
+            junctions,
+        })
+    }
+
+    /// The normals of corners at sharp edges: a region has one for each of its vertices that is on one.
+    fn sides(
+        &self,
+        whole: &Assembled,
+        (triangles, parents): (&[[u32; 3]], &[u32]),
+        coverings: &[Option<Covering>],
+        first_new: &[u32],
+        watch: &SharedWatch<'_>,
+    ) -> Result<Vec<(u32, [f64; 3])>, Cancelled> {
+        let region = |face: u32| self.region(face).filter(|&region| coverings[region as usize].is_some());
+        let (mut sides, mut at_rims) = (Vec::with_capacity(whole.sides.len()), HashMap::new());
+        watch.each(&whole.sides, |&(h, normal)| match first_new[h as usize / 3] {
+            NONE => {
+                let vertex = whole.triangles[h as usize / 3][h as usize % 3];
+                at_rims.insert((region(whole.parents[h as usize / 3]), vertex), normal);
+            }
+            first => sides.push((3 * first + h % 3, normal)),
+        })?;
+        if at_rims.is_empty() {
+            return Ok(sides);
+        }
+        watch.each((0u32..).zip(triangles.iter().zip(parents)), |(triangle, (vertices, &parent))| {
+            if let Some(region) = region(parent) {
+                for (corner, &vertex) in (0u32..).zip(vertices) {
+                    let normal = at_rims.get(&(Some(region), vertex));
+                    sides.extend(normal.map(|&normal| (3 * triangle + corner, normal)));
+                }
+            }
+        })?;
+        sides.sort_unstable_by_key(|&(h, _)| h);
+        Ok(sides)
+    }
+}
+
+/// Gives each triangle a control face: that of a rim edge of its own, else that of a triangle beside it.
+fn by_face(triangles: Vec<[u32; 3]>, along: &HashMap<[u32; 2], u32>) -> Covering {
+    let edges = |triangle: [u32; 3]| [0, 1, 2].map(|edge| [triangle[edge], triangle[(edge + 1) % 3]]);
+    let mut by_edge = HashMap::new();
+    for (at, &triangle) in triangles.iter().enumerate() {
+        edges(triangle).into_iter().for_each(|ends| {
+            by_edge.insert(ends, at);
+        });
+    }
+    let on_rim =
+        |&triangle: &[u32; 3]| edges(triangle).into_iter().find_map(|ends| along.get(&ends).copied());
+    let mut faces: Vec<Option<u32>> = triangles.iter().map(on_rim).collect();
+    let mut known: Vec<usize> = (0..faces.len()).filter(|&at| faces[at].is_some()).collect();
+    let mut next = 0;
+    while let Some(&at) = known.get(next) {
+        next += 1;
+        for [from, to] in edges(triangles[at]) {
+            if along.contains_key(&[from, to]) {
+                continue;
+            }
+            if let Some(&beside) = by_edge.get(&[to, from])
+                && faces[beside].is_none()
+            {
+                faces[beside] = faces[at];
+                known.push(beside);
+            }
+        }
+    }
+    let faces = faces.into_iter().map(|face| face.unwrap_or(0));
+    let mut covering: Covering = triangles.into_iter().zip(faces).collect();
+    covering.sort_by_key(|&(_, face)| face);
+    covering
+}
+
+/// The vertices of a region in its plane.
+struct Flattened<'a> {
+    plane: &'a Plane,
+    axes: [DVec3; 2],
+    apart: f64,
+    positions: &'a [[f64; 3]],
+    numbers: HashMap<u32, u32>,
+    vertices: Vec<u32>,
+    /// The greatest coordinate of a triangle's corner so far.
+    size: f64,
+}
+
+impl<'a> Flattened<'a> {
+    fn new(plane: &'a Plane, apart: f64, positions: &'a [[f64; 3]]) -> Self {
+        let along = plane.normal.any_orthonormal_vector();
+        let axes = [along, plane.normal.cross(along)];
+        Self { plane, axes, apart, positions, numbers: HashMap::new(), vertices: Vec::new(), size: 0.0 }
+    }
+
+    fn offset(&self, vertex: u32) -> DVec3 {
+        vector(self.positions[vertex as usize]) - self.plane.point
+    }
+
+    fn at(&self, vertex: u32) -> [f64; 2] {
+        let offset = self.offset(vertex);
+        self.axes.map(|axis| axis.dot(offset))
+    }
+
+    /// Twice the area of a triangle; `None` where it is not in the plane, or turned over.
+    fn area(&mut self, triangle: [u32; 3]) -> Option<f64> {
+        let is_apart = |vertex: &u32| self.plane.normal.dot(self.offset(*vertex)).abs() > 1.5 * self.apart;
+        if triangle.iter().any(is_apart) {
+            return None;
+        }
+        let [[ax, ay], [bx, by], [cx, cy]] = triangle.map(|vertex| self.at(vertex));
+        self.size = [ax, ay, bx, by, cx, cy].into_iter().fold(self.size, |size, x| size.max(x.abs()));
+        let area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+        (area >= -AREA_ROUNDING * self.size * self.size).then_some(area)
+    }
+
+    /// The number of a vertex among those of the region.
+    fn number(&mut self, vertex: u32) -> u32 {
+        let next = self.vertices.len() as u32;
+        let number = *self.numbers.entry(vertex).or_insert(next);
+        if number == next {
+            self.vertices.push(vertex);
+        }
+        number
+    }
+
+    /// All of them, no coordinate greater than one; `None` where there is no telling them apart.
+    fn points(&self) -> Option<Vec<[f64; 2]>> {
+        let is_sized = self.size.is_normal();
+        is_sized.then(|| self.vertices.iter().map(|&vertex| self.at(vertex).map(|x| x / self.size)).collect())
+    }
+}

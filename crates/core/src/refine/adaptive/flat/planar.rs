@@ -1,0 +1,96 @@
+//! The constrained Delaunay triangulation of what a rim in the plane encloses.
+
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+
+/// Points and edges that are taken between two questions whether that is still of use.
+const ASKED: usize = 256;
+
+/// Triangles that cover what lies to the left of the directed rim edges, with all points for vertices. `None` where two points are
+/// at one place or rim edges cross or touch, and when stopped. Points are at most some units from the origin.
+pub(super) fn triangulated(
+    points: &[[f64; 2]],
+    rim: &[[u32; 2]],
+    is_stopped: &dyn Fn() -> bool,
+) -> Option<Vec<[u32; 3]>> {
+    let mut net = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
+    let mut handles = Vec::with_capacity(points.len());
+    for (at, &[x, y]) in points.iter().enumerate() {
+        let handle = net.insert(Point2::new(x, y)).ok()?;
+        if handle.index() != at || at.is_multiple_of(ASKED) && is_stopped() {
+            return None;
+        }
+        handles.push(handle);
+    }
+    for (at, &[from, to]) in rim.iter().enumerate() {
+        let (from, to) = (handles[from as usize], handles[to as usize]);
+        if !net.can_add_constraint(from, to) || at.is_multiple_of(ASKED) && is_stopped() {
+            return None;
+        }
+        net.add_constraint(from, to);
+    }
+    let mut is_inside = vec![false; net.num_all_faces()];
+    let mut pending = Vec::new();
+    for &[from, to] in rim {
+        // A rim edge with a point on it has become two.
+        let edge = net.get_edge_from_neighbors(handles[from as usize], handles[to as usize])?;
+        pending.push(edge.face());
+    }
+    while let Some(face) = pending.pop() {
+        let inner = face.as_inner()?;
+        if core::mem::replace(&mut is_inside[face.fix().index()], true) {
+            continue;
+        }
+        let open = inner.adjacent_edges().into_iter().filter(|edge| !edge.is_constraint_edge());
+        pending.extend(open.map(|edge| edge.rev().face()));
+    }
+    let inside = net.inner_faces().filter(|face| is_inside[face.fix().index()]);
+    Some(inside.map(|face| face.vertices().map(|vertex| vertex.fix().index() as u32)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rim(loops: &[core::ops::Range<u32>]) -> Vec<[u32; 2]> {
+        let next = |all: &core::ops::Range<u32>, at: u32| if at + 1 == all.end { all.start } else { at + 1 };
+        loops.iter().flat_map(|all| all.clone().map(|at| [at, next(all, at)]).collect::<Vec<_>>()).collect()
+    }
+
+    fn area(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> f64 {
+        let area = |triangle: &[u32; 3]| {
+            let [[a, b], [c, d], [e, f]] = triangle.map(|point| points[point as usize]);
+            let area = 0.5 * ((c - a) * (f - b) - (d - b) * (e - a));
+            assert!(area > 0.0);
+            area
+        };
+        triangles.iter().map(area).sum()
+    }
+
+    /// A square with a square hole and a point inside: what the holes leave, all points used.
+    #[test]
+    fn what_is_enclosed_is_covered() {
+        let square = |r: f64| [[-r, -r], [r, -r], [r, r], [-r, r]];
+        let mut hole = square(0.25);
+        hole.reverse();
+        let points = [&square(1.0)[..], &hole, &[[0.6, 0.1]]].concat();
+        let triangles = triangulated(&points, &rim(&[0..4, 4..8]), &|| false).unwrap();
+        assert!((area(&points, &triangles) - 3.75).abs() < 1e-12);
+        // Euler: 2 (8 + 1) − 8 − 2 · 0.
+        assert_eq!(triangles.len(), 10);
+        assert!((0..9).all(|point| triangles.as_flattened().contains(&point)));
+    }
+
+    #[test]
+    fn rims_that_cross_or_touch_are_refused() {
+        let bow = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
+        assert_eq!(triangulated(&bow, &rim(&[0..4]), &|| false), None);
+        let double = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
+        assert_eq!(triangulated(&double, &rim(&[0..5]), &|| false), None);
+        let touching = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.5, 0.0], [0.0, 1.0]];
+        assert_eq!(triangulated(&touching, &rim(&[0..5]), &|| false), None);
+        let clockwise = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]];
+        assert_eq!(triangulated(&clockwise, &rim(&[0..3]), &|| false), None);
+        let square = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        assert_eq!(triangulated(&square, &rim(&[0..3]), &|| true), None);
+    }
+}

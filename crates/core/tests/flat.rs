@@ -1,0 +1,268 @@
+//! Regions of the limit surface that lie in a plane, against exact shapes.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::f64::consts::TAU;
+
+use limitmesh::Mesh;
+use limitmesh::measure::{SamplingOptions, hausdorff, limit_reference};
+use limitmesh::mesh::{CreaseTag, INFINITELY_SHARP, Tags};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate};
+use limitmesh::scheme::Loop;
+
+/// The edges of a mesh whose faces are turned by more than 30 degrees, and the boundary, are sharp.
+fn creased(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Mesh {
+    let mesh = Mesh::from_triangles(positions, triangles).unwrap();
+    let unit = |face| {
+        let n: [f64; 3] = mesh.face_normal(face);
+        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        n.map(|x| x / length)
+    };
+    let topology = mesh.topology();
+    let mut creases = Vec::new();
+    for h in topology.half_edges() {
+        let Some(twin) = topology.twin(h).filter(|twin| h < *twin) else { continue };
+        let [a, b] = [h, twin].map(|h| unit(h.face()));
+        if (0..3).map(|i| a[i] * b[i]).sum::<f64>() < 30f64.to_radians().cos() {
+            let [from, to] = topology.ends(h);
+            creases.push(CreaseTag { vertices: [from.0, to.0], sharpness: INFINITELY_SHARP });
+        }
+    }
+    mesh.with_tags(Tags { creases, ..Tags::default() }).unwrap()
+}
+
+/// A peg of so many facets, radius 1 and height 3, turned in space by a rotation that leaves no coordinate whole; its ends are fans
+/// from a vertex of the rim.
+fn peg(facets: u32) -> Mesh {
+    let turned = |[x, y, z]: [f64; 3]| {
+        let (s, c) = 0.7f64.sin_cos();
+        let [x, y, z] = [c * x - s * y, s * x + c * y, z];
+        [x, c * y - s * z, s * y + c * z]
+    };
+    let rim = |z: f64| {
+        (0..facets).map(move |i| {
+            let (s, c) = (TAU * f64::from(i) / f64::from(facets)).sin_cos();
+            [c, s, z]
+        })
+    };
+    let positions = rim(0.0).chain(rim(3.0)).map(turned).collect();
+    let mut triangles = Vec::new();
+    for i in 0..facets {
+        let next = (i + 1) % facets;
+        triangles.extend([[i, next, facets + next], [i, facets + next, facets + i]]);
+    }
+    for i in 1..facets - 1 {
+        triangles.extend([[0, i + 1, i], [facets, facets + i, facets + i + 1]]);
+    }
+    creased(positions, triangles)
+}
+
+/// A slab with a hole through it, both round, and with vertices inside its flat sides where `has_inner`.
+fn washer(facets: u32, has_inner: bool) -> Mesh {
+    let rings: &[(f64, f64)] = if has_inner {
+        &[(2.0, 0.0), (2.0, 1.0), (1.5, 1.0), (1.0, 1.0), (1.0, 0.0), (1.5, 0.0)]
+    } else {
+        &[(2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 0.0)]
+    };
+    let ring = |&(r, z): &(f64, f64)| {
+        (0..facets).map(move |i| {
+            let (s, c) = (TAU * f64::from(i) / f64::from(facets)).sin_cos();
+            [r * c, r * s, z]
+        })
+    };
+    let positions = rings.iter().flat_map(ring).collect();
+    let mut triangles = Vec::new();
+    for (at, _) in rings.iter().enumerate() {
+        let (here, there) = (at as u32 * facets, (at as u32 + 1) % rings.len() as u32 * facets);
+        for i in 0..facets {
+            let next = (i + 1) % facets;
+            triangles.extend([[here + i, here + next, there + next], [here + i, there + next, there + i]]);
+        }
+    }
+    creased(positions, triangles)
+}
+
+fn within(tolerance: f64) -> ExactOptions {
+    ExactOptions::default().tolerance(tolerance)
+}
+
+fn cross([a, b, c]: [f64; 3], [d, e, f]: [f64; 3]) -> [f64; 3] {
+    [b * f - c * e, c * d - a * f, a * e - b * d]
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|i| a[i] * b[i]).sum()
+}
+
+/// Triangles, and area, of those whose normals are within a degree of a direction.
+fn facing(result: &Exact, direction: [f64; 3]) -> (usize, f64) {
+    let surface = result.mesh.as_triangles();
+    let (mut count, mut area) = (0, 0.0);
+    for face in 0..result.mesh.face_count() {
+        let [a, b, c] = surface.corners(face);
+        let normal = cross([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| c[i] - a[i]));
+        let length = dot(normal, normal).sqrt();
+        if dot(normal, direction) > 0.9998 * length {
+            (count, area) = (count + 1, area + 0.5 * length);
+        }
+    }
+    (count, area)
+}
+
+/// Without the option and with it: the same bounds, the same points everywhere but inside the flat regions.
+fn both(mesh: &Mesh, options: ExactOptions) -> (Exact, Exact) {
+    let merged = exact(mesh, &Loop, &options).unwrap();
+    let kept = exact(mesh, &Loop, &options.flat_regions(false)).unwrap();
+    for result in [&merged, &kept] {
+        result.mesh.validate().unwrap();
+        assert_eq!(result.stop, ExactStop::Met);
+        let faces = mesh.face_count() as u32;
+        assert!(result.parents.is_sorted() && result.parents.iter().all(|&face| face < faces));
+        assert_eq!(result.origins.len(), result.mesh.vertex_count());
+        assert_eq!(
+            result.mesh.topology().boundary_edge_count() == 0,
+            mesh.topology().boundary_edge_count() == 0
+        );
+        assert_eq!(result.mesh.topology().euler_characteristic(), mesh.topology().euler_characteristic());
+    }
+    // Surfaces may be off their planes by a thousandth of the tolerance.
+    let close = |a: f64, b: f64| (a - b).abs() <= 3e-3 * (a + b);
+    assert!(close(merged.error.upper, kept.error.upper), "{:?} {:?}", merged.error, kept.error);
+    let points = |result: &Exact| {
+        let mut points: Vec<[u64; 3]> =
+            result.mesh.positions().iter().map(|p| p.map(|x| x.to_bits())).collect();
+        points.sort_unstable();
+        points
+    };
+    let (few, many) = (points(&merged), points(&kept));
+    assert!(few.iter().all(|point| many.binary_search(point).is_ok()));
+    (merged, kept)
+}
+
+/// The ends of a peg have no vertices inside, cover what they covered, and are seen as flat.
+#[test]
+fn the_ends_of_a_peg_follow_their_rims_alone() {
+    for (facets, tolerance) in [(13, 1e-2), (16, 2e-3), (16, 1e-4)] {
+        let mesh = peg(facets);
+        let (merged, kept) = both(&mesh, within(tolerance));
+        let axis = {
+            let [a, b] = [0, facets].map(|vertex| mesh.positions()[vertex as usize]);
+            [0, 1, 2].map(|i| (b[i] - a[i]) / 3.0)
+        };
+        let mut at_ends = 0;
+        for direction in [axis, axis.map(|x| -x)] {
+            let [(few, area), (many, same)] = [&merged, &kept].map(|result| facing(result, direction));
+            assert!((area - same).abs() < 1e-12 * area, "{area} {same}");
+            assert!(many > 2 * few, "{many} {few}");
+            // As many as its rim's polygon has corners, less two.
+            let on_rim = merged.sides.iter().filter(|&&(_, normal)| dot(normal, direction) > 0.999_999);
+            let corners: std::collections::BTreeSet<u32> =
+                on_rim.map(|&(h, _)| merged.mesh.triangles()[h as usize / 3][h as usize % 3]).collect();
+            assert_eq!(few + 2, corners.len());
+            at_ends += corners.len();
+        }
+        assert!(at_ends >= 4 * facets as usize);
+        // Each corner knows its own side.
+        for h in merged.mesh.topology().half_edges() {
+            let triangle = merged.mesh.as_triangles().corners(h.face().index());
+            let normal = cross(
+                [0, 1, 2].map(|i| triangle[1][i] - triangle[0][i]),
+                [0, 1, 2].map(|i| triangle[2][i] - triangle[0][i]),
+            );
+            let along = dot(normal, merged.corner_normal(h)) / dot(normal, normal).sqrt();
+            assert!(along > 0.8, "{along}");
+        }
+    }
+}
+
+/// Holes stay, and so do control vertices.
+#[test]
+fn holes_and_control_vertices_stay() {
+    for has_inner in [false, true] {
+        let mesh = washer(12, has_inner);
+        let (merged, kept) = both(&mesh, within(2e-3));
+        assert!(merged.mesh.face_count() < kept.mesh.face_count());
+        for direction in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]] {
+            let [(few, area), (many, same)] = [&merged, &kept].map(|result| facing(result, direction));
+            assert!((area - same).abs() < 1e-12 * area, "{area} {same}");
+            assert!(few < many);
+        }
+        for vertex in 0..mesh.vertex_count() {
+            assert_eq!(merged.mesh.positions()[vertex], kept.mesh.positions()[vertex]);
+        }
+    }
+}
+
+/// A round plate with nothing beyond its rim.
+#[test]
+fn boundaries_are_rims_too() {
+    let facets = 9;
+    let mut positions = vec![[0.0; 3]];
+    positions.extend((0..facets).map(|i| {
+        let (s, c) = (TAU * f64::from(i) / f64::from(facets)).sin_cos();
+        [c, s, 0.0]
+    }));
+    let triangles = (0..facets).map(|i| [0, 1 + i, 1 + (i + 1) % facets]).collect();
+    let mesh = Mesh::from_triangles(positions, triangles).unwrap();
+    let (merged, kept) = both(&mesh, within(1e-3));
+    assert!(merged.mesh.face_count() < kept.mesh.face_count());
+    let on_rim = merged.mesh.topology().boundary_edge_count();
+    // All of the rim's corners and the one in the middle.
+    assert_eq!(merged.mesh.face_count(), on_rim);
+    assert_eq!(merged.mesh.vertex_count(), on_rim + 1);
+}
+
+/// Numbers of triangles count what is handed out.
+#[test]
+fn budgets_and_estimates_count_what_is_left() {
+    let mesh = peg(16);
+    let merged = exact(&mesh, &Loop, &within(1e-3)).unwrap();
+    let kept = exact(&mesh, &Loop, &within(1e-3).flat_regions(false)).unwrap();
+    let estimate = exact_estimate(&mesh, &Loop, &within(1e-3)).unwrap();
+    assert_eq!(estimate.triangles, merged.mesh.face_count());
+    let most = merged.mesh.face_count();
+    assert!(2 * most < kept.mesh.face_count());
+    let budget = exact(&mesh, &Loop, &ExactOptions::default().triangles(most)).unwrap();
+    assert!(budget.mesh.face_count() <= most);
+    assert!(budget.error.upper <= 1.15 * merged.error.upper, "{:?}", budget.error);
+}
+
+/// Collapses leave a rim's triangles and hold what they promise: of flat ends that follow the hierarchy nothing could be proven.
+#[test]
+fn what_is_flat_is_optimised_with_proof() {
+    let mesh = peg(16);
+    let plain = exact(&mesh, &Loop, &within(2e-3)).unwrap();
+    let optimised = exact(&mesh, &Loop, &within(2e-3).optimize(true)).unwrap();
+    optimised.mesh.validate().unwrap();
+    assert!(2 * optimised.mesh.face_count() < plain.mesh.face_count(), "{}", optimised.mesh.face_count());
+    assert!(optimised.error.upper <= 2e-3);
+    let reference = limit_reference(&mesh, &Loop, 6).unwrap();
+    let samples = SamplingOptions::default().samples(50_000);
+    let sampled = hausdorff(optimised.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+    // The reference's own chords leave the rims by less than this.
+    assert!(sampled.symmetric() <= optimised.error.upper + 2e-5, "{}", sampled.symmetric());
+}
+
+/// Planes in files of single precision are planes, and nothing curved is taken for one.
+#[test]
+fn rounded_coordinates_are_flat_and_curved_ones_are_not() {
+    let mesh = peg(16);
+    let rounded = mesh.positions().iter().map(|p| p.map(|x| f64::from(x as f32))).collect();
+    let rounded = mesh.clone().with_positions(rounded).unwrap();
+    let options = within(1e-3);
+    let [exactly, single] = [&mesh, &rounded].map(|mesh| exact(mesh, &Loop, &options).unwrap());
+    assert!(single.mesh.face_count() <= exactly.mesh.face_count() + 20);
+    assert!(single.error.upper <= 1e-3);
+    // One vertex of an end off its plane by less than a thousandth: it is in the ring of all that meet at the fan's tip.
+    let axis = [0, 1, 2].map(|i| (mesh.positions()[16][i] - mesh.positions()[0][i]) / 3.0);
+    let mut positions = mesh.positions().to_vec();
+    positions[21] = [0, 1, 2].map(|i| positions[21][i] + 5e-4 * axis[i]);
+    let bent = mesh.clone().with_positions(positions).unwrap();
+    let [merged, kept] =
+        [true, false].map(|flat| exact(&bent, &Loop, &within(1e-3).flat_regions(flat)).unwrap());
+    let [(count, area), (same, as_large)] = [&merged, &kept].map(|result| facing(result, axis));
+    // What is flat elsewhere leaves a little less of the tolerance.
+    assert!(count.abs_diff(same) < 50 && (area - as_large).abs() < 1e-6, "{count} {same}");
+    let other = axis.map(|x| -x);
+    assert!(facing(&merged, other).0 < facing(&kept, other).0);
+}
