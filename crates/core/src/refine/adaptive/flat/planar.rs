@@ -51,9 +51,14 @@ pub(super) fn triangulated(
 mod tests {
     use super::*;
 
-    fn rim(loops: &[core::ops::Range<u32>]) -> Vec<[u32; 2]> {
-        let next = |all: &core::ops::Range<u32>, at: u32| if at + 1 == all.end { all.start } else { at + 1 };
-        loops.iter().flat_map(|all| all.clone().map(|at| [at, next(all, at)]).collect::<Vec<_>>()).collect()
+    /// The edges of polygons of so many points, one after the other.
+    fn rim(polygons: &[u32]) -> Vec<[u32; 2]> {
+        let mut first = 0;
+        let polygons = polygons.iter().flat_map(|&count| {
+            first += count;
+            (0..count).map(move |at| [first - count + at, first - count + (at + 1) % count])
+        });
+        polygons.collect()
     }
 
     fn area(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> f64 {
@@ -73,7 +78,7 @@ mod tests {
         let mut hole = square(0.25);
         hole.reverse();
         let points = [&square(1.0)[..], &hole, &[[0.6, 0.1]]].concat();
-        let triangles = triangulated(&points, &rim(&[0..4, 4..8]), &|| false).unwrap();
+        let triangles = triangulated(&points, &rim(&[4, 4]), &|| false).unwrap();
         assert!((area(&points, &triangles) - 3.75).abs() < 1e-12);
         // Euler: 2 (8 + 1) − 8 − 2 · 0.
         assert_eq!(triangles.len(), 10);
@@ -83,14 +88,14 @@ mod tests {
     #[test]
     fn rims_that_cross_or_touch_are_refused() {
         let bow = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
-        assert_eq!(triangulated(&bow, &rim(&[0..4]), &|| false), None);
+        assert_eq!(triangulated(&bow, &rim(&[4]), &|| false), None);
         let double = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
-        assert_eq!(triangulated(&double, &rim(&[0..5]), &|| false), None);
+        assert_eq!(triangulated(&double, &rim(&[5]), &|| false), None);
         let touching = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.5, 0.0], [0.0, 1.0]];
-        assert_eq!(triangulated(&touching, &rim(&[0..5]), &|| false), None);
+        assert_eq!(triangulated(&touching, &rim(&[5]), &|| false), None);
         let clockwise = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]];
-        assert_eq!(triangulated(&clockwise, &rim(&[0..3]), &|| false), None);
+        assert_eq!(triangulated(&clockwise, &rim(&[3]), &|| false), None);
         let square = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-        assert_eq!(triangulated(&square, &rim(&[0..3]), &|| true), None);
+        assert_eq!(triangulated(&square, &rim(&[3]), &|| true), None);
     }
 }
