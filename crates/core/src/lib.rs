@@ -36,6 +36,7 @@
 //! | [`mesh`] | control meshes: building from any soup, repair, half-edge topology |
 //! | [`scheme`] | subdivision schemes as masks on ring shapes |
 //! | [`limit`] | limit positions and normals of any scheme from its masks |
+//! | [`mod@interpolate`] | control meshes whose limit surface passes through the vertices of a mesh |
 //! | [`criterion`] | which faces are to be divided |
 //! | [`mod@closure`] | Figure 5's patterns: triangles whose edges are split, covered without cracks |
 //! | [`refine`] | exact refinement to a goal, uniform and the paper's stepwise refinement |
@@ -48,6 +49,7 @@ pub mod closure;
 pub mod criterion;
 mod geometry;
 pub mod index;
+pub mod interpolate;
 pub mod limit;
 mod masks;
 pub mod measure;

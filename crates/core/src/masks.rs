@@ -221,6 +221,14 @@ impl<'a> Masks<'a> {
     #[cold]
     #[inline(never)]
     fn tagged_edge_point(&self, h: HalfEdgeId) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        for (share, view) in self.views_of_edge(h) {
+            sum += share * self.weigh_edge_view(&view);
+        }
+        sum
+    }
+
+    fn views_of_edge(&self, h: HalfEdgeId) -> Vec<(f64, EdgeView<VertexId>)> {
         let topology = self.mesh.topology();
         let [origin, target] = topology.ends(h).map(|end| self.labelled_ring(end));
         let slot = |ring: &LabelledRing<VertexId>, h: Option<HalfEdgeId>| {
@@ -229,11 +237,29 @@ impl<'a> Masks<'a> {
             h.and_then(place).unwrap_or(ring.neighbours.len() - 1)
         };
         let slots = [slot(&origin, Some(h)), slot(&target, topology.twin(h))];
-        let mut sum = DVec3::ZERO;
-        for (share, view) in edge_views((&origin, slots[0]), (&target, slots[1])) {
-            sum += share * self.weigh_edge_view(&view);
+        edge_views((&origin, slots[0]), (&target, slots[1]))
+    }
+
+    /// The vertices whose weighted sum [`Self::vertex_point`] is; a vertex may occur several times.
+    pub(crate) fn vertex_weights(&self, vertex: VertexId) -> Vec<(VertexId, f64)> {
+        let mut weights = Vec::new();
+        for (share, view) in vertex_views(&self.labelled_ring(vertex)) {
+            let mask = self.scheme.vertex_mask(view.shape);
+            weights.extend(view.weighted(mask.centre, &mask.ring).map(|(v, weight)| (v, share * weight)));
         }
-        sum
+        weights
+    }
+
+    /// The vertices whose weighted sum [`Self::edge_point`] is; a vertex may occur several times.
+    pub(crate) fn edge_weights(&self, h: HalfEdgeId) -> Vec<(VertexId, f64)> {
+        let mut weights = Vec::new();
+        for (share, EdgeView { shape, origin, target }) in self.views_of_edge(h) {
+            let mask = self.scheme.edge_mask(shape);
+            let at_origin = origin.weighted(mask.origin, &mask.origin_ring);
+            let at_target = target.weighted(mask.target, &mask.target_ring);
+            weights.extend(at_origin.chain(at_target).map(|(v, weight)| (v, share * weight)));
+        }
+        weights
     }
 
     fn weigh_edge_view(&self, view: &EdgeView<VertexId>) -> DVec3 {

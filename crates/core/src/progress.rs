@@ -53,6 +53,8 @@ pub enum Stage {
     Refining,
     /// Vertices are being moved to the limit surface; the units are vertices.
     Limits,
+    /// Control points are being solved for; the units are vertices.
+    Interpolating,
     /// A mesh is being put together; the units are its triangles.
     Assembling,
     /// Edges are being collapsed; the units are triangles gone.
@@ -73,6 +75,7 @@ impl fmt::Display for Stage {
         f.write_str(match self {
             Self::Refining => "refining",
             Self::Limits => "moving vertices to the limit surface",
+            Self::Interpolating => "solving for control points",
             Self::Assembling => "putting the mesh together",
             Self::Simplifying => "simplifying",
             Self::Indexing => "indexing triangles",

@@ -8,6 +8,7 @@ mod support;
 use std::ops::ControlFlow;
 
 use limitmesh::criterion::{Camera, LimitNormal};
+use limitmesh::interpolate::{InterpolateError, InterpolateOptions, interpolate, interpolate_observed};
 use limitmesh::measure::*;
 use limitmesh::progress::{Observer, Progress, Stage};
 use limitmesh::refine::{
@@ -70,6 +71,17 @@ fn refinement_is_observed() {
     watch("stepwise", plain, cancelled, |o| {
         stepwise_observed(&octahedron(), &Loop, &criterion, &options, o).map(points)
     });
+}
+
+#[test]
+fn interpolation_is_observed() {
+    let cancelled = |error: &InterpolateError| matches!(error, InterpolateError::Cancelled(_));
+    let mesh = sphere(4);
+    for within in [0.0, 1e-3] {
+        let options = InterpolateOptions::default().within(within);
+        let plain = interpolate(&mesh, &Loop, &options).unwrap();
+        watch("interpolate", plain, cancelled, |o| interpolate_observed(&mesh, &Loop, &options, o));
+    }
 }
 
 #[test]

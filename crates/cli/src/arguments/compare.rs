@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::values;
-use super::{BuildArguments, FeatureArguments, SchemeName};
+use super::{BuildArguments, FeatureArguments, InterpolationArguments, SchemeName};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -40,6 +40,9 @@ pub(crate) struct CompareArguments {
 
     #[command(flatten)]
     pub(crate) features: FeatureArguments,
+
+    #[command(flatten)]
+    pub(crate) interpolation: InterpolationArguments,
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,

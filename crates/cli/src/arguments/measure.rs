@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::values::{self, Extent};
-use super::{BuildArguments, FeatureArguments, SchemeName};
+use super::{BuildArguments, FeatureArguments, InterpolationArguments, SchemeName};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -80,6 +80,9 @@ pub(crate) struct MeasureArguments {
     // Of the limit surface: with --limit-of only.
     #[command(flatten)]
     pub(crate) features: FeatureArguments,
+
+    #[command(flatten)]
+    pub(crate) interpolation: InterpolationArguments,
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,

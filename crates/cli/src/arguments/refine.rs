@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use super::values;
-use super::{BuildArguments, ExactArguments, FeatureArguments, SchemeName, Seam};
+use super::{BuildArguments, ExactArguments, FeatureArguments, InterpolationArguments, SchemeName, Seam};
 
 /// What decides which faces are divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
@@ -31,7 +31,8 @@ Examples:
   limitmesh refine builtin:cup --tolerance 0.001% --dry-run
   limitmesh refine builtin:cup -o cup.ply --method limit-normal --angle 5 --levels 4
   limitmesh refine builtin:sphere -o seen.ply --method limit-normal --view 0,0,-1 --levels 5
-  limitmesh refine part.stl -o part.ply --crease-angle 30
+  limitmesh refine part.stl -o part.ply --crease-angle 30 --interpolate
+  limitmesh refine scan.stl -o smooth.ply --interpolate-within 0.05
   limitmesh refine big.ply -o fine.ply --method uniform --max-triangles 20000000
 
 Exit code 3 means that a cap was reached before what was asked for; the mesh is written, and free of cracks.";
@@ -105,6 +106,9 @@ pub(crate) struct RefineArguments {
 
     #[command(flatten)]
     pub(crate) features: FeatureArguments,
+
+    #[command(flatten)]
+    pub(crate) interpolation: InterpolationArguments,
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,

@@ -10,6 +10,7 @@ use limitmesh::refine::{
 };
 use limitmesh_paper::{match_angle, nearest_level};
 
+use super::interpolation;
 use crate::arguments::CompareArguments;
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds, table, thousands, upper_bound};
@@ -24,13 +25,15 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     let control = input::load(&arguments.input, &arguments.build.options(), progress)?.mesh;
     let control = arguments.features.apply(control)?;
     let scheme = arguments.scheme.scheme();
+    let diagonal = control.diagonal();
+    let (control, _) = interpolation::apply(control, arguments.interpolation, scheme, progress)?;
     // Finer than what is measured against it by two levels, where that can be afforded.
     let wanted = USUAL_LEVELS.max(arguments.levels + 2);
     let levels = reference::affordable_levels(control.face_count(), wanted);
     progress.stage(format!("refining by {levels} levels to stand for the limit surface"));
     let reference = reference::at_level(&control, scheme, levels)?;
     let tree = Bvh::new(reference.mesh.as_triangles())?;
-    let judge = Judge { arguments, reference: &reference, tree: &tree, diagonal: control.diagonal() };
+    let judge = Judge { arguments, reference: &reference, tree: &tree, diagonal };
 
     let mut methods = Vec::with_capacity(7);
     progress.stage("limit-normal");
@@ -125,6 +128,7 @@ impl Judge<'_> {
             error: None,
             boundary: self.arguments.features.boundary.unwrap_or_default(),
             crease_angle_degrees: self.arguments.features.crease_angle,
+            interpolate_within: self.arguments.interpolation.within(self.diagonal),
         }
     }
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 use limitmesh::measure::{CertifiedHausdorff, Hausdorff, SamplingOptions, hausdorff_observed};
 use limitmesh::{Mesh, Triangles};
 
-use super::{certified, certified_limit, heatmap};
+use super::{certified, certified_limit, heatmap, interpolation};
 use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, point, table, thousands, upper_bound};
@@ -135,6 +135,7 @@ fn load_reference(
     let report = describe(&input);
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
     let mesh = arguments.features.apply(input.mesh)?;
+    let (mesh, _) = interpolation::apply(mesh, arguments.interpolation, scheme.scheme(), progress)?;
     let (mesh, levels) = if arguments.certified {
         (mesh, 0)
     } else {
@@ -151,6 +152,7 @@ fn load_reference(
         chosen: arguments.reference_levels.is_none(),
         boundary: arguments.features.boundary.unwrap_or_default(),
         crease_angle_degrees: arguments.features.crease_angle,
+        interpolate_within: arguments.interpolation.within(whole.diagonal),
     };
     let report = SurfaceReport {
         vertices: mesh.vertex_count(),
@@ -237,9 +239,11 @@ fn surface_in_words(surface: &SurfaceReport) -> String {
 /// Finds what makes no sense before any work is done.
 fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
     let of_limit = arguments.reference_levels.is_some() || arguments.scheme.is_some();
-    if arguments.limit_of.is_none() && (of_limit || arguments.features.are_given()) {
+    let of_limit = of_limit || arguments.features.are_given() || arguments.interpolation.are_given();
+    if arguments.limit_of.is_none() && of_limit {
         return usage(
-            "--reference-levels, --scheme, --crease-angle and --boundary belong to a limit surface; they need --limit-of",
+            "--reference-levels, --scheme, --crease-angle, --boundary, --interpolate and --interpolate-within belong to a limit \
+             surface; they need --limit-of",
         );
     }
     certified::check(arguments)?;

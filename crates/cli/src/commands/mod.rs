@@ -5,6 +5,7 @@ mod certified_limit;
 pub(crate) mod compare;
 mod heatmap;
 pub(crate) mod info;
+mod interpolation;
 pub(crate) mod measure;
 pub(crate) mod models;
 mod picture;

@@ -54,6 +54,8 @@ pub(crate) struct LimitReport {
     pub(crate) error: Option<f64>,
     pub(crate) boundary: Boundary,
     pub(crate) crease_angle_degrees: Option<f64>,
+    /// How near it passes to the vertices of the control mesh; null where these are its control points.
+    pub(crate) interpolate_within: Option<f64>,
 }
 
 /// What lengths are given in per cent of: the diagonal of the bounding box of the control mesh where one is known, of the

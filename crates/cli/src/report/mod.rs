@@ -5,6 +5,7 @@ pub(crate) mod certified;
 mod comparison;
 pub(crate) mod diagnosis;
 pub(crate) mod information;
+mod interpolation;
 pub(crate) mod measurement;
 pub(crate) mod refinement;
 
@@ -12,6 +13,7 @@ pub(crate) use certified::CertifiedReport;
 pub(crate) use comparison::{CertifiedErrorReport, ComparedMethod};
 pub(crate) use diagnosis::DiagnosisReport;
 pub(crate) use information::{InformationReport, MeshInformation};
+pub(crate) use interpolation::InterpolationReport;
 pub(crate) use measurement::{DistanceReport, LimitReport, MeasureReport, SurfaceReport};
 pub(crate) use refinement::{
     CameraReport, ErrorReport, EstimateReport, ExactParametersReport, MethodReport, OutputReport,

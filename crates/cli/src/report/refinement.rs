@@ -7,7 +7,7 @@ use limitmesh::mesh::Weld;
 use limitmesh::refine::{ErrorBounds, ExactStop, StepReport, Stop};
 use serde::Serialize;
 
-use super::InputReport;
+use super::{InputReport, InterpolationReport};
 use super::diagnosis::DiagnosisReport;
 use crate::arguments::{Boundary, Method, RefineArguments, SchemeName, Seam};
 use crate::format::{lower_bound, upper_bound};
@@ -19,6 +19,8 @@ pub(crate) struct RefineReport {
     pub(crate) input: InputReport,
     pub(crate) diagnosis: DiagnosisReport,
     pub(crate) parameters: ParametersReport,
+    /// How control points were found; null where the input's vertices are the control points.
+    pub(crate) interpolation: Option<InterpolationReport>,
     #[serde(flatten)]
     pub(crate) method: MethodReport,
     pub(crate) output: OutputReport,
@@ -84,6 +86,8 @@ pub(crate) struct ParametersReport {
     pub(crate) limit: bool,
     pub(crate) boundary: Boundary,
     pub(crate) crease_angle_degrees: Option<f64>,
+    /// How near the limit surface is to pass to the input's vertices, in the mesh's unit; null where these are the control points.
+    pub(crate) interpolate_within: Option<f64>,
     pub(crate) max_triangles: usize,
     /// Distance within which vertices were merged: 0 at equal positions, null for none.
     pub(crate) weld: Option<f64>,
@@ -105,6 +109,7 @@ impl ParametersReport {
             limit: false,
             boundary: arguments.features.boundary.unwrap_or_default(),
             crease_angle_degrees: arguments.features.crease_angle,
+            interpolate_within: None,
             max_triangles: arguments.max_triangles(),
             weld: match arguments.build.options().weld {
                 Weld::Never => None,

@@ -4,6 +4,7 @@ mod common;
 mod compare;
 mod exact;
 mod examine;
+mod interpolate;
 mod measure;
 mod refine;
 mod render;

@@ -217,7 +217,7 @@ impl LimitTable<'_> {
 }
 
 /// The weights of one vertex.
-enum Stencil {
+pub(super) enum Stencil {
     /// By the shape of its ring.
     Plain(Arc<LimitStencil>),
     /// By the sharpness of its edges.
@@ -233,7 +233,7 @@ struct Side<'s> {
 
 impl Stencil {
     #[inline]
-    fn position(&self) -> &[f64] {
+    pub(super) fn position(&self) -> &[f64] {
         match self {
             Self::Plain(stencil) => &stencil.position,
             Self::Sharp(stencil) => &stencil.position,
@@ -273,7 +273,7 @@ impl Stencil {
 }
 
 /// The stencils of a mesh's vertices, looked up once for each shape that occurs.
-struct Stencils {
+pub(super) struct Stencils {
     list: Vec<Stencil>,
     by_vertex: Vec<u32>,
     /// The vertices that are sharp or have sharp edges inside the mesh.
@@ -281,7 +281,7 @@ struct Stencils {
 }
 
 impl Stencils {
-    fn of(
+    pub(super) fn of(
         table: &LimitTable<'_>,
         mesh: &Mesh,
         poll: &mut Poll<'_>,
@@ -312,7 +312,7 @@ impl Stencils {
     }
 
     #[inline]
-    fn at(&self, vertex: usize) -> &Stencil {
+    pub(super) fn at(&self, vertex: usize) -> &Stencil {
         &self.list[self.by_vertex[vertex] as usize]
     }
 
@@ -323,7 +323,7 @@ impl Stencils {
 }
 
 /// Whether the limit position is the vertex itself.
-fn stays(weights: &[f64]) -> bool {
+pub(super) fn stays(weights: &[f64]) -> bool {
     weights[0] == 1.0 && weights[1..].iter().all(|&weight| weight == 0.0)
 }
 
@@ -394,13 +394,23 @@ fn one_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> Option<DVe
     tangents.normal()
 }
 
-fn two_ring_position(mesh: &Mesh, vertex: VertexId, weights: &[f64], refined: &impl Refined) -> [f64; 3] {
+fn two_ring_position(
+    mesh: &Mesh,
+    vertex: VertexId,
+    weights: &[f64],
+    refined: &impl Refined<Point = DVec3>,
+) -> [f64; 3] {
     let mut sum = weights[0] * refined.moved(vertex);
     for_each_of_two_ring(mesh.topology(), vertex, refined, |i, point| sum += weights[i + 1] * point);
     sum.to_array()
 }
 
-fn two_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>, refined: &impl Refined) -> Option<DVec3> {
+fn two_ring_normal(
+    mesh: &Mesh,
+    vertex: VertexId,
+    side: &Side<'_>,
+    refined: &impl Refined<Point = DVec3>,
+) -> Option<DVec3> {
     let mut tangents = Tangents::default();
     if !side.tangents.is_empty() {
         let centre = refined.moved(vertex);
@@ -412,11 +422,11 @@ fn two_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>, refined: &imp
 }
 
 /// Calls `visit` for the points around `vertex` after one refinement, numbered as in the stencil's tangents.
-fn for_each_of_two_ring(
+pub(super) fn for_each_of_two_ring<R: Refined>(
     topology: &Topology,
     vertex: VertexId,
-    refined: &impl Refined,
-    mut visit: impl FnMut(usize, DVec3),
+    refined: &R,
+    mut visit: impl FnMut(usize, R::Point),
 ) {
     let (valence, open) = topology.valence_and_openness(vertex);
     let k = valence as usize;

@@ -105,6 +105,7 @@ mod evaluate;
 mod neighbourhood;
 mod open;
 mod refined;
+mod rows;
 mod sharp;
 mod sides;
 mod stencil;
@@ -112,6 +113,7 @@ mod table;
 
 pub use error::LimitError;
 pub use neighbourhood::{difference_matrix, ring_matrix};
+pub(crate) use rows::{LimitRows, summed};
 pub use sharp::{SharpSide, SharpStencil};
 pub use sides::SidedNormals;
 pub use stencil::{LimitStencil, TangentPlane};

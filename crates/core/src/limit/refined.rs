@@ -1,6 +1,7 @@
 //! The points of a mesh after one refinement by a scheme's masks, for the stencils of two-ring schemes.
 //!
-//! Either of the whole mesh, each edge point computed once, or on demand for single vertices.
+//! Either of the whole mesh, each edge point computed once, or on demand for single vertices; or not the points, but the
+//! weights that the mesh's vertices have in them.
 
 use crate::index::{HalfEdgeId, VertexId};
 use crate::masks::Masks;
@@ -12,10 +13,12 @@ use crate::vector::DVec3;
 
 /// Where points stand after one refinement.
 pub(super) trait Refined {
+    /// What is known of a point.
+    type Point;
     /// The new position of a vertex.
-    fn moved(&self, vertex: VertexId) -> DVec3;
+    fn moved(&self, vertex: VertexId) -> Self::Point;
     /// The new vertex on the edge of a half-edge.
-    fn on_edge(&self, edge: HalfEdgeId) -> DVec3;
+    fn on_edge(&self, edge: HalfEdgeId) -> Self::Point;
 }
 
 /// All points of a mesh.
@@ -43,6 +46,8 @@ impl RefinedMesh {
 }
 
 impl Refined for RefinedMesh {
+    type Point = DVec3;
+
     #[inline]
     fn moved(&self, vertex: VertexId) -> DVec3 {
         self.moved[vertex.index()]
@@ -57,11 +62,28 @@ impl Refined for RefinedMesh {
 
 /// Points computed when asked for.
 impl Refined for Masks<'_> {
+    type Point = DVec3;
+
     fn moved(&self, vertex: VertexId) -> DVec3 {
         self.vertex_point(vertex)
     }
 
     fn on_edge(&self, edge: HalfEdgeId) -> DVec3 {
         self.edge_point(edge)
+    }
+}
+
+/// Weights on the mesh's vertices, found when asked for; a vertex may have several, which add up.
+pub(super) struct RefinedWeights<'m>(pub(super) Masks<'m>);
+
+impl Refined for RefinedWeights<'_> {
+    type Point = Vec<(VertexId, f64)>;
+
+    fn moved(&self, vertex: VertexId) -> Self::Point {
+        self.0.vertex_weights(vertex)
+    }
+
+    fn on_edge(&self, edge: HalfEdgeId) -> Self::Point {
+        self.0.edge_weights(edge)
     }
 }

@@ -29,7 +29,7 @@ const USUAL_PIXELS: f64 = 1.0;
 /// The goals, with those that hold where none is given.
 pub(super) struct Goals {
     tolerance: Option<Extent>,
-    /// Of the control mesh's bounding box.
+    /// Of the input's bounding box.
     diagonal: f64,
     /// How far the output's format may round a vertex.
     rounding: f64,
@@ -40,9 +40,11 @@ pub(super) struct Goals {
 }
 
 impl Goals {
+    /// `diagonal` is what lengths are given in per cent of.
+    ///
     /// # Errors
     /// A file of cameras that cannot be read, or a camera inside the mesh.
-    pub(super) fn new(arguments: &RefineArguments, control: &Mesh) -> anyhow::Result<Self> {
+    pub(super) fn new(arguments: &RefineArguments, control: &Mesh, diagonal: f64) -> anyhow::Result<Self> {
         let exact = &arguments.exact;
         let cameras = cameras::all(arguments)?;
         cameras::check(&cameras, control, arguments)?;
@@ -53,7 +55,7 @@ impl Goals {
         let tolerance = exact.tolerance.or(none.then_some(USUAL_TOLERANCE));
         Ok(Self {
             tolerance,
-            diagonal: control.diagonal(),
+            diagonal,
             rounding: most_rounding(arguments, control),
             angle_degrees: arguments.angle,
             triangles: exact.triangles,

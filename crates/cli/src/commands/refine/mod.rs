@@ -16,7 +16,7 @@ use limitmesh::mesh::Tags;
 use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
 
-use super::picture;
+use super::{interpolation, picture};
 use crate::arguments::{Method, RefineArguments};
 use crate::failure::Outcome;
 use crate::format::{counted, seconds};
@@ -25,7 +25,7 @@ use crate::interrupt;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::{
-    InputReport, MethodReport, OutputReport, RefineReport, SecondsReport, VERSION, ViewReport,
+    InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport, VERSION, ViewReport,
 };
 use exact::Goals;
 use provenance::Provenance;
@@ -62,18 +62,24 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         progress.note(note);
     }
     let control = arguments.features.apply(control)?;
+    let diagonal = control.diagonal();
+    let (control, interpolation) =
+        interpolation::apply(control, arguments.interpolation, arguments.scheme.scheme(), progress)?;
 
     let goals = match arguments.method {
-        Method::Exact => Some(Goals::new(arguments, &control)?),
+        Method::Exact => Some(Goals::new(arguments, &control, diagonal)?),
         _ => None,
     };
-    let parameters = match &goals {
-        Some(goals) => exact::parameters(arguments, goals),
-        None => stepwise::parameters(arguments),
+    let parameters = ParametersReport {
+        interpolate_within: arguments.interpolation.within(diagonal),
+        ..match &goals {
+            Some(goals) => exact::parameters(arguments, goals),
+            None => stepwise::parameters(arguments),
+        }
     };
     // Without a name to write to, this is a dry run: the arguments see to that.
     let (Some(path), false) = (&arguments.output, arguments.exact.dry_run) else {
-        let goals = goals.map_or_else(|| Goals::new(arguments, &control), Ok)?;
+        let goals = goals.map_or_else(|| Goals::new(arguments, &control, diagonal), Ok)?;
         let told = (input_report, (&diagnosis).into(), parameters);
         estimate::run(&control, &goals, arguments, told, progress)?;
         return Ok(Outcome::Done);
@@ -99,6 +105,7 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
             input: input_report,
             diagnosis: (&diagnosis).into(),
             parameters,
+            interpolation,
             method: report,
             output: OutputReport::of(arguments.output_name(), &mesh),
             seconds: phases(reading, building, refining, writing),

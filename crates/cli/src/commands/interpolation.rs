@@ -1,0 +1,51 @@
+//! The step before refinement that makes the limit surface pass through the vertices: what it does, and what is said of it.
+
+use limitmesh::Mesh;
+use limitmesh::interpolate::{InterpolateOptions, Interpolated, InterpolationMethod, interpolate_observed};
+use limitmesh::scheme::Scheme;
+
+use crate::arguments::InterpolationArguments;
+use crate::format::{counted, number, upper_bound};
+use crate::progress::Progress;
+use crate::report::InterpolationReport;
+
+/// The control mesh whose limit surface passes through the vertices of `mesh`, if that is asked for, and what is reported of it.
+///
+/// # Errors
+/// Some vertex has no limit, or none that is near enough.
+pub(super) fn apply(
+    mesh: Mesh,
+    arguments: InterpolationArguments,
+    scheme: &dyn Scheme,
+    progress: &Progress,
+) -> anyhow::Result<(Mesh, Option<InterpolationReport>)> {
+    let diagonal = mesh.diagonal();
+    let Some(within) = arguments.within(diagonal) else { return Ok((mesh, None)) };
+    let options = InterpolateOptions::default().within(within);
+    let found = interpolate_observed(&mesh, scheme, &options, &mut progress.observer())?;
+    progress.note(in_words(&found, within, diagonal));
+    let report = InterpolationReport::new(&found, within, diagonal);
+    Ok((found.mesh, Some(report)))
+}
+
+fn in_words(found: &Interpolated, within: f64, diagonal: f64) -> String {
+    let vertices = counted(found.mesh.vertex_count(), "vertex", "vertices");
+    let percent = 100.0 * found.displacement / diagonal.max(f64::MIN_POSITIVE);
+    let moved = format!(
+        "control points moved by up to {} ({} %, vertex {})",
+        number(found.displacement),
+        number(percent),
+        found.most_displaced.index()
+    );
+    match found.method {
+        InterpolationMethod::Unchanged => format!("the limit surface passes through {vertices} as it is"),
+        InterpolationMethod::LeastSquares => format!(
+            "no control points let the limit surface pass through {vertices}: by least squares it passes within {}; {moved}",
+            upper_bound(found.residual)
+        ),
+        _ if within > 0.0 => {
+            format!("the limit surface passes within {} of {vertices}: {moved}", upper_bound(found.residual))
+        }
+        _ => format!("the limit surface passes through {vertices}: {moved}"),
+    }
+}

@@ -1,0 +1,49 @@
+//! What reports say of control points that were found for a limit surface through the vertices.
+
+use limitmesh::interpolate::{Interpolated, InterpolationMethod};
+use serde::Serialize;
+
+/// How control points came about.
+#[derive(Debug, Serialize)]
+pub(crate) struct InterpolationReport {
+    /// How near limits were to be to their vertices, in the mesh's unit.
+    pub(crate) within: f64,
+    /// `unchanged`, `conjugate-gradients`, `normal-equations` or `least-squares`.
+    pub(crate) method: &'static str,
+    /// Steps of conjugate gradients.
+    pub(crate) iterations: usize,
+    /// The greatest distance of a limit from its vertex.
+    pub(crate) residual: f64,
+    /// The greatest distance of a control point from its vertex.
+    pub(crate) displacement: f64,
+    /// In per cent of the diagonal of the input's bounding box.
+    pub(crate) displacement_percent: f64,
+    /// The vertex whose control point that is.
+    pub(crate) most_displaced: usize,
+    /// The thin-plate energy beside that of the surface through the vertices, and what it is at least; null where limits are to
+    /// be at their vertices.
+    pub(crate) energy: Option<f64>,
+    pub(crate) least_energy: Option<f64>,
+}
+
+impl InterpolationReport {
+    pub(crate) fn new(found: &Interpolated, within: f64, diagonal: f64) -> Self {
+        Self {
+            within,
+            method: match found.method {
+                InterpolationMethod::Unchanged => "unchanged",
+                InterpolationMethod::ConjugateGradients => "conjugate-gradients",
+                InterpolationMethod::NormalEquations => "normal-equations",
+                InterpolationMethod::LeastSquares => "least-squares",
+                _ => "other",
+            },
+            iterations: found.iterations,
+            residual: found.residual,
+            displacement: found.displacement,
+            displacement_percent: 100.0 * found.displacement / diagonal.max(f64::MIN_POSITIVE),
+            most_displaced: found.most_displaced.index(),
+            energy: found.fairness.map(|fairness| fairness.energy),
+            least_energy: found.fairness.map(|fairness| fairness.least_energy),
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! Which control points have which limits: the system over the whole mesh, solved block by block.
+//!
+//! Unknown is how far each control point is moved, d; with the limit weights A and the mesh's vertices v,
+//! A·(v + d) = v + y, where y is how far limits may be from the vertices: nothing, if the surface passes through them. As the
+//! weights of a row sum to 1, the right side v − A·v + y is a sum of differences of neighbours and does not lose digits to
+//! coordinates far from the origin.
+//!
+//! Copies of a vertex on sheets that were cut apart are one unknown, that of the first of them.
+
+use super::blocks::Blocks;
+use super::fairness::{self, Energies, Energy};
+use super::sparse::{Sparse, greatest};
+use super::system::{Solution, Solver, System};
+use crate::limit::{LimitRows, summed};
+use crate::mesh::Mesh;
+use crate::parallel::{self, Poll};
+use crate::progress::{Cancelled, Watch};
+use crate::vector::{DVec3, vector};
+
+/// Residuals below this, beside the greatest distance of a limit from its vertex, are nothing.
+const ACCURACY: f64 = 1e-14;
+
+/// Residuals below this, beside the greatest coordinate, are what rounding leaves of nothing.
+const ROUNDING: f64 = 1e-17;
+
+/// Units in the last place that rounding the control points and adding up a limit can make.
+const ROUNDINGS: f64 = 16.0;
+
+/// Unknowns of blocks of one between two calls of the observer.
+const SINGLES: usize = 1 << 12;
+
+/// How far control points are moved, and how that was found.
+pub(super) struct Moved {
+    /// By vertex.
+    pub(super) by: Vec<DVec3>,
+    pub(super) solver: Solver,
+    /// Steps of conjugate gradients for the block that took most.
+    pub(super) steps: usize,
+    /// Where limits may leave their vertices.
+    pub(super) energies: Option<Energies>,
+}
+
+/// The system of a mesh, its lengths multiplied by `unit`.
+pub(super) struct ControlPoints<'m> {
+    mesh: &'m Mesh,
+    /// The first copy of each vertex.
+    first_copy: Vec<u32>,
+    matrix: Sparse,
+    points: Vec<DVec3>,
+    unit: f64,
+}
+
+impl<'m> ControlPoints<'m> {
+    pub(super) fn new(mesh: &'m Mesh, rows: LimitRows) -> Self {
+        let mut first_copy: Vec<u32> = (0..mesh.vertex_count() as u32).collect();
+        for group in mesh.junctions().vertices.iter() {
+            let first = group.iter().copied().min().unwrap_or(0);
+            group.iter().for_each(|&copy| first_copy[copy as usize] = first);
+        }
+        let matrix = of_first_copies(rows.into(), &first_copy);
+        let unit = unit(mesh);
+        let points = mesh.positions().iter().map(|&p| vector(p) * unit).collect();
+        Self { mesh, first_copy, matrix, points, unit }
+    }
+
+    /// Whether all limits are the vertices themselves, so that there is nothing to do.
+    pub(super) fn is_solved(&self) -> bool {
+        (0..self.matrix.rows()).all(|v| self.stays(v))
+    }
+
+    /// Whether a limit position is the vertex itself, wherever others are. Further copies have no row.
+    fn stays(&self, v: usize) -> bool {
+        self.first_copy[v] != v as u32 || self.matrix.row(v).eq([(v as u32, 1.0)])
+    }
+
+    /// Solves for limits within a distance of their vertices: at them, or as fair as they can be.
+    pub(super) fn solve(&self, within: f64, watch: &mut Watch<'_>) -> Result<Moved, Cancelled> {
+        let n = self.points.len();
+        let poll: &mut Poll<'_> = &mut |_| watch.poll();
+        let away = parallel::map_polled(n, poll, |v| self.from_limit(v))?;
+        let farthest = greatest(n, poll, |v| away[v].abs().max_element())?;
+        let goal = (ACCURACY * farthest).max(ROUNDING);
+        let blocks = Blocks::of(&self.matrix);
+        let energy = (within > 0.0).then(|| BlockEnergies::new(self.mesh, &self.first_copy, &blocks));
+        let energies = energy.is_some().then(Energies::default);
+        let mut moved = Moved { by: vec![DVec3::ZERO; n], solver: Solver::Symmetric, steps: 0, energies };
+        let mut done = 0;
+        for (number, block) in blocks.iter().enumerate() {
+            done += block.len();
+            if let [v] = *block
+                && self.stays(v as usize)
+            {
+                if done.is_multiple_of(SINGLES) {
+                    watch.done(done)?;
+                }
+                continue;
+            }
+            let (system, right) = self.system_of(block, &blocks, &away, &moved.by);
+            let poll: &mut Poll<'_> = &mut |_| watch.poll();
+            let found = match &energy {
+                Some(energy) => {
+                    let energy = energy.of(number, &blocks, &self.points, &moved.by);
+                    let within = within * self.unit;
+                    let (found, energies) = fairness::solve(&system, &energy, &right, within, goal, poll)?;
+                    moved.energies.iter_mut().for_each(|all| all.add(energies));
+                    found
+                }
+                None => system.solve(&right, vec![DVec3::ZERO; block.len()], goal, poll)?,
+            };
+            let Solution { x, steps, solver } = found;
+            block.iter().zip(x).for_each(|(&v, by)| moved.by[v as usize] = by);
+            moved.steps = moved.steps.max(steps);
+            moved.solver = moved.solver.max(solver);
+            watch.done(done)?;
+        }
+        for v in 0..n {
+            moved.by[v] = moved.by[self.first_copy[v] as usize];
+        }
+        Ok(moved)
+    }
+
+    /// The system of a block, and its right side with what is known from earlier blocks.
+    fn system_of(
+        &self,
+        block: &[u32],
+        blocks: &Blocks,
+        away: &[DVec3],
+        by: &[DVec3],
+    ) -> (System, Vec<DVec3>) {
+        let number = block.first().map_or(0, |&v| blocks.number(v));
+        let mut inside = Sparse::empty();
+        let mut right = Vec::with_capacity(block.len());
+        for &v in block {
+            let is_inside = |&(u, _): &(u32, f64)| blocks.number(u) == number;
+            let row = self.matrix.row(v as usize);
+            let known = row.clone().filter(|entry| !is_inside(entry)).map(|(u, w)| w * by[u as usize]);
+            right.push(away[v as usize] - known.sum::<DVec3>());
+            inside.push(row.filter(is_inside).map(|(u, w)| (blocks.place(u), w)));
+        }
+        (System::new(inside), right)
+    }
+
+    /// From the limit of a vertex, as the mesh is, to the vertex.
+    fn from_limit(&self, v: usize) -> DVec3 {
+        let towards = |(u, weight): (u32, f64)| weight * (self.points[v] - self.points[u as usize]);
+        self.matrix.row(v).map(towards).sum()
+    }
+
+    /// What rounding leaves of limits at their vertices: some units in the last place of the greatest coordinate.
+    pub(super) fn rounding(&self) -> f64 {
+        ROUNDINGS * f64::EPSILON / self.unit
+    }
+
+    /// Where a control point comes to stand.
+    pub(super) fn position(&self, v: usize, by: DVec3) -> [f64; 3] {
+        let from = self.mesh.positions()[v];
+        // What stays keeps its bits.
+        if by == DVec3::ZERO { from } else { (vector(from) + by / self.unit).to_array() }
+    }
+}
+
+/// A power of two that brings coordinates near 1, so that no square overflows or vanishes.
+fn unit(mesh: &Mesh) -> f64 {
+    let greatest = mesh.positions().as_flattened().iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    if greatest == 0.0 {
+        return 1.0;
+    }
+    // One step short of the ends of the range, where the factor itself would not be a number.
+    2f64.powi((-greatest.log2().floor() as i32).clamp(-1020, 1020))
+}
+
+/// The rows of the first copies, on first copies; those of others are empty.
+fn of_first_copies(rows: LimitRows, first_copy: &[u32]) -> Sparse {
+    let rows = Sparse::from(rows);
+    let mut matrix = Sparse::empty();
+    for (v, &first) in (0..).zip(first_copy) {
+        if first != v {
+            matrix.push([]);
+            continue;
+        }
+        matrix.push(summed(rows.row(v as usize).map(|(u, w)| (first_copy[u as usize], w)).collect()));
+    }
+    matrix
+}
+
+/// The rows of the energy by the block in which their last point is found.
+struct BlockEnergies {
+    rows: Vec<Vec<(u32, f64)>>,
+    starts: Vec<u32>,
+    by_block: Vec<u32>,
+}
+
+impl BlockEnergies {
+    fn new(mesh: &Mesh, first_copy: &[u32], blocks: &Blocks) -> Self {
+        let rows = fairness::rows(mesh, first_copy);
+        let last = |row: &[(u32, f64)]| row.iter().map(|&(u, _)| blocks.number(u)).max();
+        let mut starts = vec![0u32; blocks.len() + 1];
+        rows.iter().filter_map(|row| last(row)).for_each(|block| starts[block as usize + 1] += 1);
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut next = starts.clone();
+        let mut by_block = vec![0; starts[blocks.len()] as usize];
+        for (number, row) in (0..).zip(&rows) {
+            if let Some(block) = last(row) {
+                by_block[next[block as usize] as usize] = number;
+                next[block as usize] += 1;
+            }
+        }
+        Self { rows, starts, by_block }
+    }
+
+    /// The energy of a block, those before it known.
+    fn of(&self, number: usize, blocks: &Blocks, points: &[DVec3], by: &[DVec3]) -> Energy {
+        let (mut inside, mut known) = (Sparse::empty(), Vec::new());
+        for &row in &self.by_block[self.starts[number] as usize..self.starts[number + 1] as usize] {
+            let row = &self.rows[row as usize];
+            // The weights of a row sum to 0: only differences count.
+            let origin = row.first().map_or(DVec3::ZERO, |&(u, _)| points[u as usize]);
+            let is_inside = |u: u32| blocks.number(u) as usize == number;
+            let of = |&(u, weight): &(u32, f64)| {
+                let moved = if is_inside(u) { DVec3::ZERO } else { by[u as usize] };
+                weight * (points[u as usize] - origin + moved)
+            };
+            known.push(row.iter().map(of).sum());
+            inside.push(row.iter().filter(|&&(u, _)| is_inside(u)).map(|&(u, w)| (blocks.place(u), w)));
+        }
+        Energy::new(inside, known, blocks.block(number).len())
+    }
+}

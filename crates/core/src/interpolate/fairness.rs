@@ -1,0 +1,243 @@
+//! The fairest control points whose limits are near given points: a convex problem with a certificate.
+//!
+//! The energy is that of a thin plate over the control net, ½ Σ |Bx|²: at a smooth vertex (Bx) is the mean of the neighbours
+//! less the vertex, on a crease or a boundary the mean of the two neighbours along it less the vertex, and corners have none.
+//! Each row counts in the block where its last point is found, so that lines are as fair as they can be by themselves, and
+//! regions with the lines fixed.
+//!
+//! Unknown is y, how far limits are from their vertices, |yᵢ| ≤ T; control points follow from it by A·x = v + y. So
+//! f(y) = ½|Bx|² + ½ε|y|² is to be least over a product of balls, to which projection is exact: accelerated projected
+//! gradients (Beck and Teboulle 2009) with restarts (O'Donoghue and Candès 2015). The gradient is A⁻ᵀBᵀBx + εy. All is affine in
+//! y, so that what is needed where the method looks ahead follows from the iterates without solving again. ε makes the answer
+//! unique: of equally fair ones that nearest to the vertices.
+//!
+//! For any feasible y the least energy is at least f(y) − (g·y + T Σ|gᵢ|), since f is convex (the gap of Frank and Wolfe;
+//! Jaggi 2013). The iteration ends where that gap is small, and tells it.
+
+use super::sparse::{Sparse, greatest, sum, update};
+use super::system::{Solution, System};
+use crate::index::VertexId;
+use crate::mesh::{Mesh, Sharpness, VertexRule};
+use crate::parallel::Poll;
+use crate::progress::Cancelled;
+use crate::vector::DVec3;
+
+/// ε: far below the curvature of the energy in any but the longest waves.
+const NEARNESS: f64 = 1e-6;
+
+/// The gap beside the energy that is small enough.
+const GAP: f64 = 1e-3;
+
+/// The gap that is small enough beside the energy at the beginning, where hardly any is left.
+const NOTHING: f64 = 1e-9;
+
+/// Steps of the projected gradient at most.
+const MOST_STEPS: usize = 500;
+
+/// The greatest curvature of the energy that is tried first; doubled where that is too little.
+const CURVATURE: f64 = 8.0;
+
+/// Residuals of the systems on the way, beside what they change.
+const ACCURACY: f64 = 1e-7;
+
+/// How fair a control mesh is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Fairness {
+    /// The energy, beside that of the control points whose limits are the vertices: 1 where nothing was gained.
+    pub energy: f64,
+    /// What the least energy is at least, in the same measure: the answer is as good as this is near.
+    pub least_energy: f64,
+    /// Steps of the projected gradient, in the part of the mesh that took most.
+    pub steps: usize,
+}
+
+/// Energies of all blocks together.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Energies {
+    through: f64,
+    reached: f64,
+    least: f64,
+    steps: usize,
+}
+
+impl Energies {
+    pub(super) fn add(&mut self, other: Self) {
+        self.through += other.through;
+        self.reached += other.reached;
+        self.least += other.least;
+        self.steps = self.steps.max(other.steps);
+    }
+
+    pub(super) fn fairness(&self) -> Fairness {
+        let share = |energy: f64| if self.through > 0.0 { energy / self.through } else { 1.0 };
+        Fairness { energy: share(self.reached), least_energy: share(self.least), steps: self.steps }
+    }
+}
+
+/// The rows of B for a mesh, on the first copies of its vertices.
+pub(super) fn rows(mesh: &Mesh, first_copy: &[u32]) -> Vec<Vec<(u32, f64)>> {
+    let (topology, sharpness) = (mesh.topology(), Sharpness::of(mesh));
+    let row = |v: u32| {
+        let vertex = VertexId(v);
+        let ends: Vec<VertexId> = match sharpness.rule(vertex) {
+            _ if first_copy[v as usize] != v => Vec::new(),
+            VertexRule::Corner => Vec::new(),
+            VertexRule::Smooth | VertexRule::Dart => topology.ring(vertex).collect(),
+            VertexRule::Crease => {
+                let is_sharp = sharpness.spokes(vertex).map(|sharpness| sharpness > 0.0);
+                topology
+                    .ring(vertex)
+                    .zip(is_sharp)
+                    .filter(|&(_, is_sharp)| is_sharp)
+                    .map(|(u, _)| u)
+                    .collect()
+            }
+        };
+        if ends.is_empty() {
+            return Vec::new();
+        }
+        let share = 1.0 / ends.len() as f64;
+        let around = ends.into_iter().map(|u| (first_copy[u.index()], share));
+        around.chain([(v, -1.0)]).collect()
+    };
+    (0..mesh.vertex_count() as u32).map(row).collect()
+}
+
+/// ½|B·d + known|² of a block's unknowns.
+pub(super) struct Energy {
+    rows: Sparse,
+    transposed: Sparse,
+    known: Vec<DVec3>,
+}
+
+impl Energy {
+    pub(super) fn new(rows: Sparse, known: Vec<DVec3>, unknowns: usize) -> Self {
+        let transposed = rows.transposed(unknowns);
+        Self { rows, transposed, known }
+    }
+}
+
+/// An iterate: limits, control points, B·d + known, gradient without εy.
+#[derive(Clone)]
+struct State {
+    y: Vec<DVec3>,
+    d: Vec<DVec3>,
+    bent: Vec<DVec3>,
+    gradient: Vec<DVec3>,
+}
+
+impl State {
+    /// `self + along·(self − before)`.
+    fn beyond(&self, before: &Self, along: f64, poll: &mut Poll<'_>) -> Result<Self, Cancelled> {
+        let mut next = self.clone();
+        update(&mut next.y, poll, |i, y| *y += along * (*y - before.y[i]))?;
+        update(&mut next.d, poll, |i, d| *d += along * (*d - before.d[i]))?;
+        update(&mut next.bent, poll, |i, b| *b += along * (*b - before.bent[i]))?;
+        update(&mut next.gradient, poll, |i, g| *g += along * (*g - before.gradient[i]))?;
+        Ok(next)
+    }
+
+    fn slope(&self, i: usize) -> DVec3 {
+        self.gradient[i] + NEARNESS * self.y[i]
+    }
+
+    fn value(&self, poll: &mut Poll<'_>) -> Result<f64, Cancelled> {
+        let bent = sum(self.bent.len(), poll, |i| self.bent[i] * self.bent[i])?;
+        let away = sum(self.y.len(), poll, |i| self.y[i] * self.y[i])?;
+        Ok(0.5 * (bent.element_sum() + NEARNESS * away.element_sum()))
+    }
+
+    /// How far the least value can be below that of this feasible state.
+    fn gap(&self, within: f64, poll: &mut Poll<'_>) -> Result<f64, Cancelled> {
+        let gap = sum(self.y.len(), poll, |i| {
+            let slope = self.slope(i);
+            DVec3::X * (slope.dot(self.y[i]) + within * slope.length())
+        })?;
+        Ok(gap.x.max(0.0))
+    }
+}
+
+/// A block's problem.
+struct Problem<'a> {
+    system: &'a System,
+    energy: &'a Energy,
+    /// A·d less y.
+    right: &'a [DVec3],
+    within: f64,
+}
+
+impl Problem<'_> {
+    /// The state of given limits; what is solved for starts from that of `near`.
+    fn state(&self, y: Vec<DVec3>, near: State, poll: &mut Poll<'_>) -> Result<State, Cancelled> {
+        let mut right = self.right.to_vec();
+        update(&mut right, poll, |i, b| *b += y[i])?;
+        let d = self.system.solve(&right, near.d, ACCURACY * self.within, poll)?.x;
+        let mut bent = self.energy.known.clone();
+        update(&mut bent, poll, |i, b| *b += self.energy.rows.row_times(i, &d))?;
+        let pull = self.energy.transposed.times(&bent, poll)?;
+        let goal = ACCURACY * greatest(pull.len(), poll, |i| pull[i].abs().max_element())?;
+        let gradient = self.system.solve_transposed(&pull, near.gradient, goal, poll)?.x;
+        Ok(State { y, d, bent, gradient })
+    }
+
+    /// A step against the slope from `from` into the balls.
+    fn step(&self, from: &State, curvature: f64, poll: &mut Poll<'_>) -> Result<Vec<DVec3>, Cancelled> {
+        let mut y = from.y.clone();
+        update(&mut y, poll, |i, y| {
+            *y -= from.slope(i) / curvature;
+            let length = y.length();
+            if length > self.within {
+                *y *= self.within / length;
+            }
+        })?;
+        Ok(y)
+    }
+}
+
+/// The control points of a block, how they were found, and the energies.
+pub(super) fn solve(
+    system: &System,
+    energy: &Energy,
+    right: &[DVec3],
+    within: f64,
+    goal: f64,
+    poll: &mut Poll<'_>,
+) -> Result<(Solution, Energies), Cancelled> {
+    let n = right.len();
+    let problem = Problem { system, energy, right, within };
+    let nothing = vec![DVec3::ZERO; n];
+    let origin =
+        State { y: nothing.clone(), d: nothing.clone(), bent: Vec::new(), gradient: nothing.clone() };
+    let mut now = problem.state(nothing, origin, poll)?;
+    let through = now.value(poll)?;
+    let (mut ahead, mut momentum, mut curvature) = (now.clone(), 1.0f64, CURVATURE);
+    let (mut value, mut gap, mut steps) = (through, now.gap(within, poll)?, 0);
+    while steps < MOST_STEPS && gap > GAP * value && gap > NOTHING * through {
+        steps += 1;
+        let from = ahead.value(poll)?;
+        let (next, next_value) = loop {
+            let y = problem.step(&ahead, curvature, poll)?;
+            let next = problem.state(y, ahead.clone(), poll)?;
+            let model = sum(n, poll, |i| {
+                let by = next.y[i] - ahead.y[i];
+                DVec3::X * (ahead.slope(i).dot(by) + 0.5 * curvature * by.length_squared())
+            })?;
+            let next_value = next.value(poll)?;
+            if next_value <= from + model.x + 1e-9 * from || curvature > 1e6 {
+                break (next, next_value);
+            }
+            curvature *= 2.0;
+        };
+        let uphill = sum(n, poll, |i| DVec3::X * ahead.slope(i).dot(next.y[i] - now.y[i]))?;
+        let after = if uphill.x > 0.0 { 1.0 } else { 0.5 * (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt()) };
+        let along = if uphill.x > 0.0 { 0.0 } else { (momentum - 1.0) / after };
+        ahead = next.beyond(&now, along, poll)?;
+        (now, value, momentum) = (next, next_value, after);
+        gap = now.gap(within, poll)?;
+    }
+    let mut right = right.to_vec();
+    update(&mut right, poll, |i, b| *b += now.y[i])?;
+    let solution = system.solve(&right, now.d, goal, poll)?;
+    Ok((solution, Energies { through, reached: value, least: (value - gap).max(0.0), steps }))
+}

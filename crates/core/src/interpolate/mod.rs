@@ -1,0 +1,228 @@
+//! Control meshes whose limit surface passes through the vertices of a mesh.
+//!
+//! A limit surface lies inside its control mesh: it shrinks, a scan by some thousandths of its size, a coarse cylinder by
+//! hundredths. Here the vertices of a mesh are taken for points of the surface, and control points are found whose limits they
+//! are: a function from mesh to mesh, with the same faces and tags, after which everything goes on as for any control mesh
+//! (Halstead, Kass and DeRose, *Efficient, Fair Interpolation using Catmull–Clark Surfaces*, 1993; here for any scheme whose
+//! limit positions are known).
+//!
+//! # The system
+//! The limit position of a vertex is a weighted sum of control points, row by row a sparse matrix A with A·x = v. Points that
+//! depend on each other in a circle are found together, the others in the order in which they depend on one another
+//! (`blocks.rs`): corners keep their place, each line of a crease or a boundary is a system of its own, and then each region
+//! between them, with the lines fixed.
+//!
+//! At a smooth vertex with k edges Loop's limit weights are 1 for the neighbours and a = 3/(8β(k)) for the vertex, divided by
+//! a + k (Loop 1987). So diag(a + k)·A = diag(a) + (adjacency) is symmetric, and it is positive definite at all valences: the
+//! sum over the triangles of (x_p + x_q + x_r)² is Σ k x² + 2·xᵀ(adjacency)x and not negative, whence the adjacency is at least
+//! −k/2; and a > k/2, as k·β(k) is below 3/4 for Loop's weights and Warren's (0.61 at most, at valence 2). So there is a solution
+//! for every mesh, and with the diagonal as preconditioner the condition number is at most that of (1 + k/a)/(1 − k/2a): 4 for
+//! six edges, 10 for three, 14 for two. That takes some twenty steps of conjugate gradients at any size. Lines have 4 on the
+//! diagonal and two neighbours. No length enters: slivers are as good as other triangles.
+//!
+//! Where a dart or a tag that fades gives the neighbours of a vertex weights of their own, and for schemes outside the Loop
+//! family, the system may not be symmetric: conjugate gradients on the normal equations take its place, and where there is no
+//! solution they give the least squares answer. [`Interpolated::method`] says which it was.
+//!
+//! # Near rather than through
+//! A surface that passes through every vertex undulates where vertices are out of line. [`InterpolateOptions::within`] allows
+//! limits to be so far from their vertices, and asks for the fairest surface of those: the control net of least thin-plate
+//! energy (`fairness.rs`). It is as curved as it must be and no more, which takes all of the distance where the surface is
+//! curved. [`Interpolated::fairness`] says how near the energy is to the least that there can be.
+//!
+//! ```
+//! use limitmesh::interpolate::{InterpolateOptions, interpolate};
+//! use limitmesh::limit::LimitTable;
+//! use limitmesh::scheme::Loop;
+//! use limitmesh::Mesh;
+//!
+//! let soup = limitmesh_models::find("sphere").ok_or("no such model")?.soup();
+//! let (mesh, _) = Mesh::from_soup(&soup, &Default::default())?;
+//! let control = interpolate(&mesh, &Loop, &InterpolateOptions::default())?.mesh;
+//! for (limit, vertex) in LimitTable::new(&Loop).positions(&control)?.iter().zip(mesh.positions()) {
+//!     assert!((0..3).all(|axis| (limit[axis] - vertex[axis]).abs() < 1e-12));
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod blocks;
+mod control_points;
+mod fairness;
+mod sparse;
+mod system;
+
+pub use fairness::Fairness;
+
+use crate::index::VertexId;
+use crate::limit::{LimitError, LimitTable};
+use crate::mesh::{Mesh, MeshError};
+use crate::options::options;
+use crate::progress::{Cancelled, Observer, Stage, Watch, unobserved};
+use crate::scheme::Scheme;
+use crate::vector::{diagonal, vector};
+use control_points::ControlPoints;
+use system::Solver;
+
+/// Limits farther from their vertices than this share of the bounding box's diagonal are not at them.
+const THROUGH: f64 = 1e-10;
+
+/// How far beyond the distance that is asked for limits may be, as a share of the bounding box's diagonal.
+const NEAR: f64 = 1e-12;
+
+/// Why there are no control points.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InterpolateError {
+    /// A limit position does not exist.
+    #[error(transparent)]
+    Limit(#[from] LimitError),
+    /// A control point would not be finite, or an option is out of range.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// No limits that are near enough were found.
+    #[error("the limit of vertex {vertex} is {distance} from it at least, expected at most {within}")]
+    TooFar {
+        /// The vertex at fault.
+        vertex: VertexId,
+        /// The distance that it came to.
+        distance: f64,
+        /// What was asked for.
+        within: f64,
+    },
+    /// The observer asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+options! {
+    /// How near the limit surface passes to the vertices.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct InterpolateOptions {
+        /// The greatest distance of a limit from its vertex, as a length; of all control meshes that keep it the fairest is
+        /// taken. Default: 0, the surface passes through the vertices.
+        pub within: f64 = 0.0,
+    }
+}
+
+/// How control points were found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum InterpolationMethod {
+    /// There was nothing to find: all limits are the vertices themselves, as with a scheme that interpolates.
+    Unchanged,
+    /// Conjugate gradients on systems that are symmetric and positive definite.
+    ConjugateGradients,
+    /// Conjugate gradients on the normal equations, for some part of the mesh at least.
+    NormalEquations,
+    /// No control points have these limits: the sum of the squared distances of limits from vertices is the least that there is,
+    /// for some part of the mesh.
+    LeastSquares,
+}
+
+/// A control mesh and how it came about.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Interpolated {
+    /// The control mesh, with the faces and tags of the mesh that it is for.
+    pub mesh: Mesh,
+    /// How it was found.
+    pub method: InterpolationMethod,
+    /// Steps of conjugate gradients, in the part of the mesh that took most; where limits may leave their vertices, those of the
+    /// last solution.
+    pub iterations: usize,
+    /// The greatest distance of a limit from its vertex: what rounding leaves, unless limits may leave their vertices or the
+    /// answer is one of least squares.
+    pub residual: f64,
+    /// The greatest distance of a control point from its vertex: the more, the likelier the surface undulates in between.
+    pub displacement: f64,
+    /// The vertex whose control point that is.
+    pub most_displaced: VertexId,
+    /// How fair it is, where limits may leave their vertices.
+    pub fairness: Option<Fairness>,
+}
+
+/// The control mesh whose limit surface passes through the vertices of `mesh`, or as near as the options say.
+///
+/// Vertices whose limit is their own place keep it: corners, and all with a scheme that interpolates. Copies of a vertex where
+/// sheets were cut apart stay together, bit for bit.
+///
+/// # Errors
+/// A vertex has no limit, a control point would not be finite, or a distance is asked for that is negative, no number, or not
+/// reached.
+pub fn interpolate(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    options: &InterpolateOptions,
+) -> Result<Interpolated, InterpolateError> {
+    interpolate_observed(mesh, scheme, options, &mut unobserved)
+}
+
+/// [`interpolate`], telling an observer how it goes on.
+///
+/// # Errors
+/// The same, or the observer asked to stop.
+pub fn interpolate_observed(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    options: &InterpolateOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Interpolated, InterpolateError> {
+    let within = options.within;
+    if !(within >= 0.0 && within.is_finite()) {
+        let (name, expected) = ("the distance of limits from vertices", "a length of at least 0");
+        return Err(MeshError::BadOption { name, value: within, expected }.into());
+    }
+    let mut watch = Watch::new(observer, Stage::Interpolating);
+    watch.triangles(mesh.face_count());
+    watch.stage(Stage::Interpolating, Some(mesh.vertex_count()))?;
+    let table = LimitTable::new(scheme);
+    let points = ControlPoints::new(mesh, table.position_rows(mesh, &mut |_| watch.poll())??);
+    if points.is_solved() {
+        return Ok(Interpolated {
+            mesh: mesh.clone(),
+            method: InterpolationMethod::Unchanged,
+            iterations: 0,
+            residual: 0.0,
+            displacement: 0.0,
+            most_displaced: VertexId(0),
+            fairness: None,
+        });
+    }
+    let moved = points.solve(within, &mut watch)?;
+    let positions = moved.by.iter().enumerate().map(|(v, &by)| points.position(v, by)).collect();
+    let control = mesh.clone().with_positions(positions)?;
+    watch.stage(Stage::Limits, Some(mesh.vertex_count()))?;
+    let limits = table.positions_polled(&control, &mut |done| watch.done(done))??;
+    let (residual, vertex) = farthest(&limits, mesh.positions());
+    let rounding = points.rounding();
+    if within > 0.0 && residual > within + rounding + NEAR * mesh.diagonal() {
+        return Err(InterpolateError::TooFar { vertex, distance: residual, within });
+    }
+    let (displacement, most_displaced) = farthest(control.positions(), mesh.positions());
+    let method = match moved.solver {
+        _ if residual > within + rounding + THROUGH * mesh.diagonal() => InterpolationMethod::LeastSquares,
+        Solver::Symmetric => InterpolationMethod::ConjugateGradients,
+        Solver::Normal => InterpolationMethod::NormalEquations,
+    };
+    Ok(Interpolated {
+        mesh: control,
+        method,
+        iterations: moved.steps,
+        residual,
+        displacement,
+        most_displaced,
+        fairness: moved.energies.map(|energies| energies.fairness()),
+    })
+}
+
+/// The greatest distance between points of the same number, and the first of those.
+fn farthest(a: &[[f64; 3]], b: &[[f64; 3]]) -> (f64, VertexId) {
+    let distance = |(&a, &b): (&[f64; 3], &[f64; 3])| {
+        let [a, b] = [a, b].map(vector);
+        diagonal(a.min(b), a.max(b))
+    };
+    let most = |most: (f64, VertexId), (v, distance): (u32, f64)| {
+        if distance > most.0 { (distance, VertexId(v)) } else { most }
+    };
+    (0..).zip(a.iter().zip(b).map(distance)).fold((0.0, VertexId(0)), most)
+}

@@ -1,0 +1,110 @@
+//! The limit positions of a mesh as a linear map: each is a weighted sum of control vertices.
+//!
+//! Takes a mesh and a table of stencils; gives the weights, vertex by vertex. For a scheme with one-ring support they are the
+//! stencil's; for one with two-ring support the stencil's after one refinement, by the weights of that refinement.
+
+use super::evaluate::{Stencils, for_each_of_two_ring, stays};
+use super::refined::{Refined, RefinedWeights};
+use super::{LimitError, LimitTable};
+use crate::index::VertexId;
+use crate::masks::Masks;
+use crate::mesh::Mesh;
+use crate::parallel::{self, Poll};
+use crate::progress::Cancelled;
+use crate::scheme::Support;
+
+/// Vertices whose weights are found together.
+const PIECE: usize = 1 << 10;
+
+/// The weights of all limit positions, those that are zero left out.
+pub(crate) struct LimitRows {
+    /// Where each vertex's weights start, and their end as a last entry.
+    pub(crate) starts: Vec<usize>,
+    /// The control vertices; each once in a row.
+    pub(crate) vertices: Vec<u32>,
+    /// Their weights, which sum to 1 in each row.
+    pub(crate) weights: Vec<f64>,
+}
+
+impl LimitTable<'_> {
+    /// The weights that the limit position of each vertex of `mesh` has on the mesh's vertices.
+    pub(crate) fn position_rows(
+        &self,
+        mesh: &Mesh,
+        poll: &mut Poll<'_>,
+    ) -> Result<Result<LimitRows, LimitError>, Cancelled> {
+        let stencils = match Stencils::of(self, mesh, poll)? {
+            Ok(stencils) => stencils,
+            Err(error) => return Ok(Err(error)),
+        };
+        let row = |v: usize| {
+            let (vertex, weights) = (VertexId(v as u32), stencils.at(v).position());
+            match self.scheme().support() {
+                _ if stays(weights) => vec![(vertex.0, 1.0)],
+                Support::OneRing => one_ring_row(mesh, vertex, weights),
+                Support::TwoRing => two_ring_row(
+                    mesh,
+                    vertex,
+                    weights,
+                    &RefinedWeights(Masks::on_demand(mesh, self.scheme())),
+                ),
+            }
+        };
+        let nowhere = &mut |_| poll(0);
+        let pieces = parallel::pieces_polled(mesh.vertex_count(), PIECE, nowhere, |piece| {
+            let (mut lengths, mut entries) = (Vec::with_capacity(piece.len()), Vec::new());
+            for row in piece.map(row) {
+                lengths.push(row.len());
+                entries.extend(row);
+            }
+            (lengths, entries)
+        })?;
+        let mut rows = LimitRows { starts: vec![0], vertices: Vec::new(), weights: Vec::new() };
+        for (lengths, entries) in pieces {
+            let mut end = rows.vertices.len();
+            rows.starts.extend(lengths.into_iter().map(|length| {
+                end += length;
+                end
+            }));
+            rows.vertices.extend(entries.iter().map(|&(v, _)| v));
+            rows.weights.extend(entries.iter().map(|&(_, weight)| weight));
+        }
+        Ok(Ok(rows))
+    }
+}
+
+fn one_ring_row(mesh: &Mesh, vertex: VertexId, weights: &[f64]) -> Vec<(u32, f64)> {
+    let ring = mesh.topology().ring(vertex).map(|v| v.0).zip(weights[1..].iter().copied());
+    let all = core::iter::once((vertex.0, weights[0])).chain(ring);
+    all.filter(|&(_, weight)| weight != 0.0).collect()
+}
+
+fn two_ring_row(
+    mesh: &Mesh,
+    vertex: VertexId,
+    weights: &[f64],
+    refined: &RefinedWeights<'_>,
+) -> Vec<(u32, f64)> {
+    let mut row: Vec<(u32, f64)> = Vec::new();
+    let mut add = |weight: f64, point: Vec<(VertexId, f64)>| {
+        row.extend(point.into_iter().map(|(v, share)| (v.0, weight * share)));
+    };
+    add(weights[0], refined.moved(vertex));
+    for_each_of_two_ring(mesh.topology(), vertex, refined, |i, point| add(weights[i + 1], point));
+    summed(row)
+}
+
+/// A row in which each vertex occurs once, ascending.
+pub(crate) fn summed(mut row: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
+    // Stable, so that weights are always added in the order in which they came.
+    row.sort_by_key(|&(v, _)| v);
+    row.dedup_by(|next, sum| {
+        let same = next.0 == sum.0;
+        if same {
+            sum.1 += next.1;
+        }
+        same
+    });
+    row.retain(|&(_, weight)| weight != 0.0);
+    row
+}
