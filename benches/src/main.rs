@@ -7,6 +7,7 @@
 //! * `against-paper`, `against-uniform`, `against-optimum`, `against-simplified`, `certificate`: how good exact refinement
 //!   is, over many models; `quality` runs all of these;
 //! * `throughput`: its triangles per second and bytes per triangle;
+//! * `through`: limit surfaces through the vertices of thinned meshes, against the meshes before;
 //! * `gaps`: how long observers of long functions wait at most;
 //! * `scaling`: exact refinement of ever larger meshes, larger in one way each; needs no models;
 //! * `tolerances GOALS`: triangles and time of exact refinement, each of the GOALS a model, built in or a file, and what is
@@ -25,6 +26,8 @@ mod peers;
 mod quality;
 mod refinement;
 mod scaling;
+mod thinning;
+mod through;
 mod tolerances;
 
 use std::path::{Path, PathBuf};
@@ -86,9 +89,10 @@ fn measure(work: &str, folder: &Path) -> Result<()> {
         "against-simplified" => quality::against_simplified(folder),
         "certificate" => quality::certificate(folder),
         "throughput" => quality::throughput(folder),
+        "through" => through::through(folder),
         "gaps" => gaps::gaps(folder),
         other => bail!(
-            "no benchmark is called {other}: {}, speed, {}, quality, throughput, gaps, scaling, tolerances, figures, all",
+            "no benchmark is called {other}: {}, speed, {}, quality, throughput, through, gaps, scaling, tolerances, figures, all",
             SPEED.join(", "),
             QUALITY.join(", ")
         ),

@@ -30,6 +30,7 @@ impl InterpolationArguments {
 
     /// How near the surface is to pass, for a mesh with this diagonal; none without these options.
     pub(crate) fn within(&self, diagonal: f64) -> Option<f64> {
-        self.interpolate_within.map_or(self.interpolate.then_some(0.0), |within| Some(within.length(diagonal)))
+        self.interpolate_within
+            .map_or(self.interpolate.then_some(0.0), |within| Some(within.length(diagonal)))
     }
 }

@@ -7,8 +7,8 @@ use limitmesh::mesh::Weld;
 use limitmesh::refine::{ErrorBounds, ExactStop, StepReport, Stop};
 use serde::Serialize;
 
-use super::{InputReport, InterpolationReport};
 use super::diagnosis::DiagnosisReport;
+use super::{InputReport, InterpolationReport};
 use crate::arguments::{Boundary, Method, RefineArguments, SchemeName, Seam};
 use crate::format::{lower_bound, upper_bound};
 

@@ -21,9 +21,8 @@ fn peg() -> String {
         let (a, b, c, d) = (i + 1, j + 1, j + 17, i + 17);
         writeln!(text, "f {a} {b} {c}\nf {a} {c} {d}").expect("text");
     }
-    let ring = |places: &mut dyn Iterator<Item = i32>| {
-        places.map(|i| i.to_string()).collect::<Vec<_>>().join(" ")
-    };
+    let ring =
+        |places: &mut dyn Iterator<Item = i32>| places.map(|i| i.to_string()).collect::<Vec<_>>().join(" ");
     writeln!(text, "f {}\nf {}", ring(&mut (1..=16).rev()), ring(&mut (17..=32))).expect("text");
     text
 }
@@ -49,7 +48,10 @@ fn a_peg_keeps_its_radius() {
         (run.json(), radii(&soup(&output).positions), run.stderr)
     };
     let (report, (_, most), _) = refine("");
-    assert_eq!((&report["interpolation"], &report["parameters"]["interpolate_within"]), (&json!(null), &json!(null)));
+    assert_eq!(
+        (&report["interpolation"], &report["parameters"]["interpolate_within"]),
+        (&json!(null), &json!(null))
+    );
     assert!(most < 4.9, "{most}");
 
     let (report, (_, most), said) = refine("--interpolate");
@@ -91,7 +93,8 @@ fn every_command_with_a_limit_surface_has_it() {
     assert_eq!(through["reference"]["limit"]["interpolate_within"], 0.0);
     assert!(number(&through["hausdorff"]["symmetric_percent"]) <= 0.21);
     assert!(number(&plain["hausdorff"]["symmetric_percent"]) > 0.5);
-    let compared = run("compare builtin:spike --interpolate --json --samples 2000 --levels 2", &[]).expect(0).json();
+    let compared =
+        run("compare builtin:spike --interpolate --json --samples 2000 --levels 2", &[]).expect(0).json();
     assert_eq!(compared[0]["reference"]["interpolate_within"], 0.0);
 
     // Without refinement it is the control mesh.

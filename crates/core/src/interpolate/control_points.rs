@@ -57,7 +57,7 @@ impl<'m> ControlPoints<'m> {
             let first = group.iter().copied().min().unwrap_or(0);
             group.iter().for_each(|&copy| first_copy[copy as usize] = first);
         }
-        let matrix = of_first_copies(rows.into(), &first_copy);
+        let matrix = of_first_copies(rows, &first_copy);
         let unit = unit(mesh);
         let points = mesh.positions().iter().map(|&p| vector(p) * unit).collect();
         Self { mesh, first_copy, matrix, points, unit }
@@ -77,7 +77,7 @@ impl<'m> ControlPoints<'m> {
     pub(super) fn solve(&self, within: f64, watch: &mut Watch<'_>) -> Result<Moved, Cancelled> {
         let n = self.points.len();
         let poll: &mut Poll<'_> = &mut |_| watch.poll();
-        let away = parallel::map_polled(n, poll, |v| self.from_limit(v))?;
+        let away = parallel::map_polled(n, poll, |v| self.to_vertex(v))?;
         let farthest = greatest(n, poll, |v| away[v].abs().max_element())?;
         let goal = (ACCURACY * farthest).max(ROUNDING);
         let blocks = Blocks::of(&self.matrix);
@@ -141,7 +141,7 @@ impl<'m> ControlPoints<'m> {
     }
 
     /// From the limit of a vertex, as the mesh is, to the vertex.
-    fn from_limit(&self, v: usize) -> DVec3 {
+    fn to_vertex(&self, v: usize) -> DVec3 {
         let towards = |(u, weight): (u32, f64)| weight * (self.points[v] - self.points[u as usize]);
         self.matrix.row(v).map(towards).sum()
     }
@@ -185,7 +185,7 @@ fn of_first_copies(rows: LimitRows, first_copy: &[u32]) -> Sparse {
 
 /// The rows of the energy by the block in which their last point is found.
 struct BlockEnergies {
-    rows: Vec<Vec<(u32, f64)>>,
+    rows: Sparse,
     starts: Vec<u32>,
     by_block: Vec<u32>,
 }
@@ -193,18 +193,18 @@ struct BlockEnergies {
 impl BlockEnergies {
     fn new(mesh: &Mesh, first_copy: &[u32], blocks: &Blocks) -> Self {
         let rows = fairness::rows(mesh, first_copy);
-        let last = |row: &[(u32, f64)]| row.iter().map(|&(u, _)| blocks.number(u)).max();
+        let last = |row: u32| rows.columns(row as usize).iter().map(|&u| blocks.number(u) as usize).max();
         let mut starts = vec![0u32; blocks.len() + 1];
-        rows.iter().filter_map(|row| last(row)).for_each(|block| starts[block as usize + 1] += 1);
-        for i in 1..starts.len() {
-            starts[i] += starts[i - 1];
+        (0..rows.rows() as u32).filter_map(last).for_each(|block| starts[block + 1] += 1);
+        for block in 0..blocks.len() {
+            starts[block + 1] += starts[block];
         }
         let mut next = starts.clone();
         let mut by_block = vec![0; starts[blocks.len()] as usize];
-        for (number, row) in (0..).zip(&rows) {
+        for row in 0..rows.rows() as u32 {
             if let Some(block) = last(row) {
-                by_block[next[block as usize] as usize] = number;
-                next[block as usize] += 1;
+                by_block[next[block] as usize] = row;
+                next[block] += 1;
             }
         }
         Self { rows, starts, by_block }
@@ -214,16 +214,16 @@ impl BlockEnergies {
     fn of(&self, number: usize, blocks: &Blocks, points: &[DVec3], by: &[DVec3]) -> Energy {
         let (mut inside, mut known) = (Sparse::empty(), Vec::new());
         for &row in &self.by_block[self.starts[number] as usize..self.starts[number + 1] as usize] {
-            let row = &self.rows[row as usize];
+            let row = self.rows.row(row as usize);
             // The weights of a row sum to 0: only differences count.
-            let origin = row.first().map_or(DVec3::ZERO, |&(u, _)| points[u as usize]);
+            let origin = row.clone().next().map_or(DVec3::ZERO, |(u, _)| points[u as usize]);
             let is_inside = |u: u32| blocks.number(u) as usize == number;
-            let of = |&(u, weight): &(u32, f64)| {
+            let weighted = |(u, weight): (u32, f64)| {
                 let moved = if is_inside(u) { DVec3::ZERO } else { by[u as usize] };
                 weight * (points[u as usize] - origin + moved)
             };
-            known.push(row.iter().map(of).sum());
-            inside.push(row.iter().filter(|&&(u, _)| is_inside(u)).map(|&(u, w)| (blocks.place(u), w)));
+            known.push(row.clone().map(weighted).sum());
+            inside.push(row.filter(|&(u, _)| is_inside(u)).map(|(u, w)| (blocks.place(u), w)));
         }
         Energy::new(inside, known, blocks.block(number).len())
     }

@@ -25,8 +25,8 @@ use crate::vector::DVec3;
 /// ε: far below the curvature of the energy in any but the longest waves.
 const NEARNESS: f64 = 1e-6;
 
-/// The gap beside the energy that is small enough.
-const GAP: f64 = 1e-3;
+/// The gap that is small enough, beside the energy and beside what can be gained.
+const GAP: f64 = 1e-2;
 
 /// The gap that is small enough beside the energy at the beginning, where hardly any is left.
 const NOTHING: f64 = 1e-9;
@@ -75,33 +75,27 @@ impl Energies {
     }
 }
 
-/// The rows of B for a mesh, on the first copies of its vertices.
-pub(super) fn rows(mesh: &Mesh, first_copy: &[u32]) -> Vec<Vec<(u32, f64)>> {
+/// The rows of B for a mesh, on the first copies of its vertices; those of corners and of further copies are empty.
+pub(super) fn rows(mesh: &Mesh, first_copy: &[u32]) -> Sparse {
     let (topology, sharpness) = (mesh.topology(), Sharpness::of(mesh));
-    let row = |v: u32| {
+    let mut rows = Sparse::empty();
+    for v in 0..mesh.vertex_count() as u32 {
         let vertex = VertexId(v);
-        let ends: Vec<VertexId> = match sharpness.rule(vertex) {
+        let ring = topology.ring(vertex).map(|u| first_copy[u.index()]);
+        let ends: Vec<u32> = match sharpness.rule(vertex) {
             _ if first_copy[v as usize] != v => Vec::new(),
             VertexRule::Corner => Vec::new(),
-            VertexRule::Smooth | VertexRule::Dart => topology.ring(vertex).collect(),
+            VertexRule::Smooth | VertexRule::Dart => ring.collect(),
             VertexRule::Crease => {
                 let is_sharp = sharpness.spokes(vertex).map(|sharpness| sharpness > 0.0);
-                topology
-                    .ring(vertex)
-                    .zip(is_sharp)
-                    .filter(|&(_, is_sharp)| is_sharp)
-                    .map(|(u, _)| u)
-                    .collect()
+                ring.zip(is_sharp).filter(|&(_, is_sharp)| is_sharp).map(|(u, _)| u).collect()
             }
         };
-        if ends.is_empty() {
-            return Vec::new();
-        }
+        let own = (!ends.is_empty()).then_some((v, -1.0));
         let share = 1.0 / ends.len() as f64;
-        let around = ends.into_iter().map(|u| (first_copy[u.index()], share));
-        around.chain([(v, -1.0)]).collect()
-    };
-    (0..mesh.vertex_count() as u32).map(row).collect()
+        rows.push(ends.into_iter().map(|u| (u, share)).chain(own));
+    }
+    rows
 }
 
 /// ½|B·d + known|² of a block's unknowns.
@@ -213,7 +207,7 @@ pub(super) fn solve(
     let through = now.value(poll)?;
     let (mut ahead, mut momentum, mut curvature) = (now.clone(), 1.0f64, CURVATURE);
     let (mut value, mut gap, mut steps) = (through, now.gap(within, poll)?, 0);
-    while steps < MOST_STEPS && gap > GAP * value && gap > NOTHING * through {
+    while steps < MOST_STEPS && gap > (GAP * value.min(through - value + gap)).max(NOTHING * through) {
         steps += 1;
         let from = ahead.value(poll)?;
         let (next, next_value) = loop {

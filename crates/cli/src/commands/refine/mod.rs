@@ -25,7 +25,8 @@ use crate::interrupt;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::{
-    InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport, VERSION, ViewReport,
+    InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport, VERSION,
+    ViewReport,
 };
 use exact::Goals;
 use provenance::Provenance;

@@ -1,0 +1,79 @@
+//! Limit surfaces through the vertices of thinned meshes, against the meshes that these were before: how far they are from
+//! them, and how their normals differ.
+//!
+//! The mesh as it was stands for the truth.
+
+use std::path::Path;
+
+use anyhow::Result;
+use limitmesh::Mesh;
+use limitmesh::interpolate::{InterpolateOptions, interpolate};
+use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between, limit_reference};
+use limitmesh::scheme::Loop;
+
+use crate::thinning::{dot, length, normal, thinned};
+use crate::{clock, mesh};
+
+/// Closed models whose faces are small against their features.
+const MODELS: [&str; 5] =
+    ["bunny_3674.obj", "teddy.obj", "goathead_be.ply", "skull_low.obj", "monsterfrog.obj"];
+
+/// Parts of the diagonal, in per cent, that limits may be from their vertices.
+const WITHIN: [f64; 3] = [0.02, 0.05, 0.2];
+
+/// Levels of uniform refinement whose limits stand for a surface.
+const LEVELS: usize = 4;
+
+/// Prints the table of docs/benchmarks.md.
+pub(crate) fn through(folder: &Path) -> Result<()> {
+    println!(
+        "| model | triangles | surface | greatest distance % | RMS distance % | RMS angle | steps | seconds |"
+    );
+    println!("|---|---:|---|---:|---:|---:|---:|---:|");
+    for name in MODELS {
+        let truth = mesh(&folder.join(name))?;
+        let tree = Bvh::new(truth.as_triangles())?;
+        let thinned = thinned(&truth, truth.face_count() / 4)?;
+        let size = truth.diagonal();
+        let row = |name: &str, control: &Mesh, steps: String, seconds: f64| -> Result<()> {
+            let surface = limit_reference(control, &Loop, LEVELS)?;
+            let surface = Bvh::new(surface.as_triangles())?;
+            let options = SamplingOptions::default().samples(200_000);
+            let found = hausdorff_between(&surface, &tree, &options);
+            println!(
+                "| {name} | {} | {:.3} | {:.4} | {:.2}° | {steps} | {seconds:.2} |",
+                control.face_count(),
+                100.0 * found.symmetric() / size,
+                100.0 * found.forward.rms / size,
+                normals_apart(&surface, &tree).to_degrees(),
+            );
+            Ok(())
+        };
+        row(&format!("{name} | the mesh itself, plain limit"), &thinned, "-".into(), 0.0)?;
+        for within in [0.0].into_iter().chain(WITHIN) {
+            let options = InterpolateOptions::default().within(0.01 * within * size);
+            let (took, found) = clock::one_thread(|| interpolate(&thinned, &Loop, &options))?;
+            let found = found?;
+            let steps = found.fairness.map_or(found.iterations, |fairness| fairness.steps);
+            let name = if within == 0.0 { "through".to_owned() } else { format!("within {within} %") };
+            row(&name, &found.mesh, steps.to_string(), took.user)?;
+        }
+    }
+    Ok(())
+}
+
+/// The root of the mean square angle between a surface's facets and those of another at the nearest points, by area.
+fn normals_apart(surface: &Bvh<'_>, truth: &Bvh<'_>) -> f64 {
+    let (mut sum, mut areas) = (0.0, 0.0);
+    for face in 0..surface.surface().triangles.len() {
+        let corners = surface.surface().corners(face);
+        let middle = [0, 1, 2].map(|i| corners.iter().map(|p| p[i]).sum::<f64>() / 3.0);
+        let own = normal(corners);
+        let other = normal(truth.surface().corners(truth.closest(middle).face as usize));
+        let (area, cosine) =
+            (length(own), dot(own, other) / (length(own) * length(other)).max(f64::MIN_POSITIVE));
+        sum += area * cosine.clamp(-1.0, 1.0).acos().powi(2);
+        areas += area;
+    }
+    (sum / areas).sqrt()
+}
