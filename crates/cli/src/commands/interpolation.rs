@@ -44,7 +44,7 @@ fn in_words(found: &Interpolated, within: f64, diagonal: f64) -> String {
             upper_bound(found.residual)
         ),
         _ if within > 0.0 => {
-            format!("the limit surface passes within {} of {vertices}: {moved}", upper_bound(found.residual))
+            format!("the limit surface passes within {} of {vertices}: {moved}", number(found.residual))
         }
         _ => format!("the limit surface passes through {vertices}: {moved}"),
     }
