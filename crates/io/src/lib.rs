@@ -33,5 +33,8 @@ mod write;
 
 pub use error::{Flaw, Place, ReadError, WriteError};
 pub use format::{Format, UnknownFormat};
-pub use read::{read, read_bytes};
-pub use write::{Output, Property, PropertyValues, WriteOptions, rounding, write, write_to, write_whole};
+pub use read::{read, read_as, read_bytes};
+pub use write::{
+    Output, Property, PropertyValues, WriteOptions, check_writable, rounding, write, write_as, write_to,
+    write_whole,
+};

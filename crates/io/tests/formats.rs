@@ -2,8 +2,9 @@
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
 
+use limitmesh::Triangles;
 use limitmesh::mesh::{CornerTag, CreaseTag, PolygonSoup};
-use limitmesh_io::{Format, read_bytes};
+use limitmesh_io::{Format, Output, WriteOptions, read_bytes, write_to};
 
 fn obj(text: &str) -> PolygonSoup {
     read_bytes(text.as_bytes(), Format::Obj).unwrap_or_else(|error| panic!("{error}"))
@@ -107,12 +108,16 @@ fn ply_text_with_extra_elements_and_properties() {
                 element edge 1\nproperty int a\nend_header\n";
     let body = "1.5 2 7 8\n2.5 0\n255 0 2 .1 .2 0 0\n\n 0 1 0 0 0\n0 1 1 9 1 0\n7 0 0 1 0\n\
                 0.5 3 0 1 2 1\n0.5 4 0 1 2 3 1\n0\nanything after the last element\n";
-    let soup = ply(text, body.as_bytes());
+    let mut soup = ply(text, body.as_bytes());
+    assert_eq!(soup.left_out.last().map(String::as_str), Some("33 bytes after the last element"));
+    soup.left_out.pop();
     assert_eq!(soup.positions, SQUARE);
     assert_eq!(polygons(&soup), [&[0, 1, 2][..], &[0, 1, 2, 3]]);
     // Lines that end with CR LF, or CR alone.
     for end in ["\r\n", "\r"] {
-        assert_eq!(ply(&text.replace('\n', end), body.replace('\n', end).as_bytes()), soup);
+        let mut same = ply(&text.replace('\n', end), body.replace('\n', end).as_bytes());
+        same.left_out.pop();
+        assert_eq!(same, soup);
     }
 }
 
@@ -277,17 +282,105 @@ fn extensions_in_capitals_and_small_letters() {
     }
 }
 
+/// What reading `bytes` says that it left out.
+fn left_out(bytes: &[u8], format: Format) -> Vec<String> {
+    read_bytes(bytes, format).unwrap().left_out
+}
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
 #[test]
-fn what_a_soup_cannot_hold_is_named() {
-    let obj = b"o one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl red\nf 1/1/1 2/1/1 3/1/1\n";
-    assert_eq!(read_bytes(obj, Format::Obj).unwrap().left_out, ["texture coordinates", "materials"]);
-    let ply =
-        b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+fn what_an_obj_file_held_and_a_soup_cannot_is_named() {
+    let cases: [(&str, &[&str]); 14] = [
+        ("vt 0 0\nvn 0 0 1\nusemtl red\n", &["texture coordinates", "normals", "materials"]),
+        ("mtllib a.mtl\n", &["materials"]),
+        ("g wheel\n", &["groups"]),
+        ("o car\n", &["names of objects"]),
+        ("s 1\n", &["smoothing groups"]),
+        ("l 1 2\np 3\nvp 0.5\n", &["lines", "points", "points in parameter space"]),
+        ("v 0 0 1 0.5 0.5 0.5\n", &["colours"]),
+        ("v 0 0 1 1 0.5 0.5 0.5\n", &["colours"]),
+        ("v 0 0 1 0.5\n", &["weights of vertices"]),
+        ("curv 0 1 1 2\ncurv 0 1 1 2\nbevel on\n", &["statements 'curv'", "statements 'bevel'"]),
+        ("t hole 1/0/0 0\n", &["tags 'hole'"]),
+        // Nothing is said of what says nothing.
+        ("g\no\ns off\ns 0\n", &[]),
+        ("v 0 0 1 1\n", &[]),
+        ("# vt 0 0\n\nt\n", &[]),
+    ];
+    for (more, expected) in cases {
+        for text in [format!("{TRIANGLE}{more}"), format!("{more}{TRIANGLE}")] {
+            // Vertices before the triangle's move its indices, which is all the same here.
+            assert_eq!(left_out(text.as_bytes(), Format::Obj), expected, "{text}");
+        }
+    }
+}
+
+#[test]
+fn what_a_ply_file_held_and_a_soup_cannot_is_named() {
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
         property float nx\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\n\
-        property int flags\nelement edge 1\nproperty int a\nend_header\n\
+        property int flags\nelement edge 1\nproperty int a\nelement note 0\nproperty int b\nend_header\n\
         0 0 0 1 9\n1 0 0 1 9\n0 1 0 1 9\n3 0 1 2 7\n5\n";
-    let named = read_bytes(ply, Format::Ply).unwrap().left_out;
-    assert_eq!(named, ["vertex properties red", "face properties flags", "element edge"]);
-    let plain = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
-    assert!(read_bytes(plain, Format::Obj).unwrap().left_out.is_empty());
+    let named = ["vertex properties nx, red", "face properties flags", "element edge"];
+    assert_eq!(left_out(ply.as_bytes(), Format::Ply), named);
+    assert_eq!(left_out(format!("{ply} \n\n").as_bytes(), Format::Ply), named);
+    let more = left_out(format!("{ply}\n4 5\n").as_bytes(), Format::Ply);
+    assert_eq!(more[3..], ["4 bytes after the last element"]);
+    let surface =
+        Triangles { positions: &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], triangles: &[[0, 1, 2]] };
+    let normals = [[0.0, 0.0, 1.0]; 3];
+    let mut binary = Vec::new();
+    let output = Output::new(surface).normals(&normals);
+    write_to(&mut binary, Format::Ply, &output, &WriteOptions::default()).unwrap();
+    assert_eq!(left_out(&binary, Format::Ply), ["normals"]);
+    binary.push(7);
+    assert_eq!(left_out(&binary, Format::Ply), ["normals", "1 byte after the last element"]);
+}
+
+#[test]
+fn what_an_stl_file_held_and_a_soup_cannot_is_named() {
+    let solid = |name: &str| {
+        format!(
+            "solid{name}\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n\
+             endsolid{name}\n"
+        )
+    };
+    assert!(left_out(solid("").as_bytes(), Format::Stl).is_empty());
+    assert_eq!(left_out(solid(" gear").as_bytes(), Format::Stl), ["the solid's name"]);
+    assert_eq!(left_out(solid("").repeat(2).as_bytes(), Format::Stl), ["that these are 2 solids"]);
+    let named = left_out((solid(" a") + &solid(" b")).as_bytes(), Format::Stl);
+    assert_eq!(named, ["that these are 2 solids, and their names"]);
+    let mut binary = vec![0; 84 + 50];
+    binary[80] = 1;
+    // The corners are where they like to be: only what stands beside them is of interest.
+    binary[84 + 12..84 + 16].copy_from_slice(&1f32.to_le_bytes());
+    assert!(left_out(&binary, Format::Stl).is_empty());
+    binary[84 + 49] = 0x80;
+    let attributes = "attributes of facets, which some programs use for colours";
+    assert_eq!(left_out(&binary, Format::Stl), [attributes]);
+    binary.extend([0; 3]);
+    assert_eq!(left_out(&binary, Format::Stl), [attributes, "3 bytes after the last facet"]);
+}
+
+#[test]
+fn what_an_off_file_held_and_a_soup_cannot_is_named() {
+    let off = |keyword: &str, column: &str, face: &str, end: &str| {
+        let text =
+            format!("{keyword}\n3 1 0\n0 0 0{column}\n1 0 0{column}\n0 1 0{column}\n3 0 1 2{face}\n{end}");
+        left_out(text.as_bytes(), Format::Off)
+    };
+    assert!(off("OFF", "", "", "").is_empty());
+    assert!(off("OFF", "", " 0", "\n# the end\n").is_empty());
+    // Announced, and not there.
+    assert!(off("COFF", "", "", "").is_empty());
+    assert_eq!(off("OFF", " 255 0 0", "", ""), ["colours"]);
+    assert_eq!(off("COFF", " 255 0 0 255", "", ""), ["colours"]);
+    assert_eq!(off("NOFF", " 0 0 1", "", ""), ["normals"]);
+    assert_eq!(
+        off("STCNOFF", " 255 0 0 255 0 0 1 0.5 0.5", "", ""),
+        ["texture coordinates", "normals", "colours"]
+    );
+    assert_eq!(off("OFF", "", " 255 0 0", ""), ["colours of faces"]);
+    assert_eq!(off("OFF", "", "", "3 0 1 2\n"), ["what stands after the last face"]);
 }

@@ -67,7 +67,9 @@ fn every_model_has_the_counts_of_the_list() {
 fn tags_count_vertices_from_zero() {
     let Some(folder) = folder() else { return };
     for name in ["rook_creased.obj", "mechpart_creased.obj", "loop_icos_semisharp.obj"] {
-        let soup = read(&folder.join(name)).unwrap();
+        let mut soup = read(&folder.join(name)).unwrap();
+        // What was left out has not been written.
+        soup.left_out.clear();
         let is_edge = |ends: [u32; 2]| {
             soup.faces.iter().any(|face| {
                 (0..face.len()).any(|i| {

@@ -1,5 +1,6 @@
 //! Reading: from a file or its bytes to a polygon soup.
 
+mod left_out;
 mod obj;
 mod off;
 mod ply;
@@ -17,7 +18,14 @@ use std::path::Path;
 /// The extension is unknown, the file cannot be read, its content is plainly of another format, or it breaks
 /// the rules of its format; each names the file, and the last the line or byte as well.
 pub fn read(path: &Path) -> Result<PolygonSoup, ReadError> {
-    let format = Format::from_path(path)?;
+    read_as(path, Format::from_path(path)?)
+}
+
+/// [`read`] in a format that the name need not tell.
+///
+/// # Errors
+/// The same, but for unknown extensions.
+pub fn read_as(path: &Path, format: Format) -> Result<PolygonSoup, ReadError> {
     let bytes = read_all(path).map_err(|reason| ReadError::Io { path: path.to_owned(), reason })?;
     read_bytes(&bytes, format).map_err(|error| error.in_file(path))
 }

@@ -2,8 +2,9 @@
 //!
 //! Indices of faces count from 1, negative ones back from the latest vertex; a face may stand before its
 //! vertices. Indices of tags count from 0, as in OpenSubdiv's shapes. Texture coordinates, normals, weights,
-//! colours, groups, materials and all other statements are passed over.
+//! colours, groups, materials and all other statements are passed over, and what there was of them is told.
 
+use super::left_out::{Kind, LeftOut};
 use super::push_face;
 use crate::error::Flaw;
 use crate::scan::{Scanner, Syntax, integer, number, quoted};
@@ -23,7 +24,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
         polygon: Vec::new(),
         highest_corner: Latest::default(),
         highest_tag: Latest::default(),
-        left_out: [0; 3],
+        left_out: LeftOut::default(),
     }
     .run()
 }
@@ -68,8 +69,7 @@ struct Reader<'a> {
     polygon: Vec<u32>,
     highest_corner: Latest,
     highest_tag: Latest,
-    /// How many statements of texture coordinates, materials and groups were passed over.
-    left_out: [usize; 3],
+    left_out: LeftOut,
 }
 
 impl Reader<'_> {
@@ -79,22 +79,40 @@ impl Reader<'_> {
                 b"v" => self.vertex()?,
                 b"f" | b"fo" => self.face()?,
                 b"t" => self.tag()?,
-                b"vt" => self.left_out[0] += 1,
-                b"usemtl" => self.left_out[1] += 1,
-                b"g" | b"o" => self.left_out[2] += 1,
-                _ => {}
+                other => self.pass_over(other),
             }
             self.scanner.next_line();
         }
         self.check_indices()?;
         self.soup.positions.shrink_to_fit();
-        // A single group or object is only the file's title.
-        let [texture, materials, groups] = self.left_out;
-        let named =
-            [("texture coordinates", texture > 0), ("materials", materials > 0), ("groups", groups > 1)];
-        self.soup.left_out =
-            named.iter().filter(|(_, met)| *met).map(|(name, _)| (*name).to_owned()).collect();
+        self.soup.left_out = self.left_out.in_words();
         Ok(self.soup)
+    }
+
+    /// Notes a statement that has no place in a soup, unless it says nothing.
+    fn pass_over(&mut self, keyword: &[u8]) {
+        let kind = match keyword {
+            b"vt" => Kind::TextureCoordinates,
+            b"vn" => Kind::Normals,
+            b"vp" => Kind::Parameters,
+            b"l" => Kind::Lines,
+            b"p" => Kind::Points,
+            b"usemtl" | b"mtllib" => Kind::Materials,
+            b"g" | b"o" => {
+                if self.scanner.word().is_some() {
+                    self.left_out.note(if keyword == b"g" { Kind::Groups } else { Kind::Objects });
+                }
+                return;
+            }
+            b"s" => {
+                if !matches!(self.scanner.word(), None | Some(b"off" | b"0")) {
+                    self.left_out.note(Kind::SmoothingGroups);
+                }
+                return;
+            }
+            other => return self.left_out.other(format!("statements {}", quoted(other))),
+        };
+        self.left_out.note(kind);
     }
 
     fn vertex(&mut self) -> Result<(), Flaw> {
@@ -102,7 +120,21 @@ impl Reader<'_> {
         super::check_count(index as u64 + 1, "vertices", self.scanner.place())?;
         let point = self.scanner.point().map_err(|flaw| flaw.element("vertex", index))?;
         self.soup.positions.push(point);
+        if !self.left_out.has(Kind::Colours) {
+            self.note_more_numbers();
+        }
         Ok(())
+    }
+
+    /// After x, y and z: a weight, or red, green and blue, as some programs write them.
+    #[inline]
+    fn note_more_numbers(&mut self) {
+        let Some(first) = self.scanner.word() else { return };
+        if self.scanner.word().is_some() {
+            self.left_out.note(Kind::Colours);
+        } else if number(first) != Some(1.0) {
+            self.left_out.note(Kind::Weights);
+        }
     }
 
     fn face(&mut self) -> Result<(), Flaw> {
@@ -147,7 +179,11 @@ impl Reader<'_> {
         let crease = match self.scanner.word() {
             Some(b"crease") => true,
             Some(b"corner") => false,
-            _ => return Ok(()),
+            Some(name) => {
+                self.left_out.other(format!("tags {}", quoted(name)));
+                return Ok(());
+            }
+            None => return Ok(()),
         };
         let (integers, floats) = self.tag_counts()?;
         let ends = if crease { 2 } else { 1 };

@@ -1,9 +1,10 @@
 //! Geomview OFF in text: the keyword, three counts, vertices, faces.
 //!
 //! The keyword may carry `C`, `N`, `ST` for columns of colours, normals and texture coordinates, and may be
-//! missing altogether. What follows the coordinates or the indices on a line is passed over. Indices count
-//! from 0.
+//! missing altogether. What follows the coordinates or the indices on a line is passed over, and so are lines after the
+//! last face; what there was is told. Indices count from 0.
 
+use super::left_out::{Kind, LeftOut};
 use super::{check_count, push_face};
 use crate::error::Flaw;
 use crate::format::off_prefix;
@@ -19,20 +20,44 @@ const LEAST_INDEX: usize = 2;
 
 pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     let mut scanner = Scanner::new(bytes, Syntax { comments: true, continuations: false });
-    let (vertices, faces) = read_header(&mut scanner)?;
-    let positions = read_vertices(&mut scanner, vertices)?;
-    let faces = read_faces(&mut scanner, faces, vertices)?;
-    Ok(PolygonSoup { positions, faces, ..PolygonSoup::default() })
+    let (prefix, vertices, faces) = read_header(&mut scanner)?;
+    let (positions, has_columns) = read_vertices(&mut scanner, vertices)?;
+    let mut left_out = LeftOut::default();
+    if has_columns {
+        note_columns(prefix, &mut left_out);
+    }
+    let faces = read_faces(&mut scanner, faces, vertices, &mut left_out)?;
+    scanner.skip_empty_lines();
+    if !scanner.is_at_end() {
+        left_out.other("what stands after the last face".to_owned());
+    }
+    Ok(PolygonSoup { positions, faces, left_out: left_out.in_words(), ..PolygonSoup::default() })
 }
 
-/// The keyword and the counts, on one line or several; gives the numbers of vertices and faces.
-fn read_header(scanner: &mut Scanner<'_>) -> Result<(usize, usize), Flaw> {
+/// What the columns after the coordinates are, by the letters before the keyword; colours without any.
+fn note_columns(prefix: &[u8], left_out: &mut LeftOut) {
+    let named = [(b"C", Kind::Colours), (b"N", Kind::Normals), (b"T", Kind::TextureCoordinates)];
+    for (letter, kind) in named {
+        if prefix.contains(&letter[0]) {
+            left_out.note(kind);
+        }
+    }
+    if prefix.is_empty() {
+        left_out.note(Kind::Colours);
+    }
+}
+
+/// The keyword and the counts, on one line or several; gives the letters before the keyword and the numbers of vertices
+/// and faces.
+fn read_header<'a>(scanner: &mut Scanner<'a>) -> Result<(&'a [u8], usize, usize), Flaw> {
     let first = scanner.first_word();
     let mut vertices = first;
+    let mut letters: &[u8] = b"";
     if let Some(prefix) = first.and_then(off_prefix) {
         if prefix.ends_with(b"n") || prefix.ends_with(b"4") {
             return Err(scanner.unexpected(first, "three coordinates a vertex (OFF, COFF, NOFF, STOFF)"));
         }
+        letters = prefix;
         vertices = scanner.first_word();
         if vertices == Some(b"BINARY") {
             return Err(scanner.unexpected(vertices, "an OFF file in text; binary ones are not read"));
@@ -45,7 +70,7 @@ fn read_header(scanner: &mut Scanner<'_>) -> Result<(usize, usize), Flaw> {
     let faces = count(scanner, faces, "faces")?;
     // The third count, of edges, is always passed over and sometimes missing.
     scanner.next_line();
-    Ok((vertices, faces))
+    Ok((letters, vertices, faces))
 }
 
 fn count(scanner: &Scanner<'_>, word: Option<&[u8]>, what: &str) -> Result<usize, Flaw> {
@@ -62,18 +87,26 @@ fn room(scanner: &Scanner<'_>, count: usize, least: usize) -> usize {
     count.min(scanner.remaining() / least + 1)
 }
 
-fn read_vertices(scanner: &mut Scanner<'_>, count: usize) -> Result<Vec<[f64; 3]>, Flaw> {
+/// The positions, and whether anything follows them on their lines.
+fn read_vertices(scanner: &mut Scanner<'_>, count: usize) -> Result<(Vec<[f64; 3]>, bool), Flaw> {
     let mut positions = Vec::with_capacity(room(scanner, count, LEAST_VERTEX));
+    let mut has_columns = false;
     for index in 0..count {
         scanner.skip_empty_lines();
         let point = scanner.point().map_err(|flaw| flaw.element("vertex", index))?;
         positions.push(point);
+        has_columns = has_columns || scanner.word().is_some();
         scanner.next_line();
     }
-    Ok(positions)
+    Ok((positions, has_columns))
 }
 
-fn read_faces(scanner: &mut Scanner<'_>, count: usize, vertices: usize) -> Result<PolygonFaces, Flaw> {
+fn read_faces(
+    scanner: &mut Scanner<'_>,
+    count: usize,
+    vertices: usize,
+    left_out: &mut LeftOut,
+) -> Result<PolygonFaces, Flaw> {
     let lines = room(scanner, count, LEAST_FACE);
     // Most faces are triangles.
     let mut faces = PolygonFaces::with_capacity(lines, room(scanner, 3 * count, LEAST_INDEX));
@@ -81,9 +114,21 @@ fn read_faces(scanner: &mut Scanner<'_>, count: usize, vertices: usize) -> Resul
     for index in 0..count {
         read_face(scanner, vertices, &mut polygon).map_err(|flaw| flaw.element("face", index))?;
         push_face(&mut faces, &polygon, || scanner.place())?;
+        if !left_out.has(Kind::FaceColours) && has_colours(scanner) {
+            left_out.note(Kind::FaceColours);
+        }
         scanner.next_line();
     }
     Ok(faces)
+}
+
+/// Whether a face's line goes on; a lone 0 says that there are no colours.
+fn has_colours(scanner: &mut Scanner<'_>) -> bool {
+    match scanner.word() {
+        None => false,
+        Some(b"0") => scanner.word().is_some(),
+        Some(_) => true,
+    }
 }
 
 fn read_face(scanner: &mut Scanner<'_>, vertices: usize, polygon: &mut Vec<u32>) -> Result<(), Flaw> {

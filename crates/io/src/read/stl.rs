@@ -1,9 +1,10 @@
 //! STL, ASCII and binary: three vertices a facet, not merged.
 //!
 //! A file is binary if its length is what the count at byte 80 asks for; otherwise ASCII if it begins with
-//! `solid` and goes on with `facet` or `endsolid`; otherwise binary. Bytes after the last binary facet are
-//! passed over, and so are facet normals and attributes.
+//! `solid` and goes on with `facet` or `endsolid`; otherwise binary. Names of solids, attributes of facets and bytes after
+//! the last binary facet are passed over, which is told; facet normals follow from the corners.
 
+use super::left_out::trailing_bytes;
 use super::{check_count, push_face};
 use crate::error::{Flaw, Place};
 use crate::format::{is_ascii_stl, is_binary_stl, stl_facet_count};
@@ -35,6 +36,7 @@ fn read_binary(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     }
     check_count(3 * u64::from(promised), "vertices", Place::Byte(80))?;
     let mut soup = with_room(count);
+    let mut has_attributes = false;
     for (index, facet) in facets.chunks_exact(FACET).take(count).enumerate() {
         let mut corners = [[0.0; 3]; 3];
         // The normal's 12 bytes come first, two attribute bytes last.
@@ -47,7 +49,12 @@ fn read_binary(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
             corners[i / 3][i % 3] = f64::from(value);
         }
         push_facet(&mut soup, corners, || Place::Byte(HEADER + index * FACET))?;
+        has_attributes |= facet[48..] != [0, 0];
     }
+    let attributes =
+        has_attributes.then(|| "attributes of facets, which some programs use for colours".to_owned());
+    let trailing = trailing_bytes(facets.len() - FACET * count, "facet");
+    soup.left_out = attributes.into_iter().chain(trailing).collect();
     Ok(soup)
 }
 
@@ -70,7 +77,7 @@ fn read_ascii(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     let mut text = Text { scanner: Scanner::new(bytes, Syntax::default()) };
     let mut soup = with_room(facets);
     text.keyword(&["solid"])?;
-    text.scanner.next_line();
+    let (mut solids, mut has_name) = (1, text.name());
     loop {
         match text.keyword(&["facet", "endsolid"])? {
             0 => {
@@ -82,11 +89,25 @@ fn read_ascii(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
             _ => {
                 text.scanner.next_line();
                 if !text.another_solid()? {
+                    soup.left_out = left_out(solids, has_name);
                     return Ok(soup);
                 }
+                solids += 1;
+                has_name |= text.name();
             }
         }
     }
+}
+
+/// What an ASCII file of so many solids held beside its facets.
+fn left_out(solids: usize, has_name: bool) -> Vec<String> {
+    let words = match (solids, has_name) {
+        (1, false) => return Vec::new(),
+        (1, true) => "the solid's name".to_owned(),
+        (_, false) => format!("that these are {solids} solids"),
+        (_, true) => format!("that these are {solids} solids, and their names"),
+    };
+    vec![words]
 }
 
 struct Text<'a> {
@@ -123,14 +144,20 @@ impl Text<'_> {
         Ok(corners)
     }
 
-    /// Whether another solid follows, whose first line is then stepped over.
+    /// Steps over the rest of a solid's first line; whether that has a name.
+    fn name(&mut self) -> bool {
+        let has_name = self.scanner.word().is_some();
+        self.scanner.next_line();
+        has_name
+    }
+
+    /// Whether another solid follows, whose keyword is then stepped over.
     fn another_solid(&mut self) -> Result<bool, Flaw> {
         self.scanner.skip_empty_lines();
         if self.scanner.is_at_end() {
             return Ok(false);
         }
         self.keyword(&["solid"])?;
-        self.scanner.next_line();
         Ok(true)
     }
 }

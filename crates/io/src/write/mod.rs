@@ -9,7 +9,7 @@ mod stl;
 mod whole;
 
 pub use property::{Property, PropertyValues};
-pub use whole::write_whole;
+pub use whole::{check_writable, write_whole};
 
 use crate::error::WriteError;
 use crate::format::Format;
@@ -130,7 +130,19 @@ pub fn rounding(format: Format, options: &WriteOptions, positions: &[[f64; 3]]) 
 /// # Errors
 /// The extension is unknown, the output does not fit together or into the format, or the system refuses.
 pub fn write(path: &Path, output: &Output<'_>, options: &WriteOptions) -> Result<(), WriteError> {
-    let format = Format::from_path(path)?;
+    write_as(path, Format::from_path(path)?, output, options)
+}
+
+/// [`write`] in a format that the name need not tell.
+///
+/// # Errors
+/// The output does not fit together or into the format, or the system refuses.
+pub fn write_as(
+    path: &Path,
+    format: Format,
+    output: &Output<'_>,
+    options: &WriteOptions,
+) -> Result<(), WriteError> {
     check(output, format, options)?;
     whole::write_whole_with(path, |writer| write_checked(writer, format, output, options))
 }

@@ -8,6 +8,42 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+/// Finds out, without writing anything, whether [`write_whole`] could write a file: to be asked before long work.
+///
+/// # Errors
+/// The folder does not exist or may not be written to, or the earlier file of that name is a folder or read-only.
+pub fn check_writable(path: &Path) -> Result<(), WriteError> {
+    let failed = |reason: io::Error| WriteError::File { path: path.to_owned(), reason };
+    match earlier(path).map_err(failed)? {
+        Some(device) if !device.is_file() => Ok(()),
+        earlier => {
+            temporary_beside(&target(path, earlier.as_ref()).map_err(failed)?).map(drop).map_err(failed)
+        }
+    }
+}
+
+/// What is known of the earlier file of that name, if there is one; an error if it may not be replaced.
+fn earlier(path: &Path) -> io::Result<Option<fs::Metadata>> {
+    let Ok(earlier) = fs::metadata(path) else { return Ok(None) };
+    if earlier.is_dir() {
+        return Err(io::Error::from(io::ErrorKind::IsADirectory));
+    }
+    if earlier.is_file() {
+        // A new name over a file asks only the folder for permission, and the superuser may write to what is read-only: ask
+        // the file as well.
+        if earlier.permissions().readonly() {
+            return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
+        }
+        fs::OpenOptions::new().write(true).open(path)?;
+    }
+    Ok(Some(earlier))
+}
+
+/// The file that is replaced where `path` names it by a link.
+fn target(path: &Path, earlier: Option<&fs::Metadata>) -> io::Result<PathBuf> {
+    if earlier.is_some() { fs::canonicalize(path) } else { Ok(path.to_owned()) }
+}
+
 /// Writes `bytes` to a file, whole or not at all.
 ///
 /// A new file gets the permissions of any other new file; an earlier one keeps its own. A symbolic link stays
@@ -26,19 +62,12 @@ pub(super) fn write_whole_with(
     fill: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
     let failed = |reason: io::Error| WriteError::File { path: path.to_owned(), reason };
-    let earlier = fs::metadata(path).ok();
-    if let Some(earlier) = earlier.as_ref().filter(|e| !e.is_file()) {
-        if earlier.is_dir() {
-            return Err(failed(io::Error::from(io::ErrorKind::IsADirectory)));
-        }
+    let earlier = earlier(path).map_err(failed)?;
+    if earlier.as_ref().is_some_and(|e| !e.is_file()) {
         let mut device = fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
         return fill(&mut device).map_err(|error| error.in_file(path));
     }
-    if earlier.is_some() {
-        // A new name over a file asks only the folder for permission: ask the file as well.
-        fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
-    }
-    let target = if earlier.is_some() { fs::canonicalize(path).map_err(failed)? } else { path.to_owned() };
+    let target = target(path, earlier.as_ref()).map_err(failed)?;
     let mut file = temporary_beside(&target).map_err(failed)?;
     fill(&mut file).map_err(|error| error.in_file(path))?;
     if let Some(earlier) = earlier {

@@ -115,19 +115,25 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// What a soup has no place for, in words. Normals follow from the shape and are not among them.
+    /// What a soup has no place for, in words.
     pub(super) fn left_out(&self) -> Vec<String> {
-        const TAKEN: [&str; 8] = ["x", "y", "z", "nx", "ny", "nz", "vertex_indices", "vertex_index"];
+        const NORMALS: [&str; 3] = ["nx", "ny", "nz"];
+        let elements = || self.elements.iter().filter(|element| element.count > 0);
+        let has_normals =
+            elements().any(|e| e.name == "vertex" && NORMALS.iter().all(|name| e.find(&[name]).is_some()));
         let extra = |element: &Element| -> Option<String> {
-            let known = matches!(element.name.as_str(), "vertex" | "face" | "tristrips");
-            if !known {
-                return (element.count > 0).then(|| format!("element {}", element.name));
-            }
+            let taken: &[&str] = match element.name.as_str() {
+                "vertex" if has_normals => &["x", "y", "z", "nx", "ny", "nz"],
+                "vertex" => &["x", "y", "z"],
+                "face" | "tristrips" => &["vertex_indices", "vertex_index"],
+                other => return Some(format!("element {other}")),
+            };
             let names: Vec<&str> =
-                element.properties.iter().map(|p| &p.name[..]).filter(|name| !TAKEN.contains(name)).collect();
+                element.properties.iter().map(|p| &p.name[..]).filter(|name| !taken.contains(name)).collect();
             (!names.is_empty()).then(|| format!("{} properties {}", element.name, names.join(", ")))
         };
-        self.elements.iter().filter_map(extra).collect()
+        let normals = has_normals.then(|| "normals".to_owned());
+        normals.into_iter().chain(elements().filter_map(extra)).collect()
     }
 }
 

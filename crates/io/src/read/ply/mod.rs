@@ -2,11 +2,12 @@
 //!
 //! Takes `x`, `y`, `z` of element `vertex` (any number types), the list `vertex_indices` or `vertex_index` of
 //! element `face`, and the same list of element `tristrips`, where -1 ends a strip. All other properties and
-//! elements are passed over, and so is what follows the last element.
+//! elements are passed over, and so is what follows the last element, which is told.
 
 mod header;
 mod source;
 
+use super::left_out::trailing_bytes;
 use super::{check_count, push_face};
 use crate::error::{Flaw, Place};
 use header::{Element, Encoding, Header, Kind, Scalar};
@@ -39,6 +40,7 @@ fn read_body(header: &Header, mut source: impl Source) -> Result<PolygonSoup, Fl
             _ => skip_element(element, &mut source)?,
         }
     }
+    soup.left_out.extend(trailing_bytes(source.trailing(), "element"));
     Ok(soup)
 }
 

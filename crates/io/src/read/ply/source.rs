@@ -27,6 +27,9 @@ pub(super) trait Source {
     /// How many bytes are left.
     fn remaining(&self) -> usize;
 
+    /// How many bytes follow the last element; in a text, from the next word on.
+    fn trailing(&mut self) -> usize;
+
     /// Where the source stands, for errors.
     fn place(&self) -> Place;
 
@@ -94,6 +97,11 @@ impl Source for Text<'_> {
     }
 
     fn remaining(&self) -> usize {
+        self.scanner.remaining()
+    }
+
+    fn trailing(&mut self) -> usize {
+        self.scanner.skip_empty_lines();
         self.scanner.remaining()
     }
 
@@ -210,6 +218,10 @@ impl<const BIG: bool> Source for Binary<'_, BIG> {
 
     fn remaining(&self) -> usize {
         self.bytes.len() - self.at
+    }
+
+    fn trailing(&mut self) -> usize {
+        self.remaining()
     }
 
     fn place(&self) -> Place {
