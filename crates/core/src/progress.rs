@@ -57,7 +57,8 @@ pub enum Stage {
     Interpolating,
     /// A mesh is being put together; the units are its triangles.
     Assembling,
-    /// Edges are being collapsed; the units are triangles gone.
+    /// Edges are being collapsed; the units are triangles gone, and how many there will be is estimated where a tolerance
+    /// decides it.
     Simplifying,
     /// A hierarchy for closest points is being built; the units are triangles.
     Indexing,
@@ -131,6 +132,12 @@ impl<'a> Watch<'a> {
     pub(crate) fn done(&mut self, done: usize) -> Result<(), Cancelled> {
         self.progress.done = done;
         self.poll()
+    }
+
+    /// So many units of the stage are done, and so many there will be, as it looks by now.
+    pub(crate) fn done_of(&mut self, done: usize, total: usize) -> Result<(), Cancelled> {
+        self.progress.total = Some(total);
+        self.done(done)
     }
 
     /// Calls the observer with what it was told before.

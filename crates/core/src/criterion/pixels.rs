@@ -57,6 +57,9 @@ const LEAST_SINE: f64 = 0.25;
 /// Sines of angles up to this are 0 but for rounding.
 const PARALLEL: f64 = 1e-9;
 
+/// Cameras stand no farther away: squares of distances are finite.
+const FARTHEST: f64 = 1e150;
+
 /// Greatest lengths that are certainly within a number of pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Allowed {
@@ -184,6 +187,9 @@ impl Lens {
         let places = [camera.eye, camera.target, camera.up];
         if let Some(&value) = places.as_flattened().iter().find(|x| !x.is_finite()) {
             return bad("camera", value, "finite coordinates");
+        }
+        if let Some(&value) = places.as_flattened().iter().find(|x| x.abs() > FARTHEST) {
+            return bad("camera's coordinate", value, "a number up to 1e150, whose square is finite");
         }
         if !(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0) {
             return bad("camera's angle of view", camera.fov_degrees, "degrees above 0 and below 180");

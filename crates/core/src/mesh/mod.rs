@@ -190,6 +190,17 @@ impl Mesh {
     /// Bad indices, coordinates that are not finite, nothing left to refine, or any repair under
     /// [`BuildOptions::strict`].
     pub fn from_soup(soup: &PolygonSoup, options: &BuildOptions) -> Result<(Self, Diagnosis), MeshError> {
+        build::build(soup, options).map(|(mesh, diagnosis, _)| (mesh, diagnosis))
+    }
+
+    /// [`Self::from_soup`], with the face of the soup that each face of the mesh is from.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn from_soup_traced(
+        soup: &PolygonSoup,
+        options: &BuildOptions,
+    ) -> Result<(Self, Diagnosis, Vec<u32>), MeshError> {
         build::build(soup, options)
     }
 

@@ -61,6 +61,8 @@ pub(super) struct Collapser<'t, 's, 'a> {
     refused: Vec<bool>,
     /// Changes looked at since the observer was last called.
     unobserved: usize,
+    /// The part of the tolerance that collapses may cost by now.
+    share: f64,
 }
 
 impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
@@ -90,6 +92,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
             sure,
             history,
             unobserved: 0,
+            share: 0.0,
         }
     }
 
@@ -144,21 +147,24 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
     }
 
     /// Counts a look at a change, and tells the observer after every some hundred of them.
-    fn observe(&mut self, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
+    fn observe(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
         self.unobserved += 1;
         if self.unobserved < OBSERVED {
             return Ok(());
         }
         self.unobserved = 0;
-        let left = self.surface.faces_left();
+        let (all, left) = (self.reference.fine.face_count(), self.surface.faces_left());
         watch.triangles(left);
-        watch.done(self.reference.fine.face_count() - left)
+        // What is left at a cost falls with its reciprocal: heights grow with the square of a triangle's size.
+        let expected = (left as f64 * self.share) as usize;
+        watch.done_of(all - left, all - expected.max(goals.triangles).min(left))
     }
 
     fn collapse_up_to(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
         let mut left: Vec<u32> = (0..self.costs.len() as u32).filter(|&v| self.surface.is_alive(v)).collect();
         let mut threshold = self.flat.min(goals.tolerance);
         while self.surface.faces_left() > goals.triangles {
+            self.share = if goals.tolerance < f64::MAX { threshold / goals.tolerance } else { 0.0 };
             let least = self.round(&left, threshold, goals, watch)?;
             left.retain(|&v| self.surface.is_alive(v));
             if least > goals.tolerance {
@@ -185,7 +191,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
     fn flip_all(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<bool, Cancelled> {
         let mut any = false;
         for h in edges(&self.surface) {
-            self.observe(watch)?;
+            self.observe(goals, watch)?;
             let history = self.history.as_mut();
             let proof = self.prover.as_mut().map(|prover| (prover, goals.tolerance, history));
             let (flat, surface, samples) = (self.flat, &mut self.surface, &mut self.samples);
@@ -212,7 +218,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
                 if self.surface.faces_left() <= goals.triangles {
                     return Ok(least);
                 }
-                self.observe(watch)?;
+                self.observe(goals, watch)?;
                 self.costs[vertex as usize] = self.consider(vertex, threshold, goals);
             }
             least = least.min(self.costs[vertex as usize]);

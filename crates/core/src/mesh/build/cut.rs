@@ -8,6 +8,7 @@
 use std::collections::HashMap;
 
 use super::orient::Neighbours;
+use super::triangulate::Faces;
 use crate::geometry::{DisjointSets, NONE};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Diagnosis, Groups, Junctions, Topology, outgoing_half_edges};
@@ -15,6 +16,8 @@ use crate::mesh::{Diagnosis, Groups, Junctions, Topology, outgoing_half_edges};
 /// Manifold sheets.
 pub(super) struct Sheets {
     pub(super) topology: Topology,
+    /// Which input face each face is from.
+    pub(super) inputs: Vec<u32>,
     /// The vertex before cutting that each added vertex stands for.
     pub(super) copied: Vec<u32>,
     /// Ends of cut edges between which a vertex was added in the middle.
@@ -34,14 +37,15 @@ pub(super) struct Middle {
 
 /// Gives each fan of faces its own vertices; `name` gives a vertex's number in the input.
 pub(super) fn cut(
-    triangles: Vec<[u32; 3]>,
+    Faces { triangles, inputs }: Faces,
     neighbours: Neighbours,
     vertex_count: usize,
     name: impl Fn(u32) -> u32,
     diagnosis: &mut Diagnosis,
 ) -> Sheets {
     let Neighbours { twins, cuts } = neighbours;
-    let mut cutting = Cutting { triangles, twins, vertex_count, copied: Vec::new(), middles: Vec::new() };
+    let (copied, middles) = (Vec::new(), Vec::new());
+    let mut cutting = Cutting { triangles, inputs, twins, vertex_count, copied, middles };
     cutting.separate_fans();
     if !cutting.copied.is_empty() {
         diagnosis.bow_tie_vertices.add_all(cutting.bow_ties(&cuts).into_iter().map(name).collect());
@@ -49,15 +53,16 @@ pub(super) fn cut(
     let edges = cutting.open_slits(cuts);
     let total = vertex_count + cutting.copied.len();
     let outgoing = outgoing_half_edges(&cutting.triangles, &cutting.twins, total);
-    let Cutting { triangles, twins, copied, middles, .. } = cutting;
+    let Cutting { triangles, inputs, twins, copied, middles, .. } = cutting;
     let topology = Topology::from_parts(triangles, twins, outgoing);
     let vertices = copy_groups(vertex_count, &copied);
     let corners = fixed_copies(&topology, vertex_count, &copied, &vertices);
-    Sheets { topology, copied, middles, junctions: Junctions { vertices, edges }, corners }
+    Sheets { topology, inputs, copied, middles, junctions: Junctions { vertices, edges }, corners }
 }
 
 struct Cutting {
     triangles: Vec<[u32; 3]>,
+    inputs: Vec<u32>,
     twins: Vec<u32>,
     /// Vertices before cutting; copies follow.
     vertex_count: usize,
@@ -195,6 +200,7 @@ impl Cutting {
         self.copied.push(original);
         let second = 3 * self.triangles.len() as u32;
         self.triangles.push([middle, to, apex]);
+        self.inputs.push(self.inputs[h as usize / 3]);
         self.triangles.as_flattened_mut()[next.index()] = middle;
         let across = self.twins[next.index()];
         self.twins.extend([NONE, across, next.0]);

@@ -49,7 +49,11 @@ options! {
     }
 }
 
-pub(super) fn build(soup: &PolygonSoup, options: &BuildOptions) -> Result<(Mesh, Diagnosis), MeshError> {
+/// The mesh, what was found, and which input face each face is from.
+pub(super) fn build(
+    soup: &PolygonSoup,
+    options: &BuildOptions,
+) -> Result<(Mesh, Diagnosis, Vec<u32>), MeshError> {
     let mut diagnosis = Diagnosis {
         input_vertices: soup.positions.len(),
         input_faces: soup.faces.len(),
@@ -66,12 +70,12 @@ pub(super) fn build(soup: &PolygonSoup, options: &BuildOptions) -> Result<(Mesh,
     }
     drop(used);
     let faces = repair_faces(soup, &kept, &mut diagnosis)?;
-    let mesh = assemble(soup, faces, kept, &mut diagnosis);
+    let (mesh, inputs) = assemble(soup, faces, kept, &mut diagnosis);
     if options.strict && !diagnosis.is_clean() {
         return Err(MeshError::NeedsRepair { summary: diagnosis.defects() });
     }
     debug_assert_eq!(mesh.validate(), Ok(()));
-    Ok((mesh, diagnosis))
+    Ok((mesh, diagnosis, inputs))
 }
 
 /// Refuses coordinates and indices that mean nothing; tells which vertices have a face.
@@ -120,15 +124,21 @@ fn repair_faces(soup: &PolygonSoup, kept: &[u32], diagnosis: &mut Diagnosis) -> 
     Err(MeshError::NoFaces { reason })
 }
 
-/// Connects the faces, turns and cuts them where they need it, and puts the mesh together.
-fn assemble(soup: &PolygonSoup, mut faces: Faces, mut kept: Vec<u32>, diagnosis: &mut Diagnosis) -> Mesh {
+/// Connects the faces, turns and cuts them where they need it, and puts the mesh together; gives also which input face each
+/// face is from.
+fn assemble(
+    soup: &PolygonSoup,
+    mut faces: Faces,
+    mut kept: Vec<u32>,
+    diagnosis: &mut Diagnosis,
+) -> (Mesh, Vec<u32>) {
     let names = renumber(&mut faces.triangles, &mut kept);
     let name = |v: u32| names[v as usize];
     let vertex_count = names.len();
     let mut neighbours = orient::connect(&faces.triangles, vertex_count, name, diagnosis);
     orient::orient(&mut faces, &mut neighbours, diagnosis);
-    let Sheets { topology, copied, middles, junctions, corners } =
-        cut::cut(faces.triangles, neighbours, vertex_count, name, diagnosis);
+    let Sheets { topology, inputs, copied, middles, junctions, corners } =
+        cut::cut(faces, neighbours, vertex_count, name, diagnosis);
     let mut positions = Vec::with_capacity(vertex_count + copied.len());
     positions.extend(names.iter().map(|&v| soup.positions[v as usize]));
     let mut middle = middles.iter();
@@ -142,7 +152,7 @@ fn assemble(soup: &PolygonSoup, mut faces: Faces, mut kept: Vec<u32>, diagnosis:
     }
     let maps = VertexMaps { from_input: &kept, vertex_count, copied: &copied, middles: &middles };
     let tags = retag::retag(soup, &topology, &maps, &corners, diagnosis).joined(&topology, &junctions);
-    Mesh::from_parts(topology, positions, tags, junctions)
+    (Mesh::from_parts(topology, positions, tags, junctions), inputs)
 }
 
 /// Numbers the vertices that the triangles use from 0, in ascending order; `kept` then leads from the input's

@@ -29,7 +29,7 @@ const NEAR: f64 = 1e-3;
 /// Between distances nearer than that, as a logarithm, counts jump: the middle is as good as any guess.
 const CLOSE: f64 = 0.03;
 
-/// What fails so many times over is as bad as any.
+/// What fails so many times over is as bad as any that has no number.
 const COARSEST: f64 = 1e12;
 
 /// What is found is at most so many times a distance that is known not to fit.
@@ -86,6 +86,12 @@ impl Growth {
     }
 }
 
+/// The geometric mean, also where the product is too great for a number.
+fn middle(low: f64, high: f64) -> f64 {
+    let squared = low * high;
+    if squared.is_finite() { squared.sqrt() } else { low.sqrt() * high.sqrt() }
+}
+
 /// The finest plan within distances down to `floor` that has at most `most` triangles, and why it is not finer.
 pub(super) fn search(
     engine: &Engine<'_>,
@@ -104,8 +110,9 @@ pub(super) fn search(
         what: "undivided faces fit any budget",
     })?;
     // Criteria may have no answer to undivided faces but that they are as bad as can be.
-    let most_value = if engine.control.criteria.is_some() { COARSEST } else { f64::INFINITY };
-    let (mut high, mut low) = (best.worst().min(most_value), floor);
+    let worst = best.worst();
+    let is_known = worst.is_finite() || engine.control.criteria.is_none();
+    let (mut high, mut low) = (if is_known { worst } else { COARSEST }, floor);
     let growth = Growth { undivided: best.triangles as f64 };
     // Triangles at the lesser distance, where they were counted to the end.
     let mut beyond = None;
@@ -133,14 +140,14 @@ pub(super) fn search(
                 growth.distance(high, best.triangles, aim, power)
             });
             let edge = (0.05 * span).exp();
-            next = guess.map_or((high * low).sqrt(), |guess| guess.clamp(low * edge, high / edge));
+            next = guess.map_or(middle(low, high), |guess| guess.clamp(low * edge, high / edge));
         }
         if best.triangles >= enough {
             // Where many triangles pass at once much less may take hardly more.
             next = (high / PROMISED).max(low);
         }
         if idle > MOST_IDLE && (low == 0.0 || best.triangles >= enough) {
-            next = if low > 0.0 { (high * low).sqrt() } else { high / MOST_APART.powi(1 << idle) };
+            next = if low > 0.0 { middle(low, high) } else { high / MOST_APART.powi(1 << idle) };
         }
         if !(next < high && next > low) {
             break;

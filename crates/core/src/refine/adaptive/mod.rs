@@ -3,15 +3,20 @@
 //! Takes a control mesh, a scheme and goals; gives a conforming mesh, limit normals, where each vertex and triangle
 //! came from, and a certified interval for the distance between the mesh and the limit surface.
 //!
-//! Passes, each a function of what came before:
+//! Passes, each a function of what came before, numbered as in ARCHITECTURE.md:
 //!
-//! 1. [`decide`]: a quadtree over each control face, from its piece of the limit surface alone;
-//! 2. [`balance`]: neighbouring leaves at most one level apart;
-//! 3. [`chains`] and [`close`]: the vertices on edges, the closing triangles, judged and counted; what fails is split, and
-//!    2 and 3 are done again there;
-//! 4. [`emit`]: vertices, triangles and their connections, written at once; [`offsets`] moves vertices where asked;
-//! 5. [`settle`] and [`measure`]: the triangles among their neighbours; what fails is split, and 2 to 4 are done again;
-//! 6. [`probe`]: the certified interval.
+//! 1. `LimitTable`: limit positions and normals of the control vertices;
+//! 2. `decide`: a quadtree over each control face, from its piece of the limit surface alone;
+//! 3. allowances, by control face, for what triangles count on of those beside them: `Decision::settle` divides
+//!    again where they were too small;
+//! 4. `balance`: neighbouring leaves at most one level apart;
+//! 5. `chains`: the vertices on control edges;
+//! 6. `walk` and `close`: the closing triangles, judged and counted; what fails is split, and 4 to 6 are done again there;
+//! 7. `emit`: vertices, triangles and their connections, written at once; `offsets` moves vertices where asked;
+//! 8. `settle`, or `measure` for goals beside distances: the triangles among their neighbours; what fails is split, and
+//!    4 to 7 are done again;
+//! 9. `budget`: for a number of triangles, the least distance whose plan fits: 2 to 8 for each that is tried;
+//! 10. `probe`: the certified interval.
 
 mod among;
 mod balance;

@@ -9,8 +9,17 @@ use crate::refine::simplified::simplified;
 use crate::refine::{RefineError, adaptive};
 use crate::scheme::Scheme;
 
-/// Goals are approached by halves from this many times too coarse.
+/// Goals are approached by halves from this many times too coarse, or more where they are far finer than [`COARSE_SHARE`] and the
+/// like.
 const COARSEST: f64 = 64.0;
+
+/// A part of the diagonal, an angle in radians and a number of pixels as tolerances that take few triangles.
+const COARSE_SHARE: f64 = 0.01;
+const COARSE_ANGLE: f64 = 0.5;
+const COARSE_PIXELS: f64 = 64.0;
+
+/// The greatest power of two that goals are multiplied with.
+const MOST_HALVINGS: f64 = 1000.0;
 
 /// Triangles that are counted before the rest is extrapolated.
 const COUNTED: usize = 60_000;
@@ -62,7 +71,21 @@ pub fn exact_estimate_observed(
     if !quality {
         return Ok(of(options.budget().0, false));
     }
-    approached(control.face_count(), of, |times| adaptive::count(control, scheme, options, times, observer))
+    let coarsest = coarsest(control, options);
+    approached((control.face_count(), coarsest), of, |times| {
+        adaptive::count(control, scheme, options, times, observer)
+    })
+}
+
+/// The power of two that makes goals coarse enough to take few triangles.
+fn coarsest(control: &Mesh, options: &ExactOptions) -> f64 {
+    let goals = [
+        (options.tolerance, COARSE_SHARE * control.diagonal()),
+        (options.angle, COARSE_ANGLE),
+        (options.pixels, COARSE_PIXELS),
+    ];
+    let times = goals.into_iter().filter_map(|(goal, coarse)| Some(coarse / goal?)).fold(COARSEST, f64::max);
+    times.log2().ceil().min(MOST_HALVINGS).exp2()
 }
 
 /// The same where edges are collapsed.
@@ -75,7 +98,7 @@ fn optimised(
 ) -> Result<Estimate, RefineError> {
     let free = ExactOptions { triangles: None, max_triangles: None, ..options.clone() };
     let plain = ExactOptions { optimize: false, ..free.clone() };
-    let mut times = COARSEST;
+    let mut times = coarsest(control, options);
     let mut before = adaptive::count(control, scheme, &plain, times, observer)?;
     while times > 1.0 && 2 * before <= COLLAPSED {
         times /= 2.0;
@@ -94,11 +117,11 @@ fn optimised(
 
 /// Counts triangles for goals that are so many times too coarse until they are many or the goals the right ones.
 fn approached(
-    faces: usize,
+    (faces, coarsest): (usize, f64),
     of: impl Fn(usize, bool) -> Estimate,
     mut count: impl FnMut(f64) -> Result<usize, RefineError>,
 ) -> Result<Estimate, RefineError> {
-    let (mut times, mut before) = (COARSEST, faces);
+    let (mut times, mut before) = (coarsest, faces);
     loop {
         let triangles = count(times)?;
         if times == 1.0 {
