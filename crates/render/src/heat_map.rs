@@ -23,12 +23,26 @@ pub struct Scale {
     pub high: f64,
     /// The colours.
     pub map: ColourMap,
+    /// Equal ratios rather than equal differences get equal steps of the map; both ends are above 0 then.
+    pub is_logarithmic: bool,
+    /// The colour of values above the upper end, where they are marked (8-bit sRGB).
+    pub above: Option<[u8; 3]>,
 }
 
 impl Scale {
     /// From `low` to `high` in the default colours.
     pub fn new(low: f64, high: f64) -> Self {
-        Self { low, high, map: ColourMap::default() }
+        Self { low, high, map: ColourMap::default(), is_logarithmic: false, above: None }
+    }
+
+    /// From `low` to `high`, both above 0, by their ratio.
+    pub fn logarithmic(low: f64, high: f64) -> Self {
+        Self { is_logarithmic: true, ..Self::new(low, high) }
+    }
+
+    /// The same with a colour of its own for values above the upper end.
+    pub fn marking_above(self, colour: [u8; 3]) -> Self {
+        Self { above: Some(colour), ..self }
     }
 
     /// From the least to the greatest of the values that are finite (0 to 1 without any).
@@ -45,12 +59,26 @@ impl Scale {
 
     /// Where a value stands between low (0) and high (1).
     pub(crate) fn place(&self, value: f64) -> f64 {
+        if self.is_logarithmic {
+            let span = (self.high / self.low).ln();
+            // Values from 0 down have no logarithm: they stand below all.
+            return if span > 0.0 { (value.max(f64::MIN_POSITIVE) / self.low).ln() / span } else { 0.5 };
+        }
         let span = self.high - self.low;
         if span > 0.0 { (value - self.low) / span } else { 0.5 }
     }
 
     fn check(&self) -> Result<(), RenderError> {
         let half = f64::MAX / 2.0;
+        if self.is_logarithmic {
+            let range = f64::MIN_POSITIVE..=half;
+            RenderError::check_range(
+                "the logarithmic scale's lower end",
+                self.low,
+                range,
+                "a number above 0",
+            )?;
+        }
         RenderError::check_range("the scale's lower end", self.low, -half..=half, "a finite number")?;
         RenderError::check_range(
             "the scale's upper end",
@@ -123,7 +151,12 @@ impl ColourBar {
 
     /// The ticks' values and labels, from below to above.
     pub fn ticks(&self) -> Vec<(f64, String)> {
-        let all = ticks::linear(self.scale.low, self.scale.high, 6);
+        let (low, high) = (self.scale.low, self.scale.high);
+        let all = if self.scale.is_logarithmic {
+            ticks::logarithmic(low, high, 6)
+        } else {
+            ticks::linear(low, high, 6)
+        };
         all.into_iter().filter_map(|tick| Some((tick.value, tick.label?))).collect()
     }
 
@@ -151,8 +184,14 @@ impl ColourBar {
         let left = (picture.width() as f32 + size).round();
         let height = picture.height() as f32;
         let (top, bottom) = ((0.12 * height + size).min(0.4 * height).round(), (0.90 * height).round());
-        image.draw_text(left, top - size, title.trim(), &heading)?;
+        let room = if self.scale.above.is_some() { 1.7 * size } else { size };
+        image.draw_text(left, top - room, title.trim(), &heading)?;
         self.draw_bar(&mut image, [left, top], [left + bar, bottom]);
+        if let Some(above) = self.scale.above {
+            let (from, to) = ([left, top - 0.7 * size], [left + bar, top - 0.1 * size]);
+            image.fill_rectangle(from, to, above);
+            image.draw_text(left + bar + 1.6 * gap, to[1], "more", &text.align(Align::Left))?;
+        }
         for (value, label) in &ticks {
             let y = bottom + (top - bottom) * self.scale.place(*value) as f32;
             let mark = (0.07 * size).max(1.0);

@@ -315,7 +315,10 @@ impl Scene<'_> {
             Paint::Scalar { values, scale, table } => {
                 let corners = triangle.iter().zip(weights);
                 let value = corners.map(|(&vertex, weight)| values[vertex as usize] * weight).sum();
-                look_up(table, scale.place(value))
+                match scale.above {
+                    Some(mark) if value > scale.high => colour::linear(mark),
+                    _ => look_up(table, scale.place(value)),
+                }
             }
         }
     }

@@ -3,12 +3,13 @@
 //! Each triangle draws its half of the lines along its edges, by the distance of a sample to the edge in the
 //! picture. Two things need the neighbours: an edge of which only one side is seen (an outline or a border) gets
 //! the whole width on that side, and lines fade where they would lie closer together than they are wide, so that
-//! dense meshes stay readable instead of turning black.
+//! dense meshes stay readable instead of turning black. All edges of a triangle fade alike, by its size in the picture:
+//! by the distance of each from its opposite corner, where triangles are seen at a slant, some would stay and stand alone as stripes.
 
 use crate::camera::Homogeneous;
 use crate::parallel;
 
-/// Triangles narrower than this many line widths show no line at all …
+/// Triangles smaller than this many line widths show no line at all …
 const FADE_FROM: f32 = 1.5;
 /// … and from this many on the full one. In between, lines would cover more than a third of the surface.
 const FADE_TO: f32 = 7.0;
@@ -61,18 +62,19 @@ impl Lines {
             [(a * scale) as f32, (b * scale) as f32, (c * scale) as f32]
         })
     }
+}
 
-    /// Distance of each corner from the opposite edge in pixels; infinite for corners behind the eye.
-    fn altitudes(&self, corners: [Homogeneous; 3]) -> [f32; 3] {
-        [0, 1, 2].map(|i| {
-            let ([a, b, c], p) = (self.lines[i], corners[i]);
-            if p.w <= 0.0 {
-                return f32::INFINITY;
-            }
-            let length = a.hypot(b) * p.w;
-            if length > 0.0 { ((a * p.x + b * p.y + c * p.w).abs() / length) as f32 } else { 0.0 }
-        })
+/// The size of a triangle in pixels: 6 A/P with area A and perimeter P, which is the altitude of an equilateral one, and falls
+/// with the share of its area that lines along its edges cover. Infinite for those that reach behind the eye.
+fn size(corners: [Homogeneous; 3]) -> f32 {
+    if corners.iter().any(|p| p.w <= 0.0) {
+        return f32::INFINITY;
     }
+    let [a, b, c] = corners.map(|p| [p.x / p.w, p.y / p.w]);
+    let side = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
+    let perimeter = side(a, b) + side(b, c) + side(c, a);
+    let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
+    if perimeter > 0.0 { (6.0 * area / perimeter) as f32 } else { 0.0 }
 }
 
 /// What is needed to know of one side of an edge.
@@ -87,8 +89,7 @@ struct Side {
 pub(crate) fn ink(triangles: &[[u32; 3]], points: &[Homogeneous], width: f32) -> Vec<Ink> {
     let looks = parallel::map(triangles.len(), |face| {
         let corners = triangles[face].map(|v| points[v as usize]);
-        let lines = Lines::new(corners);
-        (lines.front, lines.altitudes(corners))
+        (Lines::new(corners).front, size(corners))
     });
     let mut inks = vec![Ink::default(); triangles.len()];
     let (starts, mut sides) = edges_by_lower_end(triangles, points.len());
@@ -98,11 +99,11 @@ pub(crate) fn ink(triangles: &[[u32; 3]], points: &[Homogeneous], width: f32) ->
         for edge in here.chunk_by(|a, b| a.other_end == b.other_end) {
             let faces_one_way = |s: &Side| looks[s.face as usize].0 == looks[edge[0].face as usize].0;
             let shared = edge.len() > 1 && edge.iter().all(faces_one_way);
-            let mean: f32 = edge.iter().map(|s| looks[s.face as usize].1[s.corner as usize]).sum::<f32>()
-                / edge.len() as f32;
+            // Both halves of a line look alike.
+            let mean = edge.iter().map(|s| looks[s.face as usize].1).sum::<f32>() / edge.len() as f32;
             for side in edge {
                 let (face, corner) = (side.face as usize, side.corner as usize);
-                let room = if shared { mean } else { looks[face].1[corner] };
+                let room = if shared { mean } else { looks[face].1 };
                 inks[face].reach[corner] = if shared { 0.5 * width } else { width };
                 inks[face].opacity[corner] = fade(room / width);
             }
@@ -142,4 +143,49 @@ fn edges_by_lower_end(triangles: &[[u32; 3]], vertices: usize) -> (Vec<usize>, V
         }
     }
     (starts, sides)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A grid of squares, each cut in two, seen at a slant: in the picture a square is 12 pixels wide and `high` pixels high.
+    fn slanted_grid(high: f64) -> Vec<Ink> {
+        const SIDE: u32 = 9;
+        let at = |x: u32, y: u32| y * SIDE + x;
+        let point = |x: u32, y: u32| Homogeneous {
+            x: 12.0 * f64::from(x),
+            y: high * f64::from(y),
+            w: 1.0,
+            distance: 1.0,
+        };
+        let points: Vec<Homogeneous> = (0..SIDE * SIDE).map(|v| point(v % SIDE, v / SIDE)).collect();
+        let cells = (0..(SIDE - 1) * (SIDE - 1)).map(|cell| (cell % (SIDE - 1), cell / (SIDE - 1)));
+        let triangles: Vec<[u32; 3]> = cells
+            .flat_map(|(x, y)| {
+                let [a, b, c, d] = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)];
+                [[a, b, c], [a, c, d]]
+            })
+            .collect();
+        ink(&triangles, &points, 1.0)
+    }
+
+    #[test]
+    fn the_edges_of_a_triangle_fade_alike() {
+        for high in [1.0, 2.0, 4.0, 8.0, 12.0] {
+            let inks = slanted_grid(high);
+            let first = inks[0].opacity[0];
+            assert!(
+                inks.iter().flat_map(|ink| ink.opacity).all(|opacity| (opacity - first).abs() < 1e-5),
+                "{high}"
+            );
+        }
+    }
+
+    #[test]
+    fn smaller_triangles_fade_more() {
+        let opacities = [1.0, 2.0, 4.0, 8.0, 12.0].map(|high| slanted_grid(high)[0].opacity[0]);
+        assert!(opacities.is_sorted(), "{opacities:?}");
+        assert!(opacities[0] < 0.2 && opacities[4] > 0.9, "{opacities:?}");
+    }
 }
