@@ -36,6 +36,11 @@ pub(crate) fn is_broken_pipe(error: &anyhow::Error) -> bool {
         .any(|cause| cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe))
 }
 
+/// Prints why a result is less than what was asked for.
+pub(crate) fn print_stopped_short(why: &str) {
+    eprintln!("stopped short: {why}");
+}
+
 /// Prints an error and its causes, one to a line, on standard error.
 ///
 /// Causes whose words the line above already ends with are left out.

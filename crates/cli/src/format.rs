@@ -36,7 +36,18 @@ fn bound(x: f64, round: impl Fn(f64) -> f64) -> String {
     let power = 10f64.powi(exponent.abs());
     let digits = round(if exponent < 0 { x * power } else { x / power });
     // The digits and the power as text: no rounding by a multiplication.
-    format!("{digits:.0}e{exponent}").parse().map_or_else(|_| number(x), number)
+    format!("{digits:.0}e{exponent}").parse().map_or_else(|_| number(x), short)
+}
+
+/// [`number`] without a tail of zeros before an exponent either.
+fn short(x: f64) -> String {
+    let text = number(x);
+    match text.split_once('e') {
+        Some((digits, exponent)) => {
+            format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'))
+        }
+        None => text,
+    }
 }
 
 /// Bytes with a unit that suits them, in powers of 1024.
@@ -121,6 +132,8 @@ mod tests {
             (98_765.4, "98770", "98760"),
             (0.5, "0.5", "0.5"),
             (0.0, "0", "0"),
+            (1.234_56e-10, "1.235e-10", "1.234e-10"),
+            (2e-8, "2e-8", "2e-8"),
         ];
         for (x, above, below) in pairs {
             assert_eq!((upper_bound(x).as_str(), lower_bound(x).as_str()), (above, below), "{x}");

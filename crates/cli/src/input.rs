@@ -1,5 +1,6 @@
-//! Input: a file or a built-in model becomes a control mesh, with what was found on the way.
+//! Input: a file, standard input or a built-in model becomes a control mesh, with what was found on the way.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -8,11 +9,16 @@ use limitmesh::mesh::{BuildOptions, Diagnosis, MeshError, Weld};
 use limitmesh::{Mesh, PolygonSoup};
 use limitmesh_io::Format;
 
+use crate::arguments::{BuildArguments, FileFormat};
+use crate::failure::usage;
 use crate::format::{counted, thousands};
 use crate::progress::Progress;
 
 /// What marks the name of a built-in model.
 const BUILTIN: &str = "builtin:";
+
+/// Stands for standard input where a file is expected.
+const STANDARD_INPUT: &str = "-";
 
 /// What a file or a built-in model held.
 pub(crate) struct Soup {
@@ -38,28 +44,70 @@ pub(crate) struct Input {
     pub(crate) mesh: Mesh,
     /// What was found and repaired.
     pub(crate) diagnosis: Diagnosis,
+    /// The input's face that each face of the mesh is from.
+    pub(crate) face_inputs: Vec<u32>,
     /// Time taken to read or generate it.
     pub(crate) reading: Duration,
     /// Time taken to repair and connect it.
     pub(crate) building: Duration,
 }
 
-/// Reads a file, or generates the model after `builtin:`.
+/// Reads a file, standard input for `-`, or generates the model after `builtin:`.
 ///
 /// # Errors
 /// The file cannot be read, or there is no such model; the message lists those that there are.
-pub(crate) fn read(name: &str, progress: &Progress) -> anyhow::Result<Soup> {
+pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> anyhow::Result<Soup> {
+    let name = display_name(path);
     progress.stage(format!("reading {name}"));
     let start = Instant::now();
-    let (soup, format) = match name.strip_prefix(BUILTIN) {
+    let (soup, format) = match builtin_name(path) {
         Some(model) => (builtin(model)?, "builtin"),
         None => {
-            let path = Path::new(name);
-            let soup = limitmesh_io::read(path)?;
-            (soup, Format::from_path(path)?.extension())
+            let format = format_of(path, build.from)?;
+            let soup = if path.as_os_str() == STANDARD_INPUT {
+                let mut bytes = Vec::new();
+                std::io::stdin().lock().read_to_end(&mut bytes).context("standard input cannot be read")?;
+                limitmesh_io::read_bytes(&bytes, format).map_err(|why| anyhow::anyhow!("{name}: {why}"))?
+            } else {
+                limitmesh_io::read_as(path, format)?
+            };
+            (soup, format.extension())
         }
     };
-    Ok(Soup { name: name.to_owned(), format, soup, reading: start.elapsed() })
+    Ok(Soup { name, format, soup, reading: start.elapsed() })
+}
+
+/// Refuses to read standard input twice.
+pub(crate) fn check_once<'a>(inputs: impl Iterator<Item = &'a PathBuf>) -> anyhow::Result<()> {
+    match inputs.filter(|path| path.as_os_str() == STANDARD_INPUT).count() {
+        0 | 1 => Ok(()),
+        _ => usage("standard input can be read once only"),
+    }
+}
+
+/// How an input is called in messages and reports.
+pub(crate) fn display_name(path: &Path) -> String {
+    if path.as_os_str() == STANDARD_INPUT { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// The name of a built-in model, if that is what is asked for.
+pub(crate) fn builtin_name(path: &Path) -> Option<&str> {
+    path.to_str()?.strip_prefix(BUILTIN)
+}
+
+/// The format that a name tells, or where it tells none the one that was given.
+///
+/// # Errors
+/// Neither says which.
+pub(crate) fn format_of(path: &Path, given: Option<FileFormat>) -> anyhow::Result<Format> {
+    match (Format::from_path(path), given) {
+        (Ok(format), _) => Ok(format),
+        (Err(_), Some(given)) => Ok(given.format()),
+        (Err(_), None) if path.as_os_str() == STANDARD_INPUT => {
+            usage("standard input has no name that tells its format; it needs --from")
+        }
+        (Err(unknown), None) => Err(unknown.into()),
+    }
 }
 
 fn builtin(name: &str) -> anyhow::Result<PolygonSoup> {
@@ -70,22 +118,35 @@ fn builtin(name: &str) -> anyhow::Result<PolygonSoup> {
     Ok(model.soup())
 }
 
-/// Reads a control mesh and says on standard error what had to be repaired.
+/// Reads a control mesh and says on standard error what was left out and what had to be repaired.
 ///
 /// # Errors
-/// As for [`read`]; or no mesh can be made of it, or only by a repair that `options` forbid.
-pub(crate) fn load(name: &str, options: &BuildOptions, progress: &Progress) -> anyhow::Result<Input> {
-    let Soup { name, format, mut soup, reading } = read(name, progress)?;
+/// As for [`read`]; or no mesh can be made of it, or only by a repair that `build` forbids.
+pub(crate) fn load(path: &Path, build: &BuildArguments, progress: &Progress) -> anyhow::Result<Input> {
+    load_keeping(path, build, &[], progress)
+}
+
+/// [`load`], where the output will have some of what a soup leaves out after all, so that nothing need be said of it.
+pub(crate) fn load_keeping(
+    path: &Path,
+    build: &BuildArguments,
+    kept: &[&str],
+    progress: &Progress,
+) -> anyhow::Result<Input> {
+    let options = &build.options()?;
+    let Soup { name, format, mut soup, reading } = read(path, build, progress)?;
     progress.stage(format!("connecting {}", counted(soup.faces.len(), "face", "faces")));
     let start = Instant::now();
-    let (mesh, diagnosis) = Mesh::from_soup(&soup, options).map_err(|error| describe(&name, error))?;
+    let (mesh, diagnosis, face_inputs) =
+        Mesh::from_soup_traced(&soup, options).map_err(|error| describe(&name, error))?;
     let near = nearly_closed(&soup, &mesh, options);
     let left_out = std::mem::take(&mut soup.left_out);
     // Large soups are given back before refinement needs the memory.
     drop(soup);
     let building = start.elapsed();
-    if !left_out.is_empty() {
-        progress.note(format!("{name}: left out: {}", left_out.join("; ")));
+    let lost: Vec<&str> = left_out.iter().map(String::as_str).filter(|words| !kept.contains(words)).collect();
+    if !lost.is_empty() {
+        progress.note(format!("{name}: left out: {}", lost.join("; ")));
     }
     for line in diagnosis.repairs() {
         progress.note(format!("{name}: {line}"));
@@ -93,7 +154,7 @@ pub(crate) fn load(name: &str, options: &BuildOptions, progress: &Progress) -> a
     if let Some(near) = near {
         progress.note(format!("{name}: {near}"));
     }
-    Ok(Input { name, format, left_out, mesh, diagnosis, reading, building })
+    Ok(Input { name, format, left_out, mesh, diagnosis, face_inputs, reading, building })
 }
 
 /// Vertices nearer to each other than this share of the diagonal are usually one, written with too few digits: about

@@ -1,48 +1,121 @@
-//! Ctrl-C: ends the program at once, but never in the middle of writing a file.
+//! Ctrl-C, SIGTERM and SIGHUP: end the program at once and say what was cancelled, but never in the middle of writing a
+//! file.
 //!
 //! Files are written to a temporary neighbour and renamed, so no reader ever sees half of one. The guard here
-//! keeps an interrupt from leaving such a temporary file behind: it waits for the file in hand, unless the
-//! user insists with a second Ctrl-C.
+//! keeps a signal from leaving such a temporary file behind: it waits for the file in hand.
 
+use std::io::IsTerminal;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use anyhow::Context;
 
-/// What shells report for a program ended by Ctrl-C: 128 + SIGINT.
-const INTERRUPTED: i32 = 130;
-
+/// What the program does, for the message of an interrupt.
 struct State {
-    writing: bool,
-    asked: bool,
+    /// The file that is being written.
+    writing: Option<String>,
+    /// What was asked for meanwhile.
+    asked: Option<Signal>,
+    doing: String,
+    written: Vec<String>,
 }
 
-static STATE: Mutex<State> = Mutex::new(State { writing: false, asked: false });
+static STATE: Mutex<State> =
+    Mutex::new(State { writing: None, asked: None, doing: String::new(), written: Vec::new() });
 
 fn state() -> MutexGuard<'static, State> {
     STATE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes Ctrl-C end the program in good order.
-pub(crate) fn install() -> anyhow::Result<()> {
-    ctrlc::set_handler(|| {
-        // Held while exiting, so that no write can begin meanwhile.
-        let mut state = state();
-        if !state.writing || state.asked {
-            std::process::exit(INTERRUPTED);
-        }
-        state.asked = true;
-    })
-    .context("could not arrange for Ctrl-C")
+/// A signal that ends the program.
+#[derive(Clone, Copy)]
+struct Signal {
+    name: &'static str,
+    number: i32,
 }
 
-/// Runs `write` to its end even if Ctrl-C is pressed meanwhile; then ends the program if it was.
-pub(crate) fn uninterrupted<T>(write: impl FnOnce() -> T) -> T {
-    state().writing = true;
+/// The signals that end the program in good order.
+const SIGNALS: [Signal; 3] = [
+    Signal { name: "SIGHUP", number: 1 },
+    Signal { name: "Ctrl-C", number: 2 },
+    Signal { name: "SIGTERM", number: 15 },
+];
+
+/// Makes the signals end the program in good order, but for those that whoever started it has it ignore, as `nohup` does.
+#[cfg(unix)]
+pub(crate) fn install() -> anyhow::Result<()> {
+    let ignored = ignored_signals();
+    let heeded = SIGNALS.map(|signal| signal.number);
+    let heeded = heeded.into_iter().filter(|number| ignored >> (number - 1) & 1 == 0);
+    let mut signals = signal_hook::iterator::Signals::new(heeded).context("could not arrange for signals")?;
+    std::thread::spawn(move || {
+        for number in signals.forever() {
+            SIGNALS.iter().filter(|signal| signal.number == number).for_each(|&signal| end(signal));
+        }
+    });
+    Ok(())
+}
+
+/// A bit for each signal that is ignored from the start, where the system tells.
+#[cfg(unix)]
+fn ignored_signals() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    line.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok()).unwrap_or(0)
+}
+
+/// Makes Ctrl-C end the program in good order.
+#[cfg(not(unix))]
+pub(crate) fn install() -> anyhow::Result<()> {
+    ctrlc::set_handler(|| end(SIGNALS[1])).context("could not arrange for Ctrl-C")
+}
+
+/// Ends the program, or leaves that to the end of the file in hand.
+fn end(signal: Signal) {
+    // Held while exiting, so that no write can begin meanwhile.
+    let mut state = state();
+    match &state.writing {
+        Some(name) => {
+            eprintln!("{}{} is written to its end first", line_start(), name);
+            state.asked = Some(signal);
+        }
+        None => exit(&state, signal),
+    }
+}
+
+/// Says what was cancelled, and exits with what shells report for a program that a signal ended.
+fn exit(state: &State, signal: Signal) -> ! {
+    let doing = if state.doing.is_empty() { String::new() } else { format!(" while {}", state.doing) };
+    let written = match state.written.as_slice() {
+        [] => "nothing was written".to_owned(),
+        names => format!("{} written by then", names.join(", ")),
+    };
+    eprintln!("{}cancelled by {}{doing}; {written}", line_start(), signal.name);
+    std::process::exit(128 + signal.number)
+}
+
+/// Clears the line of the spinner on a terminal.
+fn line_start() -> &'static str {
+    if std::io::stderr().is_terminal() { "\r\u{1b}[K" } else { "" }
+}
+
+/// Remembers what is being done.
+pub(crate) fn doing(what: &str) {
+    state().doing.replace_range(.., what);
+}
+
+/// Runs `write`, which writes a file of that name, to its end even if a signal comes meanwhile; then ends the program if one
+/// did.
+pub(crate) fn uninterrupted<T, E>(name: String, write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+    state().writing = Some(name);
     let result = write();
     let mut state = state();
-    state.writing = false;
-    if state.asked {
-        std::process::exit(INTERRUPTED);
+    let name = state.writing.take();
+    if result.is_ok() {
+        state.written.extend(name);
     }
+    if let Some(signal) = state.asked {
+        exit(&state, signal);
+    }
+    drop(state);
     result
 }

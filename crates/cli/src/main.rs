@@ -5,7 +5,9 @@
 //! measurement can be piped.
 
 mod arguments;
+mod bulk;
 mod commands;
+mod dihedral;
 mod failure;
 mod format;
 mod input;
@@ -15,6 +17,7 @@ mod output;
 mod progress;
 mod reference;
 mod report;
+mod vector;
 
 use std::process::ExitCode;
 
@@ -32,18 +35,28 @@ fn main() -> ExitCode {
     match result {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::StoppedShort(why)) => {
-            eprintln!("stopped short: {why}");
+            failure::print_stopped_short(&why);
             ExitCode::from(3)
         }
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => match error.downcast_ref::<UsageError>() {
-            // Clap words and formats it like the usage errors that it finds itself, and exits with code 2.
-            Some(UsageError(what)) => Arguments::command().error(ErrorKind::ValueValidation, what).exit(),
+            Some(UsageError(what)) => exit_with_usage(&arguments.command, what),
             None => {
                 failure::print(&error);
                 ExitCode::from(1)
             }
         },
+    }
+}
+
+/// Has clap word and format a usage error like those that it finds itself, and exit with code 2.
+fn exit_with_usage(command: &Command, what: &str) -> ! {
+    let mut whole = Arguments::command();
+    // Gives the commands their whole names.
+    whole.build();
+    match whole.find_subcommand_mut(command.name()) {
+        Some(own) => own.error(ErrorKind::ValueValidation, what).exit(),
+        None => whole.error(ErrorKind::ValueValidation, what).exit(),
     }
 }
 

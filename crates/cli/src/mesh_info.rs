@@ -1,8 +1,11 @@
-//! What kind of surface a control mesh is: components, boundary loops, genus, valences, extent, triangles.
+//! What kind of surface a control mesh is: components, boundary loops, genus, valences, extent, volume, sharp edges,
+//! triangles.
 
 use limitmesh::measure::{triangle_quality, watertightness};
 use limitmesh::{Mesh, VertexId};
 
+use crate::bulk::{Bulk, inside_out};
+use crate::dihedral::Dihedrals;
 use crate::report::MeshInformation;
 use crate::report::information::BoundingBox;
 
@@ -33,6 +36,9 @@ pub(crate) fn examine(mesh: &Mesh) -> MeshInformation {
         max_valence,
         irregular_vertices: topology.vertices().filter(|&v| !mesh.ring_shape(v).is_regular()).count(),
         bounding_box: BoundingBox { low, high, diagonal: surface.diagonal() },
+        bulk: Bulk::of(mesh),
+        inside_out_components: inside_out(mesh),
+        dihedrals: Dihedrals::of(mesh),
         min_angle_degrees: quality.min_angle_degrees,
         mean_min_angle_degrees: quality.mean_min_angle_degrees,
         angle_histogram: quality.histogram,

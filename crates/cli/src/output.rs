@@ -4,12 +4,13 @@ use std::io::Write;
 use std::path::Path;
 
 use anyhow::Context;
+use limitmesh_io::{Format, Output, WriteError, WriteOptions};
 use serde::Serialize;
 
 use crate::interrupt;
 
 /// Stands for standard output where a file is expected.
-pub(crate) const STANDARD_OUTPUT: &str = "-";
+const STANDARD_OUTPUT: &str = "-";
 
 /// Prints text on standard output.
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
@@ -27,21 +28,49 @@ pub(crate) fn json(value: &impl Serialize) -> anyhow::Result<String> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
-/// Writes a file of bytes, whole or not at all.
+/// Whether this stands for standard output.
+pub(crate) fn is_standard_output(path: &Path) -> bool {
+    path.as_os_str() == STANDARD_OUTPUT
+}
+
+/// Writes a file of bytes, whole or not at all; or to standard output for `-`.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    interrupt::uninterrupted(|| limitmesh_io::write_whole(path, bytes))?;
+    if is_standard_output(path) {
+        let mut out = std::io::stdout().lock();
+        out.write_all(bytes)?;
+        return Ok(out.flush()?);
+    }
+    interrupt::uninterrupted(path.display().to_string(), || limitmesh_io::write_whole(path, bytes))?;
     Ok(())
+}
+
+/// Writes a mesh in a format: a file, whole or not at all, or to standard output for `-`.
+pub(crate) fn write_mesh(
+    path: &Path,
+    format: Format,
+    mesh: &Output<'_>,
+    options: &WriteOptions,
+) -> anyhow::Result<()> {
+    if !is_standard_output(path) {
+        let name = path.display().to_string();
+        interrupt::uninterrupted(name, || limitmesh_io::write_as(path, format, mesh, options))?;
+        return Ok(());
+    }
+    match limitmesh_io::write_to(&mut std::io::stdout().lock(), format, mesh, options) {
+        // As it is, so that a reader that went away is known.
+        Err(WriteError::Writer { reason }) => Err(reason.into()),
+        result => Ok(result?),
+    }
 }
 
 /// Writes JSON to a file, or to standard output for `-`.
 pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
-    let text = json(value)?;
-    if path.as_os_str() == STANDARD_OUTPUT { print(&text) } else { write_file(path, text.as_bytes()) }
+    write_file(path, json(value)?.as_bytes())
 }
 
 /// Finds out before the work whether a file could be written where `path` says.
-pub(crate) fn check_folder(path: &Path) -> anyhow::Result<()> {
-    if path.as_os_str() == STANDARD_OUTPUT {
+pub(crate) fn check_writable(path: &Path) -> anyhow::Result<()> {
+    if is_standard_output(path) {
         return Ok(());
     }
     let folder = match path.parent() {
@@ -52,5 +81,5 @@ pub(crate) fn check_folder(path: &Path) -> anyhow::Result<()> {
         .with_context(|| format!("{} cannot be written: no folder {}", path.display(), folder.display()))?;
     anyhow::ensure!(kind.is_dir(), "{} cannot be written: {} is no folder", path.display(), folder.display());
     anyhow::ensure!(!path.is_dir(), "{} cannot be written: it is a folder", path.display());
-    Ok(())
+    Ok(limitmesh_io::check_writable(path)?)
 }

@@ -7,10 +7,38 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use crate::format::counted;
+use crate::interrupt;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use limitmesh::progress::Stage;
 
 /// How often the spinner turns.
 const TICK: Duration = Duration::from_millis(100);
+
+/// The phases of an optimised refinement: a fine mesh, collapses, and what these came to.
+#[derive(Default)]
+pub(crate) struct Phases {
+    has_collapsed: bool,
+    last: usize,
+}
+
+impl Phases {
+    /// How many there are.
+    const COUNT: usize = 3;
+
+    /// The phase that a stage belongs to, counted from 1; never less than before.
+    fn at(&mut self, stage: Stage) -> usize {
+        self.has_collapsed |= stage == Stage::Simplifying;
+        let phase = match stage {
+            Stage::Simplifying => 2,
+            // The fine mesh is made ready for the collapses, or what is left is measured.
+            Stage::Indexing | Stage::Matching if !self.has_collapsed => 2,
+            Stage::Limits | Stage::Refining | Stage::Assembling | Stage::Bounding if !self.has_collapsed => 1,
+            _ => 3,
+        };
+        self.last = self.last.max(phase);
+        self.last
+    }
+}
 
 /// The program's voice.
 pub(crate) struct Progress {
@@ -33,24 +61,37 @@ impl Progress {
 
     /// Shows what is being done now.
     pub(crate) fn stage(&self, what: impl Into<String>) {
+        let what = what.into();
+        interrupt::doing(&what);
         if self.moving {
-            self.spinner.set_message(what.into());
+            self.spinner.set_message(what);
             self.spinner.enable_steady_tick(TICK);
         }
     }
 
     /// Shows what a long function of the library tells of itself.
     pub(crate) fn observer(&self) -> impl FnMut(&limitmesh::progress::Progress) -> ControlFlow<()> {
+        self.observer_in_phases(None)
+    }
+
+    /// The same with the phase that the stage belongs to before it.
+    pub(crate) fn observer_in_phases(
+        &self,
+        mut phases: Option<Phases>,
+    ) -> impl FnMut(&limitmesh::progress::Progress) -> ControlFlow<()> {
         let mut shown = None;
         move |at| {
             let percent = at.total.map(|total| 100 * at.done / total.max(1));
+            let phase = phases.as_mut().map(|phases| phases.at(at.stage));
             let now = (at.stage, percent.ok_or(at.triangles));
             if shown.replace(now) != Some(now) {
                 let far = match now.1 {
                     Ok(percent) => format!("{percent} %"),
                     Err(triangles) => counted(triangles, "triangle", "triangles"),
                 };
-                self.stage(format!("{}: {far}", at.stage));
+                let phase =
+                    phase.map_or_else(String::new, |phase| format!("phase {phase} of {}, ", Phases::COUNT));
+                self.stage(format!("{phase}{}: {far}", at.stage));
             }
             ControlFlow::Continue(())
         }
@@ -67,5 +108,31 @@ impl Progress {
     /// Takes the spinner away.
     pub(crate) fn clear(&self) {
         self.spinner.finish_and_clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn phases_go_on() {
+        let mut phases = Phases::default();
+        let stages = [
+            (Stage::Limits, 1),
+            (Stage::Refining, 1),
+            (Stage::Bounding, 1),
+            (Stage::Assembling, 1),
+            (Stage::Indexing, 2),
+            (Stage::Simplifying, 2),
+            (Stage::Indexing, 3),
+            (Stage::Sampling, 3),
+            // A second attempt.
+            (Stage::Refining, 3),
+            (Stage::Simplifying, 3),
+        ];
+        for (stage, phase) in stages {
+            assert_eq!(phases.at(stage), phase, "{stage}");
+        }
     }
 }

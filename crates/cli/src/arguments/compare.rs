@@ -1,5 +1,7 @@
 //! `limitmesh compare`.
 
+use std::path::PathBuf;
+
 use clap::Args;
 
 use super::values;
@@ -19,8 +21,8 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct CompareArguments {
-    /// Control mesh: a file or builtin:NAME
-    pub(crate) input: String,
+    /// Control mesh: a file, - for standard input, or builtin:NAME
+    pub(crate) input: PathBuf,
 
     /// Angle of the limit-normal method [degrees, above 0 to 180]
     #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = values::angle, allow_hyphen_values = true)]

@@ -12,12 +12,13 @@ use super::values::{self, Extent};
 const HEADING: &str = "Goals and caps of --method exact";
 
 /// What exact refinement is to reach, and what it must not exceed.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(next_help_heading = HEADING)]
 pub(crate) struct ExactArguments {
     /// Greatest distance between the mesh and the limit surface, either way [default without another goal: 0.1%]
     ///
-    /// A length in the mesh's unit, or with % in per cent of the diagonal of the control mesh's bounding box.
+    /// A length in the mesh's unit, with a unit where --unit tells the mesh's, or with % in per cent of the diagonal of the
+    /// control mesh's bounding box.
     #[arg(long, value_name = "T", value_parser = values::tolerance, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<Extent>,
 
@@ -69,7 +70,7 @@ pub(crate) struct ExactArguments {
     #[arg(long, value_name = "N", value_parser = values::exact_levels)]
     pub(crate) max_levels: Option<usize>,
 
-    /// Take no more memory, about [bytes, or with K, M, G or T for powers of 1024; default: no limit]
+    /// Take no more memory, about [such as 500MB; K, M, G and T are powers of 1024; default: no limit]
     ///
     /// What was reached by then is written, and the exit code is 3.
     #[arg(long, value_name = "BYTES", value_parser = values::memory, allow_hyphen_values = true)]
@@ -82,7 +83,8 @@ pub(crate) struct ExactArguments {
     /// Say where each vertex and triangle came from, as properties of a PLY file
     ///
     /// Vertices have parent_face and the barycentric coordinates parent_a, parent_b and parent_c there, triangles
-    /// have parent_face (not with --optimize): faces of the control mesh, counted from 0.
+    /// have parent_face (not with --optimize): faces of the control mesh, counted from 0. Both have input_face, that face's
+    /// polygon in the input, as the diagnosis counts them.
     #[arg(long)]
     pub(crate) provenance: bool,
 }

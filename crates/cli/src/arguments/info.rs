@@ -1,5 +1,7 @@
 //! `limitmesh info`.
 
+use std::path::PathBuf;
+
 use clap::Args;
 
 use super::BuildArguments;
@@ -16,8 +18,8 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct InfoArguments {
-    /// Mesh file (.obj, .ply, .stl, .off) or builtin:NAME
-    pub(crate) input: String,
+    /// Mesh file (.obj, .ply, .stl, .off), - for standard input, or builtin:NAME
+    pub(crate) input: PathBuf,
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,

@@ -27,20 +27,20 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct MeasureArguments {
-    /// The mesh to measure: a file or builtin:NAME
+    /// The mesh to measure: a file, - for standard input, or builtin:NAME
     #[arg(value_name = "A")]
-    pub(crate) surface: String,
+    pub(crate) surface: PathBuf,
 
     /// The mesh to measure it against: a file or builtin:NAME
     #[arg(value_name = "B", required_unless_present = "limit_of", conflicts_with = "limit_of")]
-    pub(crate) reference: Option<String>,
+    pub(crate) reference: Option<PathBuf>,
 
     /// Measure against the limit surface of this control mesh
     ///
     /// The limit surface is represented by uniform refinement of the control mesh with all vertices moved to
     /// the limit.
     #[arg(long, value_name = "CONTROL")]
-    pub(crate) limit_of: Option<String>,
+    pub(crate) limit_of: Option<PathBuf>,
 
     /// Levels of uniform refinement that stand for the limit surface
     ///
@@ -71,10 +71,11 @@ pub(crate) struct MeasureArguments {
     #[arg(long, value_name = "G", value_parser = values::extent, allow_hyphen_values = true)]
     pub(crate) gap: Option<Extent>,
 
-    /// Work after which the interval is given as it is, in each direction [default: 1000000000, about half a minute]
+    /// Work after which the interval is given as it is, in each direction [default: 1G, from half a minute to some minutes]
     ///
-    /// A unit is a piece of a triangle bounded, or a triangle or box looked at for that. With --certified only.
-    #[arg(long, value_name = "N")]
+    /// A unit is a piece of a triangle bounded, or a triangle or box looked at for that: how long one takes depends on how
+    /// much of the other mesh is near. With --certified only.
+    #[arg(long, value_name = "N", value_parser = values::work)]
     pub(crate) max_work: Option<u64>,
 
     // Of the limit surface: with --limit-of only.

@@ -8,6 +8,7 @@ mod info;
 mod interpolation;
 mod measure;
 mod models;
+mod quantity;
 mod refine;
 mod render;
 mod reproduce;
@@ -22,10 +23,11 @@ pub(crate) use info::InfoArguments;
 pub(crate) use interpolation::InterpolationArguments;
 pub(crate) use measure::MeasureArguments;
 pub(crate) use models::ModelsArguments;
-pub(crate) use refine::{Method, RefineArguments};
+pub(crate) use quantity::{Length, Unit};
+pub(crate) use refine::{MOST_EXACT, Method, RefineArguments};
 pub(crate) use render::RenderArguments;
 pub(crate) use reproduce::ReproduceArguments;
-pub(crate) use shared::{BuildArguments, SchemeName, Seam};
+pub(crate) use shared::{BuildArguments, FileFormat, SchemeName, Seam};
 pub(crate) use values::{Extent, Size};
 
 use clap::{Args, Parser, Subcommand};
@@ -41,15 +43,19 @@ Examples:
   limitmesh compare builtin:head --angle 5
         the methods side by side at equal triangle counts
 
-Exit codes: 0 done, 1 bad input or output, 2 usage, 3 stopped short of what was asked (a cap).";
+Exit codes: 0 done, 1 bad input or output, 2 usage, 3 stopped short of what was asked (a cap); 130, 143 and 129 where
+Ctrl-C, SIGTERM or SIGHUP cancelled it: no file is left half written.";
 
 /// Smooths triangle meshes by adaptive subdivision, measures them, shows them.
 ///
 /// A control mesh is refined only where its faces stand badly for the smooth limit surface: until the mesh is
 /// certainly within a tolerance of it, has as many triangles as it may, or keeps an angle. INPUT is a file (OBJ,
-/// PLY, STL, OFF) or builtin:NAME; `limitmesh models` lists the names.
+/// PLY, STL, OFF), - for standard input with --from, or builtin:NAME; `limitmesh models` lists the names.
+///
+/// Counts may be written 20000, 20,000, 20k or 2e4; lengths with a unit, such as 0.05mm, where --unit says what the
+/// numbers of the mesh are.
 #[derive(Parser, Debug)]
-#[command(name = "limitmesh", version, propagate_version = true, after_help = EXAMPLES)]
+#[command(name = "limitmesh", bin_name = "limitmesh", version, propagate_version = true, after_help = EXAMPLES)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub(crate) global: GlobalArguments,
@@ -80,4 +86,19 @@ pub(crate) enum Command {
     Reproduce(ReproduceArguments),
     Info(InfoArguments),
     Models(ModelsArguments),
+}
+
+impl Command {
+    /// As it is called on the command line.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Refine(_) => "refine",
+            Self::Measure(_) => "measure",
+            Self::Compare(_) => "compare",
+            Self::Render(_) => "render",
+            Self::Reproduce(_) => "reproduce",
+            Self::Info(_) => "info",
+            Self::Models(_) => "models",
+        }
+    }
 }

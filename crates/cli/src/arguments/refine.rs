@@ -1,12 +1,17 @@
 //! `limitmesh refine`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use limitmesh_io::Format;
 use serde::Serialize;
 
 use super::values;
-use super::{BuildArguments, ExactArguments, FeatureArguments, InterpolationArguments, SchemeName, Seam};
+use super::{
+    BuildArguments, ExactArguments, FeatureArguments, FileFormat, InterpolationArguments, SchemeName, Seam,
+};
+use crate::failure::{UsageError, usage};
+use crate::output::is_standard_output;
 
 /// What decides which faces are divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
@@ -33,12 +38,15 @@ Examples:
   limitmesh refine builtin:sphere -o seen.ply --method limit-normal --view 0,0,-1 --levels 5
   limitmesh refine part.stl -o part.ply --crease-angle 30 --interpolate
   limitmesh refine scan.stl -o smooth.ply --interpolate-within 0.05
-  limitmesh refine big.ply -o fine.ply --method uniform --max-triangles 20000000
+  limitmesh refine big.ply -o fine.ply --method uniform --max-triangles 20M
+  limitmesh refine part.stl -o part.ply --tolerance 0.05mm --unit mm
+  limitmesh refine *.stl -o smooth/ --triangles 20k
+  limitmesh refine - --from stl -o - --to ply < scan.stl > smooth.ply
 
 Exit code 3 means that a cap was reached before what was asked for; the mesh is written, and free of cracks.";
 
 /// Triangles at most where no number is given: as many as take about 10 gigabytes.
-const MOST_EXACT: usize = 30_000_000;
+pub(crate) const MOST_EXACT: usize = 30_000_000;
 const MOST_STEPWISE: usize = 50_000_000;
 
 /// The heading of the options of the stepwise methods.
@@ -49,15 +57,24 @@ const STEPWISE: &str = "Options of the other methods";
 /// By default the result is within a tolerance of the limit surface, certainly and in both directions, with all
 /// vertices on it. The other methods refine step by step: each step marks faces, splits them in four, and closes
 /// the gaps to their neighbours. No method leaves cracks.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct RefineArguments {
-    /// Mesh file (.obj, .ply, .stl, .off) or builtin:NAME
-    pub(crate) input: String,
+    /// Mesh files (.obj, .ply, .stl, .off), - for standard input, or builtin:NAME
+    ///
+    /// With several, --output is a folder: each is refined by itself, and where one fails the others go on.
+    #[arg(required = true, value_name = "INPUT")]
+    pub(crate) inputs: Vec<PathBuf>,
 
-    /// File to write; its extension (.obj, .ply, .stl, .off) chooses the format
+    /// File to write, whose extension (.obj, .ply, .stl, .off) chooses the format; FOLDER/, or - for standard output
+    ///
+    /// In a folder, which is made if its name ends with a slash, files are called as their inputs are.
     #[arg(short, long, value_name = "FILE", required_unless_present = "dry_run")]
     pub(crate) output: Option<PathBuf>,
+
+    /// Format to write, whatever the name of the file says; standard output needs it
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(crate) to: Option<FileFormat>,
 
     /// What decides which faces are divided
     #[arg(long, value_enum, default_value = "exact")]
@@ -102,7 +119,7 @@ pub(crate) struct RefineArguments {
     /// would give more. Default: 30000000 for exact, 50000000 for the others, which keep memory below about 10
     /// gigabytes.
     #[arg(long, value_name = "N", value_parser = values::positive)]
-    max_triangles: Option<usize>,
+    pub(crate) max_triangles: Option<usize>,
 
     #[command(flatten)]
     pub(crate) features: FeatureArguments,
@@ -117,11 +134,11 @@ pub(crate) struct RefineArguments {
     #[arg(long)]
     pub(crate) ascii: bool,
 
-    /// Write a JSON report: input, repairs, parameters, result, seconds ('-': standard output)
+    /// Write a JSON report: input, repairs, parameters, result, seconds (- for standard output, or FOLDER/)
     #[arg(long, value_name = "FILE.json")]
     pub(crate) report: Option<PathBuf>,
 
-    /// Draw the refined mesh with its edges
+    /// Draw the refined mesh with its edges (or FOLDER/)
     #[arg(long, value_name = "FILE.png")]
     pub(crate) picture: Option<PathBuf>,
 
@@ -151,8 +168,31 @@ impl RefineArguments {
         self.max_triangles.unwrap_or(most)
     }
 
+    /// The one input of a job: the first.
+    pub(crate) fn input(&self) -> &Path {
+        self.inputs.first().map_or(Path::new(""), PathBuf::as_path)
+    }
+
     /// The file to write; a dry run has none.
     pub(crate) fn output_name(&self) -> String {
-        self.output.as_ref().map_or(String::new(), |path| path.display().to_string())
+        let name = |path: &PathBuf| {
+            if is_standard_output(path) { "standard output".to_owned() } else { path.display().to_string() }
+        };
+        self.output.as_ref().map_or(String::new(), name)
+    }
+
+    /// The format to write; none for a dry run without a name.
+    ///
+    /// # Errors
+    /// Neither the name of the file nor an option says which.
+    pub(crate) fn format(&self) -> anyhow::Result<Option<Format>> {
+        let Some(path) = &self.output else { return Ok(self.to.map(FileFormat::format)) };
+        match self.to {
+            Some(to) => Ok(Some(to.format())),
+            None if is_standard_output(path) => {
+                usage("standard output has no name that tells its format; it needs --to")
+            }
+            None => Ok(Some(Format::from_path(path).map_err(|unknown| UsageError(unknown.to_string()))?)),
+        }
     }
 }

@@ -16,10 +16,10 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct RenderArguments {
-    /// Mesh file (.obj, .ply, .stl, .off) or builtin:NAME
-    pub(crate) input: String,
+    /// Mesh file (.obj, .ply, .stl, .off), - for standard input, or builtin:NAME
+    pub(crate) input: PathBuf,
 
-    /// Picture to write (.png)
+    /// Picture to write (.png), or - for standard output
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) output: PathBuf,
 

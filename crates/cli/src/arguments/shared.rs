@@ -4,9 +4,11 @@ use clap::{Args, ValueEnum};
 use limitmesh::mesh::{BuildOptions, Weld};
 use limitmesh::refine::SeamRule;
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
+use limitmesh_io::Format;
 use serde::Serialize;
 
-use super::values;
+use super::quantity::Unit;
+use super::values::{self, WeldDistance};
 
 /// Which subdivision scheme defines the smooth surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
@@ -57,14 +59,22 @@ impl Seam {
 }
 
 /// How the control mesh is made from what the file holds.
-#[derive(Args, Debug, Clone, Copy)]
+#[derive(Args, Debug, Clone, Copy, Default)]
 pub(crate) struct BuildArguments {
     /// Merge vertices within this distance of each other [mesh units; default: equal positions alone]
     ///
     /// 0 merges vertices at exactly equal positions, as files with split seams (and every STL) need; 'none'
     /// lets the file's own indices alone connect faces.
     #[arg(long, value_name = "DIST", value_parser = values::weld, allow_hyphen_values = true)]
-    pub(crate) weld: Option<Weld>,
+    weld: Option<WeldDistance>,
+
+    /// What the mesh's numbers are measured in, for lengths that have a unit, such as 0.05mm
+    #[arg(long, value_enum)]
+    pub(crate) unit: Option<Unit>,
+
+    /// Format of standard input ('-'), and of files whose names have no extension that is known
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(crate) from: Option<FileFormat>,
 
     /// Refuse a mesh that needs repair instead of repairing it
     #[arg(long)]
@@ -73,7 +83,43 @@ pub(crate) struct BuildArguments {
 
 impl BuildArguments {
     /// The library's options.
-    pub(crate) fn options(&self) -> BuildOptions {
-        BuildOptions::default().weld(self.weld.unwrap_or_default()).strict(self.strict)
+    ///
+    /// # Errors
+    /// A distance has a unit, and the mesh's is not known.
+    pub(crate) fn options(&self) -> anyhow::Result<BuildOptions> {
+        let weld = match self.weld {
+            None => Weld::default(),
+            Some(WeldDistance::None) => Weld::Never,
+            Some(WeldDistance::Within(distance)) => match distance.in_unit_of(self.unit)? {
+                0.0 => Weld::Exact,
+                distance => Weld::Within(distance),
+            },
+        };
+        Ok(BuildOptions::default().weld(weld).strict(self.strict))
+    }
+}
+
+/// A format of mesh files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FileFormat {
+    /// Wavefront OBJ
+    Obj,
+    /// Stanford PLY
+    Ply,
+    /// STL, binary or text
+    Stl,
+    /// Geomview OFF
+    Off,
+}
+
+impl FileFormat {
+    /// The library's.
+    pub(crate) fn format(self) -> Format {
+        match self {
+            Self::Obj => Format::Obj,
+            Self::Ply => Format::Ply,
+            Self::Stl => Format::Stl,
+            Self::Off => Format::Off,
+        }
     }
 }

@@ -3,7 +3,8 @@
 use std::str::FromStr;
 
 use limitmesh::measure::SamplingOptions;
-use limitmesh::mesh::Weld;
+
+use super::quantity::{self, Length, Unit};
 
 /// Levels beyond this would need more than 4^12 (16 million) triangles for a single input triangle.
 const MAX_LEVELS: usize = 12;
@@ -39,54 +40,77 @@ pub(super) fn factor(text: &str) -> Result<f64, String> {
     if value >= 0.0 { Ok(value) } else { Err(format!("{value} is out of range: it is at least 0")) }
 }
 
-/// A welding distance, or `none`.
-pub(super) fn weld(text: &str) -> Result<Weld, String> {
+/// A welding distance; `None` for the word `none`.
+pub(super) fn weld(text: &str) -> Result<WeldDistance, String> {
     if text == "none" {
-        return Ok(Weld::Never);
+        return Ok(WeldDistance::None);
     }
-    let distance = finite(text).map_err(|what| format!("{what}; a distance or 'none' is expected"))?;
-    match distance {
-        d if d < 0.0 => Err(format!("{distance} is out of range: a distance is at least 0")),
-        0.0 => Ok(Weld::Exact),
-        _ => Ok(Weld::Within(distance)),
+    let distance =
+        quantity::length(text).map_err(|what| format!("{what}; a distance or 'none' is expected"))?;
+    if distance.value < 0.0 {
+        return Err(format!("{text} is out of range: a distance is at least 0"));
     }
+    Ok(WeldDistance::Within(distance))
+}
+
+/// Within which distance vertices are merged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum WeldDistance {
+    /// No vertices, not even at equal positions.
+    None,
+    /// Those within this distance.
+    Within(Length),
 }
 
 /// A length, absolute or beside a diagonal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Extent {
-    /// In the mesh's unit.
-    Length(f64),
+    /// As it is, perhaps with its unit.
+    Length(Length),
     /// In per cent of the diagonal of a bounding box.
     Percent(f64),
 }
 
 impl Extent {
-    /// The length, where the diagonal is this long.
-    pub(crate) fn length(self, diagonal: f64) -> f64 {
+    /// The length in the mesh's unit, where the diagonal is this long.
+    ///
+    /// # Errors
+    /// This has a unit, and the mesh's is not known.
+    pub(crate) fn length(self, diagonal: f64, unit: Option<Unit>) -> anyhow::Result<f64> {
         match self {
-            Self::Length(length) => length,
-            Self::Percent(percent) => percent / 100.0 * diagonal,
+            Self::Length(length) => length.in_unit_of(unit),
+            Self::Percent(percent) => Ok(percent / 100.0 * diagonal),
         }
     }
 }
 
 /// A length, or per cent of a diagonal if `%` follows: at least 0.
 pub(super) fn extent(text: &str) -> Result<Extent, String> {
-    let text = text.trim();
-    let percent = text.strip_suffix('%');
-    let value = finite(percent.unwrap_or(text))
-        .map_err(|what| format!("{what}; a length or per cent such as 0.01% is expected"))?;
-    if value < 0.0 {
+    let extent = signed_extent(text)?;
+    if is_below_zero(extent) {
         return Err(format!("{text} is out of range: a length is at least 0"));
     }
-    Ok(if percent.is_some() { Extent::Percent(value) } else { Extent::Length(value) })
+    Ok(extent)
+}
+
+fn signed_extent(text: &str) -> Result<Extent, String> {
+    let text = text.trim();
+    let parsed = match text.strip_suffix('%') {
+        Some(number) => finite(number).map(Extent::Percent),
+        None => quantity::length(text).map(Extent::Length),
+    };
+    parsed.map_err(|what| format!("{what}; a length or per cent such as 0.01% is expected"))
+}
+
+fn is_below_zero(extent: Extent) -> bool {
+    matches!(extent, Extent::Length(Length { value, .. }) | Extent::Percent(value) if value < 0.0)
 }
 
 /// A length above 0, or per cent of a diagonal above 0 and at most 100.
 pub(super) fn tolerance(text: &str) -> Result<Extent, String> {
-    match extent(text)? {
-        Extent::Length(0.0) | Extent::Percent(0.0) => {
+    let extent = signed_extent(text)?;
+    match extent {
+        Extent::Length(Length { value, .. }) | Extent::Percent(value) if value <= 0.0 => {
             Err(format!("{text} is out of range: a tolerance is above 0"))
         }
         Extent::Percent(percent) if percent > 100.0 => {
@@ -128,34 +152,33 @@ pub(super) fn above_zero(text: &str) -> Result<f64, String> {
     if value > 0.0 { Ok(value) } else { Err(format!("{value} is out of range: it is above 0")) }
 }
 
-/// A number of bytes, perhaps with K, M, G or T for powers of 1024.
+/// A number of bytes, as [`quantity::bytes`] reads it.
 pub(super) fn memory(text: &str) -> Result<usize, String> {
-    let text = text.trim();
-    let (digits, power) = match text.char_indices().next_back() {
-        Some((i, unit)) if unit.is_alphabetic() => {
-            let power = "KMGT".find(unit.to_ascii_uppercase());
-            let power =
-                power.ok_or_else(|| format!("'{text}': expected bytes, or a number with K, M, G or T"))?;
-            (&text[..i], power as i32 + 1)
-        }
-        _ => (text, 0),
-    };
-    let value = finite(digits)? * 1024f64.powi(power);
-    if value < 1.0 {
+    let bytes = quantity::bytes(text)?;
+    if bytes < 1.0 {
         return Err(format!("{text} is too little: memory is at least one byte"));
     }
     // Beyond what can be addressed, the conversion gives the most that can.
-    Ok(value as usize)
+    Ok(bytes as usize)
 }
 
 /// A count of at least 1.
 pub(super) fn positive(text: &str) -> Result<usize, String> {
-    bounded(text, 1, usize::MAX, "a count")
+    within(count(text)?, 1, usize::MAX, "a count")
+}
+
+/// Work of a search.
+pub(super) fn work(text: &str) -> Result<u64, String> {
+    quantity::count(text)
+}
+
+fn count(text: &str) -> Result<usize, String> {
+    usize::try_from(quantity::count(text)?).map_err(|_| format!("{text} is too many for this machine"))
 }
 
 /// A number of samples.
 pub(super) fn samples(text: &str) -> Result<usize, String> {
-    bounded(text, 1, SamplingOptions::MOST_SAMPLES, "samples")
+    within(count(text)?, 1, SamplingOptions::MOST_SAMPLES, "samples")
 }
 
 /// A number of threads.
@@ -164,8 +187,12 @@ pub(super) fn threads(text: &str) -> Result<usize, String> {
 }
 
 fn bounded(text: &str, low: usize, high: usize, what: &str) -> Result<usize, String> {
-    let value =
-        usize::from_str(text).map_err(|_| format!("'{text}' is not a whole number of at least {low}"))?;
+    let value = usize::from_str(text.trim())
+        .map_err(|_| format!("'{text}' is not a whole number of at least {low}"))?;
+    within(value, low, high, what)
+}
+
+fn within(value: usize, low: usize, high: usize, what: &str) -> Result<usize, String> {
     match value {
         v if v < low => Err(format!("{v} is too few: {what} must be at least {low}")),
         v if v > high => Err(format!("{v} is too many: {what} must be at most {high}")),
@@ -213,42 +240,33 @@ mod tests {
         }
         assert!(direction("0,0,0").is_err());
         assert!(direction("0,0,-0").is_err());
-        assert_eq!(weld("0"), Ok(Weld::Exact));
-        assert_eq!(weld("0.5"), Ok(Weld::Within(0.5)));
-        assert_eq!(weld("none"), Ok(Weld::Never));
+        assert_eq!(weld("0.5"), Ok(WeldDistance::Within(Length { value: 0.5, unit: None })));
+        assert_eq!(weld("none"), Ok(WeldDistance::None));
         assert!(weld("-0.5").is_err());
     }
 
     #[test]
     fn extents_are_lengths_or_per_cent() {
-        assert_eq!(extent("0.5"), Ok(Extent::Length(0.5)));
+        let plain = |value| Ok(Extent::Length(Length { value, unit: None }));
+        assert_eq!(extent("0.5"), plain(0.5));
         assert_eq!(extent("0.01%"), Ok(Extent::Percent(0.01)));
         assert_eq!(extent(" 2 % "), Ok(Extent::Percent(2.0)));
-        assert_eq!(Extent::Percent(2.0).length(50.0), 1.0);
-        for bad in ["", "%", "-1", "-1%", "1 mm", "NaN", "inf%"] {
+        assert_eq!(extent("0.05mm"), Ok(Extent::Length(Length { value: 0.05, unit: Some(Unit::Mm) })));
+        for bad in ["", "%", "-1", "-1%", "-1mm", "1 parsec", "NaN", "inf%"] {
             assert!(extent(bad).is_err(), "{bad}");
         }
     }
 
     #[test]
     fn tolerances_are_above_0_and_at_most_the_whole() {
-        assert_eq!(tolerance("1e-300"), Ok(Extent::Length(1e-300)));
+        assert_eq!(tolerance("1e-300"), Ok(Extent::Length(Length { value: 1e-300, unit: None })));
         assert_eq!(tolerance("100%"), Ok(Extent::Percent(100.0)));
-        for bad in ["0", "-0", "0%", "-1", "-0.1%", "NaN", "inf", "1e999", "1000%", "%", "", "0.1%%", "fine"]
-        {
+        for bad in ["0", "-0", "0%", "-1", "-0.1%", "-1mm"] {
+            let what = tolerance(bad).unwrap_err();
+            assert_eq!(what, format!("{bad} is out of range: a tolerance is above 0"));
+        }
+        for bad in ["NaN", "inf", "1e999", "1000%", "%", "", "0.1%%", "fine"] {
             assert!(tolerance(bad).is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn memory_is_read_with_its_unit() {
-        let pairs =
-            [("1", 1), ("2000", 2000), ("1K", 1024), ("1.5m", 1_572_864), ("2G", 1 << 31), ("1 T", 1 << 40)];
-        for (text, expected) in pairs {
-            assert_eq!(memory(text), Ok(expected), "{text}");
-        }
-        for bad in ["0", "-1G", "G", "2X", "2GB", "NaN", "", "0.1"] {
-            assert!(memory(bad).is_err(), "{bad}");
         }
     }
 

@@ -60,7 +60,7 @@ pub(super) fn measure(
         ));
     }
     let diagonal = control.diagonal();
-    let asked = arguments.gap.map(|gap| gap.length(diagonal));
+    let asked = arguments.gap.map(|gap| gap.length(diagonal, arguments.build.unit)).transpose()?;
     let surface = Bvh::new(surface)?;
     let mut tolerance = asked.map_or(FIRST_ERROR * diagonal, |gap| (0.25 * gap).max(f64::MIN_POSITIVE));
     loop {

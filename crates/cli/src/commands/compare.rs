@@ -22,7 +22,7 @@ use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport};
 
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    let control = input::load(&arguments.input, &arguments.build.options(), progress)?.mesh;
+    let control = input::load(&arguments.input, &arguments.build, progress)?.mesh;
     let control = arguments.features.apply(control)?;
     let scheme = arguments.scheme.scheme();
     let diagonal = control.diagonal();
@@ -191,7 +191,7 @@ fn in_words(arguments: &CompareArguments, judge: &Judge<'_>, methods: &[Compared
         "{}, against its limit surface ({}, {} levels)\n\n{}\n\
          Distances are symmetric Hausdorff distances in per cent of the control mesh's diagonal, sampled: lower \
          bounds,\n{} samples a surface, or more where it has more vertices. What is proven is an upper bound.\n",
-        arguments.input,
+        input::display_name(&arguments.input),
         counted(judge.reference.mesh.face_count(), "triangle", "triangles"),
         judge.reference.levels,
         table(&rows),

@@ -12,7 +12,6 @@ use limitmesh_render::{
 use super::picture::SIZE;
 use crate::arguments::Size;
 use crate::failure::usage;
-use crate::interrupt;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::measurement::Whole;
@@ -26,7 +25,7 @@ const MOST_PARTS: usize = 64;
 /// Refuses a name that is neither a PLY nor a PNG file's, before any work is done.
 pub(super) fn check_name(path: &Path) -> anyhow::Result<()> {
     if is_picture(path) || matches!(Format::from_path(path), Ok(Format::Ply)) {
-        return output::check_folder(path);
+        return output::check_writable(path);
     }
     usage(format!("{}: a heat map is a .ply or a .png file", path.display()))
 }
@@ -62,8 +61,7 @@ fn write_mesh(
     let share = |distance: f64| if scale.high > 0.0 { distance / scale.high } else { 0.0 };
     let colours: Vec<[u8; 3]> = distances.iter().map(|&d| scale.map.at(share(d))).collect();
     let output = Output::new(surface).quality(&distances).colours(&colours);
-    interrupt::uninterrupted(|| limitmesh_io::write(path, &output, &WriteOptions::default()))?;
-    Ok(())
+    output::write_mesh(path, Format::Ply, &output, &WriteOptions::default())
 }
 
 /// A picture with a colour bar. Distances inside of triangles show too: large ones are cut up, flat as they are.

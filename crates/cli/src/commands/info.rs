@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use limitmesh::Mesh;
 
 use crate::arguments::InfoArguments;
+use crate::bulk::Bulk;
+use crate::dihedral::Dihedrals;
 use crate::failure::Outcome;
-use crate::format::{counted, number, point, thousands};
+use crate::format::{counted, number, point, table, thousands};
 use crate::input;
 use crate::mesh_info;
 use crate::output;
@@ -16,7 +18,8 @@ use crate::report::{InformationReport, InputReport, MeshInformation, VERSION};
 
 /// Examines a file and prints what it holds.
 pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    let input::Soup { name, format, soup, .. } = input::read(&arguments.input, progress)?;
+    let input::Soup { name, format, soup, .. } = input::read(&arguments.input, &arguments.build, progress)?;
+    let options = arguments.build.options()?;
     let mut corners = BTreeMap::<usize, usize>::new();
     for face in soup.faces.iter() {
         *corners.entry(face.len()).or_default() += 1;
@@ -32,8 +35,8 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
     };
     progress.stage(format!("connecting {}", counted(input.faces, "face", "faces")));
     let (mesh, diagnosis) =
-        Mesh::from_soup(&soup, &arguments.build.options()).map_err(|error| input::describe(&name, error))?;
-    if let Some(near) = input::nearly_closed(&soup, &mesh, &arguments.build.options()) {
+        Mesh::from_soup(&soup, &options).map_err(|error| input::describe(&name, error))?;
+    if let Some(near) = input::nearly_closed(&soup, &mesh, &options) {
         progress.note(format!("{name}: {near}"));
     }
     drop(soup);
@@ -123,10 +126,56 @@ fn describe_mesh(mesh: &MeshInformation) -> String {
             point(mesh.bounding_box.high),
             number(mesh.bounding_box.diagonal)
         ),
+        bulk_in_words(&mesh.bulk),
         format!(
             "least angle {:.2}°, mean least angle {:.1}°",
             mesh.min_angle_degrees, mesh.mean_min_angle_degrees
         ),
     ];
-    lines.iter().map(|line| format!("  {line}\n")).collect()
+    let turned = (mesh.inside_out_components > 0).then(|| {
+        let parts = counted(mesh.inside_out_components, "component is", "components are");
+        format!("{parts} inside out: all normals point inwards")
+    });
+    let text: String = lines.iter().chain(&turned).map(|line| format!("  {line}\n")).collect();
+    text + &dihedrals_in_words(&mesh.dihedrals)
+}
+
+fn bulk_in_words(bulk: &Bulk) -> String {
+    let volume = bulk
+        .volume
+        .map_or_else(|| "no volume, as it is open".to_owned(), |v| format!("volume {}", number(v)));
+    format!("area {}, {volume}", number(bulk.area))
+}
+
+/// The longest bar of a histogram.
+const BAR: usize = 40;
+
+/// How many edges there are by the angle between their faces, and which look sharp.
+fn dihedrals_in_words(dihedrals: &Dihedrals) -> String {
+    let most = dihedrals.histogram.iter().copied().max().unwrap_or(0);
+    let rows = dihedrals.histogram.iter().enumerate().filter(|&(_, &count)| count > 0);
+    let rows: Vec<Vec<String>> = rows
+        .map(|(step, &count)| {
+            let bar = "#".repeat((BAR * count).div_ceil(most.max(1)));
+            vec![format!("  {}° to {}°", 10 * step, 10 * step + 10), thousands(count), bar]
+        })
+        .collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    let look = match dihedrals.suggested_crease_angle_degrees {
+        None => "none stand out as sharp".to_owned(),
+        Some(angle) => {
+            let edges = counted(dihedrals.sharp_edges, "edge looks", "edges look");
+            format!("{edges} sharp; --crease-angle {} keeps them so", number(angle))
+        }
+    };
+    format!("\nedges by the angle between their faces: {look}\n{}", bars(&rows))
+}
+
+/// A table whose last column is to the left.
+fn bars(rows: &[Vec<String>]) -> String {
+    let (heads, bars): (Vec<Vec<String>>, Vec<&String>) =
+        rows.iter().map(|row| (row[..2].to_vec(), &row[2])).unzip();
+    table(&heads).lines().zip(bars).map(|(line, bar)| format!("{line}  {bar}\n")).collect()
 }

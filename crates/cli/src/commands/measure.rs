@@ -1,5 +1,6 @@
 //! `limitmesh measure`: the distance between two surfaces, or between a mesh and a limit surface.
 
+use std::path::Path;
 use std::time::Instant;
 
 use limitmesh::measure::{CertifiedHausdorff, Hausdorff, SamplingOptions, hausdorff_observed};
@@ -20,7 +21,7 @@ use crate::report::{CertifiedReport, DistanceReport, LimitReport, MeasureReport,
 pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     check(arguments)?;
     let start = Instant::now();
-    let surface = input::load(&arguments.surface, &arguments.build.options(), progress)?;
+    let surface = input::load(&arguments.surface, &arguments.build, progress)?;
     let a = surface.mesh.as_triangles();
     let (control, reference_report, whole) = load_reference(arguments, progress)?;
     let prepare = start.elapsed().as_secs_f64();
@@ -122,15 +123,15 @@ fn load_reference(
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, SurfaceReport, Whole)> {
-    let build = arguments.build.options();
+    let build = &arguments.build;
     let Some(control) = &arguments.limit_of else {
-        let name = arguments.reference.as_deref().unwrap_or_default();
-        let input = input::load(name, &build, progress)?;
+        let name = arguments.reference.as_deref().unwrap_or(Path::new(""));
+        let input = input::load(name, build, progress)?;
         let report = describe(&input);
         let whole = Whole { diagonal: input.mesh.diagonal(), of: "second mesh" };
         return Ok((input.mesh, report, whole));
     };
-    let input = input::load(control, &build, progress)?;
+    let input = input::load(control, build, progress)?;
     let scheme = arguments.scheme.unwrap_or_default();
     let report = describe(&input);
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
@@ -142,7 +143,7 @@ fn load_reference(
         let levels = arguments
             .reference_levels
             .unwrap_or_else(|| reference::affordable_levels(mesh.face_count(), USUAL_LEVELS));
-        progress.stage(format!("refining {control} by {levels} levels to stand for its limit surface"));
+        progress.stage(format!("refining {} by {levels} levels to stand for its limit surface", report.path));
         (reference::at_level(&mesh, scheme.scheme(), levels)?.mesh, levels)
     };
     let limit = LimitReport {
@@ -246,6 +247,8 @@ fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
              surface; they need --limit-of",
         );
     }
+    let given = [Some(&arguments.surface), arguments.reference.as_ref(), arguments.limit_of.as_ref()];
+    input::check_once(given.into_iter().flatten())?;
     certified::check(arguments)?;
     arguments.heatmap.as_deref().map_or(Ok(()), heatmap::check_name)
 }

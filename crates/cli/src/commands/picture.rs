@@ -14,8 +14,11 @@ pub(super) const SIZE: Size = Size { width: 1200, height: 900 };
 
 /// Refuses a name that is no PNG file's, before any work is done.
 pub(super) fn check_name(path: &Path) -> anyhow::Result<()> {
+    if output::is_standard_output(path) {
+        return Ok(());
+    }
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        return output::check_folder(path);
+        return output::check_writable(path);
     }
     usage(format!("{}: pictures are PNG files, expected a name that ends with .png", path.display()))
 }

@@ -12,7 +12,7 @@ use crate::progress::Progress;
 /// Reads a mesh and draws it.
 pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     picture::check_name(&arguments.output)?;
-    let mesh = input::load(&arguments.input, &arguments.build.options(), progress)?.mesh;
+    let mesh = input::load(&arguments.input, &arguments.build, progress)?.mesh;
     progress.stage(format!("drawing {}", counted(mesh.face_count(), "triangle", "triangles")));
     let shading = if arguments.flat { Shading::Flat } else { Shading::Smooth };
     let style = Style::default().shading(shading).wireframe(arguments.wireframe);

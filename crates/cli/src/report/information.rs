@@ -4,6 +4,8 @@ use serde::Serialize;
 
 use super::InputReport;
 use super::diagnosis::DiagnosisReport;
+use crate::bulk::Bulk;
+use crate::dihedral::Dihedrals;
 
 /// All of it.
 #[derive(Debug, Serialize)]
@@ -49,6 +51,11 @@ pub(crate) struct MeshInformation {
     /// Vertices with another valence than 6, or 4 on a boundary.
     pub(crate) irregular_vertices: usize,
     pub(crate) bounding_box: BoundingBox,
+    #[serde(flatten)]
+    pub(crate) bulk: Bulk,
+    /// Closed components whose normals point inwards, but for cavities of others.
+    pub(crate) inside_out_components: usize,
+    pub(crate) dihedrals: Dihedrals,
     pub(crate) min_angle_degrees: f64,
     pub(crate) mean_min_angle_degrees: f64,
     /// Triangles with a least angle in [0°, 5°), [5°, 10°) … [55°, 60°].

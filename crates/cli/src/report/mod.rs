@@ -16,8 +16,9 @@ pub(crate) use information::{InformationReport, MeshInformation};
 pub(crate) use interpolation::InterpolationReport;
 pub(crate) use measurement::{DistanceReport, LimitReport, MeasureReport, SurfaceReport};
 pub(crate) use refinement::{
-    CameraReport, ErrorReport, EstimateReport, ExactParametersReport, MethodReport, OutputReport,
-    ParametersReport, PredictionReport, RefineReport, RoundEntry, SecondsReport, StepEntry, ViewReport,
+    CameraReport, ErrorReport, EstimateReport, ExactParametersReport, InputDistanceReport, MethodReport,
+    OutputReport, ParametersReport, PredictionReport, RefineReport, RoundEntry, SecondsReport, SizeReport,
+    StepEntry, ViewReport,
 };
 
 use serde::Serialize;

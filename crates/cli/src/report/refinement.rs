@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::diagnosis::DiagnosisReport;
 use super::{InputReport, InterpolationReport};
 use crate::arguments::{Boundary, Method, RefineArguments, SchemeName, Seam};
+use crate::bulk::Bulk;
 use crate::format::{lower_bound, upper_bound};
 
 /// All of it.
@@ -23,8 +24,27 @@ pub(crate) struct RefineReport {
     pub(crate) interpolation: Option<InterpolationReport>,
     #[serde(flatten)]
     pub(crate) method: MethodReport,
+    pub(crate) size: SizeReport,
     pub(crate) output: OutputReport,
     pub(crate) seconds: SecondsReport,
+}
+
+/// Area and volume of the mesh that was read and of the one that was written.
+#[derive(Debug, Serialize)]
+pub(crate) struct SizeReport {
+    pub(crate) before: Bulk,
+    pub(crate) after: Bulk,
+}
+
+/// The distance between the mesh that was read and the one that was written lies between these.
+#[derive(Debug, Serialize)]
+pub(crate) struct InputDistanceReport {
+    /// In the mesh's unit.
+    pub(crate) lower: f64,
+    pub(crate) upper: f64,
+    /// In per cent of the diagonal of the control mesh's bounding box.
+    pub(crate) lower_percent: f64,
+    pub(crate) upper_percent: f64,
 }
 
 /// What the method did.
@@ -42,7 +62,9 @@ pub(crate) struct MethodReport {
     pub(crate) needed_triangles: Option<usize>,
     /// How far the mesh and the limit surface are from each other; null for the stepwise methods.
     pub(crate) error: Option<ErrorReport>,
-    /// The same in the cameras' pictures, in pixels at most; null without cameras or where it is not bounded.
+    /// How far the mesh is from the one that was read; null where that is not known.
+    pub(crate) input_distance: Option<InputDistanceReport>,
+    /// The distance to the limit surface in the cameras' pictures, in pixels at most; null without cameras or where it is not bounded.
     pub(crate) pixels: Option<f64>,
     /// Triangles outside the cone of the exact method's angle; null without one.
     pub(crate) open_cones: Option<usize>,
@@ -99,6 +121,8 @@ pub(crate) struct ParametersReport {
 impl ParametersReport {
     /// What all methods have; the rest null.
     pub(crate) fn common(arguments: &RefineArguments) -> Self {
+        // A unit that is missing was found before.
+        let weld = arguments.build.options().map_or_else(|_| Weld::default(), |options| options.weld);
         Self {
             method: arguments.method,
             angle_degrees: None,
@@ -111,7 +135,7 @@ impl ParametersReport {
             crease_angle_degrees: arguments.features.crease_angle,
             interpolate_within: None,
             max_triangles: arguments.max_triangles(),
-            weld: match arguments.build.options().weld {
+            weld: match weld {
                 Weld::Never => None,
                 Weld::Within(distance) => Some(distance),
                 _ => Some(0.0),
@@ -254,25 +278,44 @@ impl ErrorReport {
         }
     }
 
-    /// `within 0.0998 % (0.0123) of the limit surface, certified; at least 0.0962 % of the control mesh's diagonal`.
-    pub(crate) fn in_words(&self) -> String {
-        let least = format!("at least {} %", lower_bound(self.lower_percent));
-        match (self.upper, self.upper_percent) {
+    /// `within 0.0998 % of the diagonal (0.0123) of the limit surface, certified; at least 0.0962 %`, with a unit after
+    /// lengths.
+    pub(crate) fn in_words(&self, unit: &str) -> Vec<String> {
+        let extent =
+            |percent: String, length: String| format!("{percent} % of the diagonal ({length}{unit})");
+        vec![match (self.upper, self.upper_percent) {
             (Some(upper), Some(percent)) if !self.certified => format!(
-                "about {} % of the control mesh's diagonal ({}) from the limit surface by samples, not certified",
-                upper_bound(percent),
-                upper_bound(upper)
+                "about {} from the limit surface by samples, not certified",
+                extent(upper_bound(percent), upper_bound(upper))
             ),
             (Some(upper), Some(percent)) => format!(
-                "within {} % ({}) of the limit surface, certified; {least} of the control mesh's diagonal",
-                upper_bound(percent),
-                upper_bound(upper)
+                "within {} of the limit surface, certified; at least {} %",
+                extent(upper_bound(percent), upper_bound(upper)),
+                lower_bound(self.lower_percent)
             ),
             _ => format!(
-                "{least} of the control mesh's diagonal ({}) from the limit surface, not certified",
-                lower_bound(self.lower)
+                "at least {} from the limit surface, not certified",
+                extent(lower_bound(self.lower_percent), lower_bound(self.lower))
             ),
-        }
+        }]
+    }
+}
+
+impl InputDistanceReport {
+    /// Of a mesh whose control mesh has that diagonal.
+    pub(crate) fn new(lower: f64, upper: f64, diagonal: f64) -> Self {
+        let percent = |length: f64| 100.0 * length / diagonal;
+        Self { lower, upper, lower_percent: percent(lower), upper_percent: percent(upper) }
+    }
+
+    /// `moved by 0.7901 % to 0.8123 % of the diagonal (0.01234) from the input, certified`, with a unit after lengths.
+    pub(crate) fn in_words(&self, unit: &str) -> String {
+        format!(
+            "moved by {} % to {} % of the diagonal ({}{unit}) from the input, certified",
+            lower_bound(self.lower_percent),
+            upper_bound(self.upper_percent),
+            upper_bound(self.upper)
+        )
     }
 }
 

@@ -66,7 +66,7 @@ fn a_thousandth_of_the_diagonal_is_kept_by_default() {
     assert_eq!(report["output"]["watertight"], info["mesh"]["watertight"]);
     let said = run("refine builtin:cup -o {}", &[&output]).expect(0);
     assert!(
-        said.stderr.contains(" % (") && said.stderr.contains("certified; at least 0.0"),
+        said.stderr.contains(" % of the diagonal (") && said.stderr.contains("certified; at least 0.0"),
         "{}",
         said.stderr
     );
@@ -320,7 +320,7 @@ fn vertices_and_triangles_know_where_they_came_from() {
     let output = folder.path().join("out.ply");
     refine(0, "builtin:cube", &output, "--tolerance 0.5% --ascii --provenance");
     let (names, vertices, faces) = rows(&output);
-    assert_eq!(names[6..], ["parent_face", "parent_a", "parent_b", "parent_c"]);
+    assert_eq!(names[6..], ["parent_face", "parent_a", "parent_b", "parent_c", "input_face"]);
     let control = limitmesh::Mesh::from_soup(
         &limitmesh_models::find("cube").expect("a model").soup(),
         &Default::default(),
@@ -333,6 +333,7 @@ fn vertices_and_triangles_know_where_they_came_from() {
     let mut corners = 0;
     for vertex in &vertices {
         let barycentric = &vertex[7..10];
+        assert_eq!(vertex[10], (vertex[6] / 2.0).floor());
         assert!(barycentric.iter().all(|b| (0.0..=1.0).contains(b)));
         assert_eq!(barycentric.iter().sum::<f64>(), 1.0);
         // A corner of a control face lies at the limit of that control vertex.
@@ -345,7 +346,9 @@ fn vertices_and_triangles_know_where_they_came_from() {
     assert_eq!(corners, control.vertex_count());
     let mut parents = vec![0; control.face_count()];
     for face in &faces {
-        assert_eq!((face.len(), face[0]), (5, 3.0));
+        assert_eq!((face.len(), face[0]), (6, 3.0));
+        // The cube's six squares are cut into two triangles each, in their order.
+        assert_eq!(face[5], (face[4] / 2.0).floor());
         parents[face[4] as usize] += 1;
         for &vertex in &face[1..4] {
             let vertex = &vertices[vertex as usize];
@@ -359,6 +362,22 @@ fn vertices_and_triangles_know_where_they_came_from() {
     let plain = folder.path().join("plain.ply");
     run("refine builtin:cube -o {} --tolerance 0.5% --provenance", &[&plain]).expect(0);
     assert_eq!(soup(&plain).positions, soup(&output).positions);
+}
+
+/// Faces that are left out, and squares that are cut, shift the numbers of control faces against those of the input.
+#[test]
+fn provenance_counts_the_faces_of_the_input() {
+    let folder = folder();
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 1 1 2\nf 1 4 3 2\n\
+                f 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 5 6 7 8\nf 1 5 8 4\nf 2 3 7 6\n";
+    let (input, output) = (file(&folder, "in.obj", text), folder.path().join("out.ply"));
+    run("refine {} -o {} --tolerance 2% --ascii --provenance", &[&input, &output]).expect(0);
+    let (_, _, faces) = rows(&output);
+    let mut found: Vec<u64> = faces.iter().map(|face| face[5] as u64).collect();
+    found.sort_unstable();
+    found.dedup();
+    // Without the line and the square that repeats another.
+    assert_eq!(found, [1, 2, 3, 4, 6, 7]);
 }
 
 /// Where masks may be negative nothing is proven, and nothing is called so.

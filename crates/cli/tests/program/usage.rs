@@ -47,7 +47,7 @@ fn options_out_of_range_are_refused_before_any_work() {
         ("--method uniform --seam any", "never meet"),
         ("--max-triangles 0", "at least 1"),
         ("--tolerance 0", "above 0"),
-        ("--tolerance -1%", "at least 0"),
+        ("--tolerance -1%", "a tolerance is above 0"),
         ("--tolerance NaN", "not a finite number"),
         ("--tolerance 1e999", "not a finite number"),
         ("--tolerance 1000%", "the whole mesh"),

@@ -1,5 +1,6 @@
 //! Files are written whole or not at all, messages where they belong.
 
+use std::path::Path;
 use std::process::Stdio;
 
 use crate::common::{command, file, folder, names, run, soup};
@@ -59,7 +60,7 @@ fn quiet_says_nothing_and_otherwise_only_results_go_to_standard_output() {
     assert_eq!(names(folder.path()), ["out.ply", "out.png"]);
     let told = run("refine builtin:head -o {} --tolerance 1%", &[&output]).expect(0);
     assert_eq!(told.stdout, "");
-    assert_eq!(told.stderr.lines().count(), 1, "one line of summary, no progress: {}", told.stderr);
+    assert_eq!(told.stderr.lines().count(), 4, "four lines of summary, no progress: {}", told.stderr);
     for command in ["info builtin:cup", "measure builtin:cup builtin:cup", "models"] {
         let run = run(&format!("{command} -q"), &[]).expect(0);
         assert_eq!(run.stderr, "", "{command}");
@@ -82,29 +83,95 @@ fn a_reader_that_goes_away_is_no_error() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupt_leaves_the_whole_file_or_none() {
+fn signals_leave_the_whole_file_or_none_and_say_what_was_cancelled() {
     use std::time::Duration;
-    for delay in [20, 200, 600] {
-        let folder = folder();
-        let output = folder.path().join("out.ply");
-        let mut child = command("refine builtin:shoe -o {} -q --method uniform --levels 5", &[&output])
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program starts");
-        std::thread::sleep(Duration::from_millis(delay));
-        // Fails if the program has ended by then, which is fine.
-        let _ = std::process::Command::new("kill")
-            .args(["-INT", &child.id().to_string()])
-            .stderr(Stdio::null())
-            .status();
-        let code = child.wait().expect("it ends").code();
-        match names(folder.path()).as_slice() {
-            [] => assert_eq!(code, Some(130)),
-            [name] if name == "out.ply" => {
-                assert!(code == Some(0) || code == Some(130), "{code:?}");
-                assert_eq!(soup(&output).faces.len(), 684 * 4usize.pow(5));
+    for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
+        for delay in [20, 200, 600] {
+            let folder = folder();
+            let output = folder.path().join("out.ply");
+            let child = command("refine builtin:shoe -o {} -q --method uniform --levels 5", &[&output])
+                .stderr(Stdio::piped())
+                .spawn()
+                .expect("the program starts");
+            std::thread::sleep(Duration::from_millis(delay));
+            // Fails if the program has ended by then, which is fine.
+            let _ = std::process::Command::new("kill")
+                .args([&format!("-{signal}"), &child.id().to_string()])
+                .stderr(Stdio::null())
+                .status();
+            let output_of = child.wait_with_output().expect("it ends");
+            let told = String::from_utf8_lossy(&output_of.stderr).into_owned();
+            let ended = output_of.status.code();
+            match names(folder.path()).as_slice() {
+                // Before it could arrange for signals, it ends as any program does.
+                [] if ended.is_none() && delay < 100 => {}
+                [] => {
+                    assert_eq!(ended, Some(code), "{told}");
+                    assert!(told.contains("cancelled by") && told.contains("nothing was written"), "{told}");
+                }
+                [name] if name == "out.ply" => {
+                    assert!(ended == Some(0) || ended == Some(code), "{ended:?} {told}");
+                    assert_eq!(told.contains("out.ply written by then"), ended != Some(0), "{told}");
+                    assert_eq!(soup(&output).faces.len(), 684 * 4usize.pow(5));
+                }
+                other => panic!("left behind: {other:?}"),
             }
-            other => panic!("left behind: {other:?}"),
         }
+    }
+}
+
+/// What whoever starts the program has it ignore stays ignored, as `nohup` needs.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_ignored_hangup_stays_ignored() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let program = env!("CARGO_BIN_EXE_limitmesh");
+    let script = format!(
+        "trap '' HUP; {program} refine builtin:shoe -o '{}' --method uniform --levels 5 -q & sleep 0.3; kill -HUP $!; wait $!",
+        output.display()
+    );
+    let status = std::process::Command::new("sh").args(["-c", &script]).status().expect("a shell");
+    assert_eq!(status.code(), Some(0));
+    assert_eq!(names(folder.path()), ["out.ply"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_read_only_is_an_error_before_the_work() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = folder();
+    let output = file(&folder, "out.ply", "precious");
+    std::fs::set_permissions(&output, std::fs::Permissions::from_mode(0o444)).expect("own file");
+    for words in ["refine builtin:head -o {}", "refine builtin:head -o x.ply --dry-run --report {}"] {
+        run(words, &[&output]).expect(1).saying("out.ply").saying("read-only");
+    }
+    assert_eq!(std::fs::read_to_string(&output).expect("a file"), "precious");
+    assert_eq!(names(folder.path()), ["out.ply"]);
+}
+
+/// Results are told in lines that fit a terminal of 100 columns.
+#[test]
+fn lines_of_results_are_short() {
+    let folder = folder();
+    let output = Path::new("out.ply");
+    let long = [
+        "--tolerance 0.001% --max-triangles 20000",
+        "--tolerance 1e-9 --max-triangles 2000",
+        "--scheme butterfly",
+        "--angle 3",
+        "--angle 40",
+        "--triangles 3000 --optimize",
+        "--pixels 0.5 --camera 0,-4,2,0,0,0,0,0,1,40,1920x1080",
+        "--method uniform",
+    ];
+    for options in long {
+        let told = command(&format!("refine builtin:head -o {{}} {options}"), &[output])
+            .current_dir(folder.path())
+            .output()
+            .expect("it runs");
+        let told = String::from_utf8_lossy(&told.stderr).into_owned();
+        let longest = told.lines().map(|line| line.chars().count()).max().expect("a line");
+        assert!(longest <= 100, "{options}: {longest}\n{told}");
     }
 }

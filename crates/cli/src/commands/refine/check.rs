@@ -1,17 +1,19 @@
 //! What makes no sense on a command line of `limitmesh refine`, found before any work is done.
 
+use std::io::IsTerminal;
 use std::path::Path;
 
 use limitmesh_io::Format;
 
 use super::picture;
 use crate::arguments::{Method, RefineArguments};
-use crate::failure::{UsageError, usage};
+use crate::failure::usage;
+use crate::format::thousands;
 use crate::input;
 use crate::output;
 
-/// Checks options and names of files; gives the format to write, none for a dry run without a name.
-pub(super) fn check(arguments: &RefineArguments) -> anyhow::Result<Option<Format>> {
+/// Checks options; gives the format to write, none for a dry run without a name.
+pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Format>> {
     match arguments.method {
         Method::Exact => stepwise_options(arguments)?,
         _ => exact_options(arguments)?,
@@ -36,8 +38,7 @@ pub(super) fn check(arguments: &RefineArguments) -> anyhow::Result<Option<Format
             "--dilatation widens the angle of faces that look at a viewer; it needs --view or --eye",
         );
     }
-    let format = arguments.output.as_deref().map(Format::from_path).transpose();
-    let format = format.map_err(|unknown| UsageError(unknown.to_string()))?;
+    let format = arguments.format()?;
     if arguments.exact.provenance && format.is_some_and(|format| format != Format::Ply) {
         return usage(format!(
             "--provenance writes properties of PLY files; {} is none",
@@ -47,8 +48,18 @@ pub(super) fn check(arguments: &RefineArguments) -> anyhow::Result<Option<Format
     if arguments.exact.dry_run && arguments.picture.is_some() {
         return usage("--dry-run gives no mesh that --picture could draw");
     }
-    files(arguments)?;
     Ok(format)
+}
+
+/// Refuses two jobs that would write one file.
+pub(super) fn together(jobs: &[RefineArguments]) -> anyhow::Result<()> {
+    for (i, job) in jobs.iter().enumerate() {
+        let twice = jobs[..i].iter().any(|earlier| earlier.output.is_some() && earlier.output == job.output);
+        if twice {
+            return usage(format!("{} would be written twice, for inputs of one name", job.output_name()));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses options of the stepwise methods.
@@ -68,6 +79,16 @@ fn stepwise_options(arguments: &RefineArguments) -> anyhow::Result<()> {
     let cameras = !exact.camera.is_empty() || !exact.camera_path.is_empty();
     if exact.optimize && (arguments.angle.is_some() || cameras || exact.balance) {
         return usage("--optimize keeps --tolerance and --triangles; not --angle, cameras or --balance");
+    }
+    if let (Some(asked), None) = (exact.triangles, arguments.max_triangles)
+        && asked > arguments.max_triangles()
+    {
+        return usage(format!(
+            "--triangles {} is more than the {} that are given at most; --max-triangles raises that, at about 320 bytes \
+             of memory each",
+            thousands(asked),
+            thousands(arguments.max_triangles())
+        ));
     }
     if exact.pixels.is_some() && !cameras {
         return usage("--pixels is what cameras see; it needs --camera or --camera-path");
@@ -112,11 +133,17 @@ fn uniform(arguments: &RefineArguments) -> anyhow::Result<()> {
 }
 
 /// Checks that what is to be written can be, replaces no input, and is written once.
-fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
-    let input = Path::new(&arguments.input);
+pub(super) fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
+    let input = arguments.input();
     let mut written = Vec::with_capacity(3);
     if let Some(output) = arguments.output.as_deref() {
-        output::check_folder(output)?;
+        output::check_writable(output)?;
+        let binary = matches!(arguments.format()?, Some(Format::Ply | Format::Stl)) && !arguments.ascii;
+        if output::is_standard_output(output) && binary && std::io::stdout().is_terminal() {
+            return usage(
+                "binary files are not for a terminal; --ascii writes text, or send it on with > or |",
+            );
+        }
         written.push(output);
     }
     let beside_mesh = written.len();
@@ -125,10 +152,11 @@ fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
         written.push(picture);
     }
     if let Some(report) = &arguments.report {
-        output::check_folder(report)?;
+        output::check_writable(report)?;
         written.push(report);
     }
-    if let Some(path) = written[beside_mesh..].iter().find(|path| input::same_file(input, path)) {
+    let replaces = |path: &&&Path| !output::is_standard_output(path) && input::same_file(input, path);
+    if let Some(path) = written[beside_mesh..].iter().find(replaces) {
         return usage(format!("{} is the input; a report or picture would replace it", path.display()));
     }
     for (i, path) in written.iter().enumerate() {

@@ -26,8 +26,8 @@ pub(super) fn run(
         exact_estimate_observed(control, arguments.scheme.scheme(), &options, &mut progress.observer())?;
     progress.clear();
     // A report on standard output is not mixed with text for people.
-    if arguments.report.as_deref().is_none_or(|path| path.as_os_str() != output::STANDARD_OUTPUT) {
-        output::print(&in_words(&found))?;
+    if arguments.report.as_deref().is_none_or(|path| !output::is_standard_output(path)) {
+        output::print(&format!("{}: {}", input.path, in_words(&found, arguments)))?;
     }
     let Some(path) = &arguments.report else { return Ok(()) };
     let report = PredictionReport {
@@ -44,11 +44,13 @@ pub(super) fn run(
     output::write_json(path, &report)
 }
 
-fn in_words(found: &Estimate) -> String {
+fn in_words(found: &Estimate, arguments: &RefineArguments) -> String {
+    let is_capped = found.triangles == arguments.max_triangles();
     format!(
-        "{}{}, at most about {} of memory while it refines; nothing was written",
+        "{}{}{}, at most about {} of memory while it refines; nothing was written",
         if found.is_counted { "" } else { "about " },
         counted(found.triangles, "triangle", "triangles"),
+        if is_capped { ", where --max-triangles ends it" } else { "" },
         bytes(found.memory_bytes)
     )
 }

@@ -6,15 +6,18 @@ use limitmesh::progress::Stage;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_observed};
 use limitmesh_io::{Format, WriteOptions};
 
+use super::input_distance::InputDistance;
 use super::provenance::Provenance;
 use super::{Refined, cameras, view, view_report};
-use crate::arguments::{Extent, RefineArguments};
+use crate::arguments::{Extent, Length, MOST_EXACT, RefineArguments, Unit};
+use crate::dihedral::Dihedrals;
 use crate::failure::Outcome;
-use crate::format::{bytes, counted, thousands, upper_bound};
-use crate::progress::Progress;
+use crate::format::{bytes, counted, number, thousands, upper_bound};
+use crate::progress::{Phases, Progress};
 use crate::report::refinement::exact_stop_name;
 use crate::report::{
-    CameraReport, ErrorReport, ExactParametersReport, MethodReport, ParametersReport, RoundEntry,
+    CameraReport, ErrorReport, ExactParametersReport, InputDistanceReport, MethodReport, ParametersReport,
+    RoundEntry,
 };
 
 /// The tolerance where no goal is given: facets can hardly be seen then in a picture a thousand pixels wide.
@@ -28,6 +31,9 @@ const USUAL_PIXELS: f64 = 1.0;
 
 /// The goals, with those that hold where none is given.
 pub(super) struct Goals {
+    /// In the mesh's unit.
+    length: Option<f64>,
+    /// The same as a person gave it.
     tolerance: Option<Extent>,
     /// Of the input's bounding box.
     diagonal: f64,
@@ -53,7 +59,10 @@ impl Goals {
             && arguments.angle.is_none()
             && cameras.is_empty();
         let tolerance = exact.tolerance.or(none.then_some(USUAL_TOLERANCE));
+        let diagonal = control.diagonal();
+        let length = tolerance.map(|tolerance| tolerance.length(diagonal, arguments.build.unit));
         Ok(Self {
+            length: length.transpose()?,
             tolerance,
             diagonal,
             rounding: most_rounding(arguments, control),
@@ -62,11 +71,6 @@ impl Goals {
             pixels: (!cameras.is_empty()).then(|| exact.pixels.unwrap_or(USUAL_PIXELS)),
             cameras,
         })
-    }
-
-    /// The tolerance in the mesh's unit.
-    fn length(&self) -> Option<f64> {
-        self.tolerance.map(|tolerance| tolerance.length(self.diagonal))
     }
 
     pub(super) fn options(&self, arguments: &RefineArguments) -> ExactOptions {
@@ -83,7 +87,7 @@ impl Goals {
         if let Some(view) = view(arguments) {
             options = options.view(view);
         }
-        if let Some(length) = self.length() {
+        if let Some(length) = self.length {
             // What rounding takes afterwards, unless that is most of it.
             let room = length - self.rounding;
             options = options.tolerance(if room > 0.5 * length { room } else { length });
@@ -103,7 +107,9 @@ impl Goals {
     /// The goals on quality, as a list in words.
     fn in_words(&self) -> String {
         let tolerance = self.tolerance.map(|tolerance| match tolerance {
-            Extent::Length(length) => format!("the tolerance of {}", as_typed(length)),
+            Extent::Length(Length { value, unit }) => {
+                format!("the tolerance of {}{}", as_typed(value), unit_in_words(unit))
+            }
             Extent::Percent(percent) => format!("the tolerance of {} %", as_typed(percent)),
         });
         let angle = self.angle_degrees.map(|degrees| format!("the angle of {}°", as_typed(degrees)));
@@ -113,20 +119,28 @@ impl Goals {
     }
 }
 
+/// ` mm`, or nothing where no unit is known.
+fn unit_in_words(unit: Option<Unit>) -> String {
+    unit.map_or_else(String::new, |unit| format!(" {}", unit.name()))
+}
+
 /// The fewest digits that say exactly this number, as a person would write it.
 fn as_typed(x: f64) -> String {
     if (1e-6..1e9).contains(&x) { format!("{x}") } else { format!("{x:e}") }
 }
 
 /// Refines until the goals are met or a cap is reached.
+///
+/// `inputs` is the input's face of each control face.
 pub(super) fn run(
-    control: &Mesh,
+    (control, inputs): (&Mesh, &[u32]),
     goals: &Goals,
     arguments: &RefineArguments,
     progress: &Progress,
 ) -> anyhow::Result<Refined> {
     let mut rounds: Vec<RoundEntry> = Vec::new();
-    let (mut last, mut show) = (0, progress.observer());
+    let phases = arguments.exact.optimize.then(Phases::default);
+    let (mut last, mut show) = (0, progress.observer_in_phases(phases));
     let mut observer = |at: &limitmesh::progress::Progress| {
         // Where refinement tries two ways, the second starts again; the report counts on.
         if at.stage == Stage::Refining && at.done > 0 && at.done != last {
@@ -138,19 +152,29 @@ pub(super) fn run(
     progress.stage(format!("refining {}", counted(control.face_count(), "triangle", "triangles")));
     let options = goals.options(arguments);
     let mut found = exact_observed(control, arguments.scheme.scheme(), &options, &mut observer)?;
-    if let Some(note) = round(&mut found, goals, arguments) {
+    let moved = moved(control, &found, goals, arguments, progress)?;
+    let rounding = written(arguments)
+        .map_or(0.0, |(format, options)| limitmesh_io::rounding(format, &options, found.mesh.positions()));
+    if let Some(note) = round(&mut found, rounding, goals) {
         progress.note(note);
     }
+    let moved = moved.map(|moved| {
+        let InputDistance { lower, upper } = moved.rounded(rounding);
+        InputDistanceReport::new(lower, upper, goals.diagonal)
+    });
     let error = ErrorReport::new(&found.error, goals.diagonal);
-    let outcome = outcome(&found, goals, &error, arguments);
-    let achieved = achieved(&found, &error);
-    let Exact { mesh, normals, origins, parents, pixels, open_cones, stop, levels, refused, .. } = found;
+    let mut achieved = achieved(&found, &error, goals, arguments);
+    if let Some(moved) = &moved {
+        achieved.extend(moved_in_words(moved, &error, control, goals, arguments));
+    }
+    let outcome = outcome(&found, control, goals, &achieved, arguments);
+    let Exact { mesh, normals, origins, parents, pixels, open_cones, stop, levels, .. } = found;
     Ok(Refined {
         mesh,
         normals: Some(normals),
-        provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents)),
-        achieved: Some(achieved),
-        how: how(levels, refused),
+        provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents, inputs)),
+        achieved,
+        how: counted(levels, "level", "levels"),
         report: MethodReport {
             steps: Vec::new(),
             rounds,
@@ -158,6 +182,7 @@ pub(super) fn run(
             stop: exact_stop_name(stop),
             needed_triangles: None,
             error: Some(error),
+            input_distance: moved,
             pixels: pixels.filter(|pixels| pixels.is_finite()),
             open_cones: goals.angle_degrees.map(|_| open_cones),
         },
@@ -165,9 +190,9 @@ pub(super) fn run(
     })
 }
 
-/// The format and options of the output, if it has a name.
+/// The format and options of the output, if there is one.
 fn written(arguments: &RefineArguments) -> Option<(Format, WriteOptions)> {
-    let format = Format::from_path(arguments.output.as_deref()?).ok()?;
+    let format = arguments.format().ok().flatten()?;
     Some((format, WriteOptions::default().ascii(arguments.ascii)))
 }
 
@@ -182,13 +207,11 @@ fn most_rounding(arguments: &RefineArguments, control: &Mesh) -> f64 {
 }
 
 /// Counts what writing rounds among the distance; a note where that is much of it.
-fn round(found: &mut Exact, goals: &Goals, arguments: &RefineArguments) -> Option<String> {
-    let (format, options) = written(arguments)?;
-    let rounding = limitmesh_io::rounding(format, &options, found.mesh.positions());
+fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
     let proven = found.error.upper;
     found.error.upper += rounding;
     found.error.lower = (found.error.lower - rounding).max(0.0);
-    let is_beyond = goals.length().is_some_and(|length| proven <= length && found.error.upper > length);
+    let is_beyond = goals.length.is_some_and(|length| proven <= length && found.error.upper > length);
     if is_beyond && found.stop == ExactStop::Met {
         found.stop = ExactStop::Rounding;
     }
@@ -200,26 +223,89 @@ fn round(found: &mut Exact, goals: &Goals, arguments: &RefineArguments) -> Optio
     })
 }
 
-/// What was reached, in words.
-fn achieved(found: &Exact, error: &ErrorReport) -> String {
-    let pixels = found.pixels.map(|pixels| match pixels.is_finite() {
-        true => format!("; at most {} pixels as the cameras see it", upper_bound(pixels)),
-        false => "; not bounded as the cameras see it".to_owned(),
-    });
-    let cones = (found.stop == ExactStop::Cones).then(|| {
-        let triangles = counted(found.open_cones, "triangle stays", "triangles stay");
-        format!("; {triangles} outside the angle, where the surface has no tangent plane or as good as none")
-    });
-    [Some(error.in_words()), pixels, cones].into_iter().flatten().collect()
+/// Share of the diagonal that a mesh may be off by that stands for the limit surface, where triangles reach over several control
+/// faces.
+const STAND_IN: f64 = 5e-4;
+
+/// How far the result is from the mesh that was read.
+fn moved(
+    control: &Mesh,
+    found: &Exact,
+    goals: &Goals,
+    arguments: &RefineArguments,
+    progress: &Progress,
+) -> anyhow::Result<Option<InputDistance>> {
+    if let Some(moved) = InputDistance::new(control, found)? {
+        return Ok(Some(moved));
+    }
+    if !found.error.certified {
+        return Ok(None);
+    }
+    // Triangles that reach over several control faces: the limit surface lies between, with another mesh near it.
+    let options =
+        ExactOptions::default().tolerance(STAND_IN * goals.diagonal).max_triangles(Some(MOST_EXACT));
+    let between = exact_observed(control, arguments.scheme.scheme(), &options, &mut progress.observer())?;
+    let apart = between.error.upper + found.error.upper;
+    let moved = InputDistance::new(control, &between)?;
+    Ok(moved.map(|moved| moved.of_other(control, found, apart)).transpose()?)
 }
 
-/// How the mesh came about, in words.
-fn how(levels: usize, refused: usize) -> String {
-    let levels = counted(levels, "level", "levels");
-    if refused == 0 {
-        return levels;
+/// How far the result is from the mesh that was read, if that is farther than it is from the limit surface, and what would
+/// keep it nearer.
+fn moved_in_words(
+    moved: &InputDistanceReport,
+    error: &ErrorReport,
+    control: &Mesh,
+    goals: &Goals,
+    arguments: &RefineArguments,
+) -> Vec<String> {
+    let expected = goals.length.into_iter().chain(error.upper).fold(0.0, f64::max);
+    if moved.upper <= expected {
+        return Vec::new();
     }
-    format!("{levels}; {} kept where a collapse was not proven", counted(refused, "vertex", "vertices"))
+    let mut lines = vec![moved.in_words(&unit_in_words(arguments.build.unit))];
+    let is_tagged = arguments.features.crease_angle.is_some() || !control.tags().creases.is_empty();
+    let dihedrals = (!is_tagged).then(|| Dihedrals::of(control));
+    if let Some(Dihedrals { suggested_crease_angle_degrees: Some(angle), sharp_edges, .. }) = dihedrals {
+        let edges = counted(sharp_edges, "edge that looks", "edges that look");
+        lines.push(format!("(--crease-angle {} would keep {edges} sharp)", number(angle)));
+    }
+    lines
+}
+
+/// What was reached, in sentences of a line each.
+fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, arguments: &RefineArguments) -> Vec<String> {
+    let mut lines = error.in_words(&unit_in_words(arguments.build.unit));
+    if error.upper.is_none() {
+        lines.push(unproven(goals).to_owned());
+    } else if !error.certified {
+        let scheme = arguments.scheme.scheme().name();
+        lines.push(format!("(nothing is proven for the scheme {scheme}, only for Loop's and Warren's)"));
+    }
+    lines.extend(found.pixels.map(|pixels| match pixels.is_finite() {
+        true => format!("at most {} pixels as the cameras see it", upper_bound(pixels)),
+        false => "not bounded as the cameras see it".to_owned(),
+    }));
+    if found.refused > 0 {
+        let vertices = counted(found.refused, "vertex", "vertices");
+        lines.push(format!("{vertices} kept where a collapse was not proven"));
+    }
+    if found.stop == ExactStop::Cones {
+        let triangles = counted(found.open_cones, "triangle stays", "triangles stay");
+        lines.push(format!(
+            "{triangles} outside the angle, where the surface has no tangent plane or as good as none"
+        ));
+    }
+    lines
+}
+
+/// Why no distance is certified.
+fn unproven(goals: &Goals) -> &'static str {
+    if goals.length.is_none() && goals.triangles.is_none() {
+        "(no distance was asked for, and what is proven is far more than was found: --tolerance proves one)"
+    } else {
+        "(no bound was found)"
+    }
 }
 
 /// What was asked for, defaults filled in.
@@ -229,8 +315,8 @@ pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> Paramete
         angle_degrees: goals.angle_degrees,
         view: view_report(arguments),
         exact: Some(ExactParametersReport {
-            tolerance: goals.length(),
-            tolerance_percent: goals.length().map(|length| 100.0 * length / goals.diagonal),
+            tolerance: goals.length,
+            tolerance_percent: goals.length.map(|length| 100.0 * length / goals.diagonal),
             triangles: goals.triangles,
             pixels: goals.pixels,
             cameras: goals.cameras.iter().map(CameraReport::from).collect(),
@@ -246,38 +332,52 @@ pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> Paramete
 }
 
 /// Whether a cap ended the refinement before the goals were met, and what was reached.
-fn outcome(found: &Exact, goals: &Goals, error: &ErrorReport, arguments: &RefineArguments) -> Outcome {
+fn outcome(
+    found: &Exact,
+    control: &Mesh,
+    goals: &Goals,
+    achieved: &[String],
+    arguments: &RefineArguments,
+) -> Outcome {
     let triangles = found.mesh.face_count();
-    let written = format!(
-        "{} was written with {}, {}",
-        arguments.output_name(),
-        counted(triangles, "triangle", "triangles"),
-        achieved(found, error)
-    );
     let cap = match found.stop {
         ExactStop::TriangleCap => format!("--max-triangles {}", thousands(arguments.max_triangles())),
         ExactStop::MemoryCap => {
             format!("--max-memory {}", bytes(arguments.exact.max_memory.unwrap_or_default()))
         }
-        ExactStop::LevelCap => {
-            format!("--max-levels {}", goals.options(arguments).max_levels)
+        ExactStop::LevelCap => format!("--max-levels {}", goals.options(arguments).max_levels),
+        _ => String::new(),
+    };
+    let why = match found.stop {
+        ExactStop::TriangleCap | ExactStop::MemoryCap if triangles > arguments.max_triangles() => {
+            format!("the control mesh has more than {cap} already")
+        }
+        ExactStop::TriangleCap | ExactStop::MemoryCap if triangles == control.face_count() => {
+            format!("{} would take more than {cap}, and nothing was divided", goals.in_words())
+        }
+        ExactStop::TriangleCap | ExactStop::MemoryCap | ExactStop::LevelCap => {
+            format!("{cap} was reached before {}", goals.in_words())
         }
         ExactStop::Triangles if goals.triangles.is_some_and(|wanted| triangles > wanted) => {
-            let wanted = goals.triangles.unwrap_or_default();
-            let wanted = thousands(wanted);
-            return Outcome::StoppedShort(if arguments.exact.optimize {
-                format!("no more edges could be collapsed before --triangles {wanted}; {written}")
+            let wanted = thousands(goals.triangles.unwrap_or_default());
+            if arguments.exact.optimize {
+                format!("no more edges could be collapsed before --triangles {wanted}")
             } else {
-                format!("the control mesh has more than --triangles {wanted} already; {written}")
-            });
+                format!(
+                    "the control mesh has {} already, more than --triangles {wanted}; --optimize goes below",
+                    thousands(control.face_count())
+                )
+            }
         }
-        ExactStop::Rounding => {
-            return Outcome::StoppedShort(format!(
-                "{} is finer than rounding leaves certain; {written}",
-                goals.in_words()
-            ));
-        }
+        ExactStop::Rounding => format!("{} is finer than rounding leaves certain", goals.in_words()),
         _ => return Outcome::Done,
     };
-    Outcome::StoppedShort(format!("{cap} was reached before {}; {written}", goals.in_words()))
+    let written = format!(
+        "{} was written with {}",
+        arguments.output_name(),
+        counted(triangles, "triangle", "triangles")
+    );
+    // The first sentence is the distance; the others have been told with the result.
+    let lines: Vec<String> = [why, written].into_iter().chain(achieved.first().cloned()).collect();
+    Outcome::StoppedShort(lines.join("\n  "))
 }

@@ -4,6 +4,8 @@ mod cameras;
 mod check;
 mod estimate;
 mod exact;
+mod input_distance;
+mod jobs;
 mod provenance;
 mod stepwise;
 
@@ -17,15 +19,15 @@ use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
 
 use super::{interpolation, picture};
-use crate::arguments::{Method, RefineArguments};
+use crate::arguments::{Method, RefineArguments, Unit};
+use crate::bulk::Bulk;
 use crate::failure::Outcome;
-use crate::format::{counted, seconds};
+use crate::format::{counted, number, seconds};
 use crate::input::{self, Input};
-use crate::interrupt;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::{
-    InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport, VERSION,
+    InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport, SizeReport, VERSION,
     ViewReport,
 };
 use exact::Goals;
@@ -39,18 +41,37 @@ struct Refined {
     mesh: Mesh,
     normals: Option<Vec<[f64; 3]>>,
     provenance: Option<Provenance>,
-    /// How near the mesh is to the limit surface, in words.
-    achieved: Option<String>,
+    /// How near the mesh is to the limit surface: sentences of a line each.
+    achieved: Vec<String>,
     /// How it came about, in words.
     how: String,
     report: MethodReport,
     outcome: Outcome,
 }
 
-/// Refines a mesh.
+/// Refines a mesh, or each of several.
 pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    let format = check::check(arguments)?;
-    let input = input::load(&arguments.input, &arguments.build.options(), progress)?;
+    let jobs = jobs::jobs(arguments)?;
+    check::together(&jobs)?;
+    let formats = jobs.iter().map(check::options).collect::<anyhow::Result<Vec<_>>>()?;
+    jobs::make_folders(arguments)?;
+    jobs.iter().try_for_each(check::files)?;
+    match (jobs.as_slice(), formats.as_slice()) {
+        ([job], [format]) => refine(job, *format, progress),
+        _ => {
+            let jobs = jobs.into_iter().zip(formats).collect();
+            jobs::each(jobs, |job, format| refine(job, format, progress))
+        }
+    }
+}
+
+fn refine(
+    arguments: &RefineArguments,
+    format: Option<Format>,
+    progress: &Progress,
+) -> anyhow::Result<Outcome> {
+    let kept: &[&str] = if format.is_some_and(holds_normals) { &["normals"] } else { &[] };
+    let input = input::load_keeping(arguments.input(), &arguments.build, kept, progress)?;
     let input_report = InputReport {
         path: input.name,
         format: input.format,
@@ -58,7 +79,7 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         faces: input.diagnosis.input_faces,
         left_out: input.left_out,
     };
-    let Input { mesh: control, diagnosis, reading, building, .. } = input;
+    let Input { mesh: control, diagnosis, face_inputs: input_faces, reading, building, .. } = input;
     if let Some(note) = format.and_then(|format| lost_tags(control.tags(), format)) {
         progress.note(note);
     }
@@ -79,22 +100,26 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         }
     };
     // Without a name to write to, this is a dry run: the arguments see to that.
-    let (Some(path), false) = (&arguments.output, arguments.exact.dry_run) else {
+    let (Some(path), Some(format), false) = (&arguments.output, format, arguments.exact.dry_run) else {
         let goals = goals.map_or_else(|| Goals::new(arguments, &control, diagonal), Ok)?;
         let told = (input_report, (&diagnosis).into(), parameters);
         estimate::run(&control, &goals, arguments, told, progress)?;
         return Ok(Outcome::Done);
     };
+    let before = Bulk::of(&control);
     let start = Instant::now();
-    let refined = match &goals {
-        Some(goals) => exact::run(&control, goals, arguments, progress)?,
-        None => stepwise::run(control, arguments, format, progress)?,
+    let mut refined = match &goals {
+        Some(goals) => exact::run((&control, &input_faces), goals, arguments, progress)?,
+        None => stepwise::run(control, arguments, Some(format), progress)?,
     };
     let refining = start.elapsed();
 
-    progress.stage(format!("writing {}", path.display()));
+    let after = Bulk::of(&refined.mesh);
+    refined.achieved.push(change_in_words(before, after, arguments.build.unit));
+
+    progress.stage(format!("writing {}", arguments.output_name()));
     let start = Instant::now();
-    write(path, arguments.ascii, &refined)?;
+    write(path, format, arguments.ascii, &refined)?;
     let writing = start.elapsed();
     progress.note(summary(arguments, &refined, refining));
 
@@ -108,6 +133,7 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
             parameters,
             interpolation,
             method: report,
+            size: SizeReport { before, after },
             output: OutputReport::of(arguments.output_name(), &mesh),
             seconds: phases(reading, building, refining, writing),
         };
@@ -140,10 +166,15 @@ fn lost_tags(tags: &Tags, format: Format) -> Option<String> {
     Some(format!("{}: followed, but left out of the output, whose format has none", found.join(" and ")))
 }
 
-fn write(path: &Path, ascii: bool, refined: &Refined) -> anyhow::Result<()> {
+/// Whether limit normals are written to files of a format.
+fn holds_normals(format: Format) -> bool {
+    format == Format::Ply
+}
+
+fn write(path: &Path, format: Format, ascii: bool, refined: &Refined) -> anyhow::Result<()> {
     let Refined { mesh, normals, provenance, .. } = refined;
     let mut output = Output::new(mesh.as_triangles());
-    if let (Some(normals), Ok(Format::Ply)) = (normals, Format::from_path(path)) {
+    if let Some(normals) = normals.as_deref().filter(|_| holds_normals(format)) {
         output = output.normals(normals);
     }
     let of_vertices = provenance.as_ref().map(Provenance::of_vertices);
@@ -152,9 +183,7 @@ fn write(path: &Path, ascii: bool, refined: &Refined) -> anyhow::Result<()> {
         output = output.vertex_properties(vertices).face_properties(faces);
     }
     let output = output.creases(&mesh.tags().creases).corners(&mesh.tags().corners);
-    let options = WriteOptions::default().ascii(ascii);
-    interrupt::uninterrupted(|| limitmesh_io::write(path, &output, &options))?;
-    Ok(())
+    output::write_mesh(path, format, &output, &WriteOptions::default().ascii(ascii))
 }
 
 /// The view that makes the angle depend on the viewer.
@@ -178,18 +207,35 @@ fn phases(read: Duration, repair: Duration, refine: Duration, write: Duration) -
     }
 }
 
+/// What became of area and volume.
+fn change_in_words(before: Bulk, after: Bulk, unit: Option<Unit>) -> String {
+    let unit = unit.map_or("", Unit::name);
+    let change = |what: &str, power: &str, before: f64, after: f64| {
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}{power}") };
+        let percent = 100.0 * (after / before - 1.0);
+        let percent = if percent.is_finite() { format!(" ({percent:+.2} %)") } else { String::new() };
+        format!("{what} {} to {}{unit}{percent}", number(before), number(after))
+    };
+    let area = change("area", "²", before.area, after.area);
+    match (before.volume, after.volume) {
+        (Some(before), Some(after)) => format!("{area}, {}", change("volume", "³", before, after)),
+        _ => area,
+    }
+}
+
+/// The result in lines of at most 100 columns, names of files aside.
 fn summary(arguments: &RefineArguments, refined: &Refined, refining: Duration) -> String {
     let Refined { mesh, achieved, how, .. } = refined;
     let edges = match mesh.topology().boundary_edge_count() {
         0 => "closed".to_owned(),
         open => counted(open, "open edge", "open edges"),
     };
-    format!(
-        "{}: {}, {}, {edges}{} ({how}; refined in {})",
+    let first = format!(
+        "{}: {}, {}, {edges} ({how}; {})",
         arguments.output_name(),
         counted(mesh.face_count(), "triangle", "triangles"),
         counted(mesh.vertex_count(), "vertex", "vertices"),
-        achieved.as_ref().map_or(String::new(), |achieved| format!(", {achieved}")),
         seconds(refining.as_secs_f64())
-    )
+    );
+    std::iter::once(first).chain(achieved.iter().cloned()).collect::<Vec<_>>().join("\n  ")
 }

@@ -10,33 +10,44 @@ pub(super) struct Provenance {
     barycentric: [Vec<f64>; 3],
     /// Of each triangle; none where triangles reach over several control faces.
     parents: Vec<u32>,
+    /// The input's faces, as they were counted before any was cut or left out: of each vertex, and of each triangle.
+    inputs: [Vec<u32>; 2],
 }
 
 impl Provenance {
-    /// Takes the origins of the vertices and the parents of the triangles apart.
-    pub(super) fn new(origins: &[Origin], parents: Vec<u32>) -> Self {
+    /// Takes the origins of the vertices and the parents of the triangles apart; `inputs` is the input's face of each control
+    /// face.
+    pub(super) fn new(origins: &[Origin], parents: Vec<u32>, inputs: &[u32]) -> Self {
+        let input = |face: &u32| inputs[*face as usize];
+        let of_vertices = origins.iter().map(|origin| input(&origin.face)).collect();
+        let of_triangles = parents.iter().map(input).collect();
         let column = |corner: usize| origins.iter().map(|origin| origin.barycentric[corner]).collect();
         Self {
             faces: origins.iter().map(|origin| origin.face).collect(),
             barycentric: [0, 1, 2].map(column),
             parents,
+            inputs: [of_vertices, of_triangles],
         }
     }
 
     /// Properties of the vertices.
-    pub(super) fn of_vertices(&self) -> [Property<'_>; 4] {
+    pub(super) fn of_vertices(&self) -> [Property<'_>; 5] {
         let [a, b, c] = &self.barycentric;
         [
             Property::integers("parent_face", &self.faces),
             Property::numbers("parent_a", a),
             Property::numbers("parent_b", b),
             Property::numbers("parent_c", c),
+            Property::integers("input_face", &self.inputs[0]),
         ]
     }
 
     /// Properties of the triangles.
     pub(super) fn of_faces(&self) -> Vec<Property<'_>> {
-        let parents = Property::integers("parent_face", &self.parents);
-        if self.parents.is_empty() { Vec::new() } else { vec![parents] }
+        if self.parents.is_empty() {
+            return Vec::new();
+        }
+        let inputs = Property::integers("input_face", &self.inputs[1]);
+        vec![Property::integers("parent_face", &self.parents), inputs]
     }
 }

@@ -43,7 +43,7 @@ pub(super) fn run(
     Ok(Refined {
         normals,
         provenance: None,
-        achieved: None,
+        achieved: Vec::new(),
         how: counted(steps.len(), "step", "steps") + early,
         outcome: outcome(arguments, &mesh, &steps, stop),
         mesh,
@@ -57,6 +57,7 @@ pub(super) fn run(
                 _ => None,
             },
             error: None,
+            input_distance: None,
             pixels: None,
             open_cones: None,
         },

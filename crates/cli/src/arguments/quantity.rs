@@ -1,0 +1,219 @@
+//! Quantities as people write them: `20k` and `20,000` triangles, `500MB` of memory, `0.05mm` of length.
+
+use std::str::FromStr;
+
+use clap::ValueEnum;
+
+use super::values::finite;
+use crate::failure::usage;
+
+/// What the numbers of a mesh are measured in; files do not say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Unit {
+    /// Micrometres
+    Um,
+    /// Millimetres
+    Mm,
+    /// Centimetres
+    Cm,
+    /// Metres
+    M,
+    /// Inches
+    In,
+    /// Feet
+    Ft,
+}
+
+/// The units with how they are written and their length in micrometres.
+const UNITS: [(Unit, &str, f64); 7] = [
+    (Unit::Um, "um", 1.0),
+    (Unit::Um, "µm", 1.0),
+    (Unit::Mm, "mm", 1e3),
+    (Unit::Cm, "cm", 1e4),
+    (Unit::M, "m", 1e6),
+    (Unit::In, "in", 25_400.0),
+    (Unit::Ft, "ft", 304_800.0),
+];
+
+impl Unit {
+    /// How it is written after a number.
+    pub(crate) fn name(self) -> &'static str {
+        UNITS.iter().find(|unit| unit.0 == self).map_or("", |unit| unit.1)
+    }
+
+    fn micrometres(self) -> f64 {
+        UNITS.iter().find(|unit| unit.0 == self).map_or(1.0, |unit| unit.2)
+    }
+}
+
+/// A length in the mesh's unit, or in one of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Length {
+    pub(crate) value: f64,
+    pub(crate) unit: Option<Unit>,
+}
+
+impl Length {
+    /// In the unit of a mesh.
+    ///
+    /// # Errors
+    /// This has a unit, and the mesh's is not known.
+    pub(crate) fn in_unit_of(self, mesh: Option<Unit>) -> anyhow::Result<f64> {
+        match (self.unit, mesh) {
+            (None, _) => Ok(self.value),
+            (Some(own), Some(mesh)) if own == mesh => Ok(self.value),
+            (Some(own), Some(mesh)) => Ok(self.value * own.micrometres() / mesh.micrometres()),
+            (Some(own), None) => usage(format!(
+                "{}{name}: mesh files do not say what their numbers are measured in; with --unit {name} they are {name}",
+                self.value,
+                name = own.name()
+            )),
+        }
+    }
+}
+
+/// A number, perhaps with a unit of length after it.
+pub(super) fn length(text: &str) -> Result<Length, String> {
+    let text = text.trim();
+    // The longest first: `mm` ends with `m`.
+    let mut units = UNITS;
+    units.sort_by_key(|unit| std::cmp::Reverse(unit.1.len()));
+    let found = units.iter().find_map(|&(unit, name, _)| Some((text.strip_suffix(name)?, unit)));
+    match found {
+        Some((number, unit)) => Ok(Length { value: finite(number)?, unit: Some(unit) }),
+        None => Ok(Length { value: finite(text)?, unit: None }),
+    }
+}
+
+/// A whole number, perhaps with k, M or G for thousands, millions and thousands of millions, with commas or underscores
+/// between thousands, or with an exponent.
+pub(super) fn count(text: &str) -> Result<u64, String> {
+    let wrong = || format!("'{text}' is not a whole number, such as 20000, 20,000, 20k or 2e4");
+    let text = text.trim();
+    let (digits, factor) = match text.char_indices().next_back() {
+        Some((i, 'k' | 'K')) => (&text[..i], 1e3),
+        Some((i, 'm' | 'M')) => (&text[..i], 1e6),
+        Some((i, 'g' | 'G')) => (&text[..i], 1e9),
+        _ => (text, 1.0),
+    };
+    let digits = without_separators(digits.trim_end()).ok_or_else(wrong)?;
+    if factor == 1.0
+        && let Ok(value) = u64::from_str(&digits)
+    {
+        return Ok(value);
+    }
+    let value = finite(&digits).map_err(|_| wrong())? * factor;
+    let whole = value.round();
+    // 1.1 M is a whole number but for what rounding makes of it.
+    if (value - whole).abs() > 1e-9 * whole.abs() || whole < 0.0 {
+        return Err(wrong());
+    }
+    // 2⁶⁴: the next lower number is one that fits.
+    if whole >= 18_446_744_073_709_551_616.0 {
+        return Err(format!("{text} is too many for this machine"));
+    }
+    Ok(whole as u64)
+}
+
+/// Digits without the commas or underscores between groups of three; `None` where these stand elsewhere.
+fn without_separators(text: &str) -> Option<String> {
+    let Some(separator) = [',', '_'].into_iter().find(|&c| text.contains(c)) else {
+        return Some(text.to_owned());
+    };
+    let groups: Vec<&str> = text.split(separator).collect();
+    let is_digits = |group: &&str| !group.is_empty() && group.bytes().all(|b| b.is_ascii_digit());
+    let fits =
+        groups.iter().all(is_digits) && groups[0].len() <= 3 && groups[1..].iter().all(|g| g.len() == 3);
+    fits.then(|| groups.concat())
+}
+
+/// A number of bytes; K, M, G and T after it stand for powers of 1024, as do KiB to TiB, and KB to TB for powers of 1000.
+pub(super) fn bytes(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let upper = text.to_ascii_uppercase();
+    let (rest, base) = match (upper.strip_suffix("IB"), upper.strip_suffix('B')) {
+        (Some(rest), _) => (rest, Some(1024f64)),
+        (None, Some(rest)) => (rest, Some(1000.0)),
+        (None, None) => (upper.as_str(), None),
+    };
+    let power =
+        rest.char_indices().next_back().and_then(|(i, unit)| Some((i, "KMGT".find(unit)? as i32 + 1)));
+    let wrong =
+        || format!("'{text}': expected bytes, or a number with K, M, G or T, such as 500M, 500MB or 500MiB");
+    match power {
+        Some((i, power)) => Ok(finite(&rest[..i]).map_err(|_| wrong())? * base.unwrap_or(1024.0).powi(power)),
+        // `500B` are bytes, `500iB` is nothing.
+        None if base != Some(1024.0) => finite(rest).map_err(|_| wrong()),
+        None => Err(wrong()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_read_as_people_write_them() {
+        let pairs = [
+            ("20000", 20_000),
+            ("20k", 20_000),
+            ("20 K", 20_000),
+            ("1.5M", 1_500_000),
+            ("1.1M", 1_100_000),
+            ("2G", 2_000_000_000),
+            ("1e5", 100_000),
+            ("20,000", 20_000),
+            ("1_000_000", 1_000_000),
+            ("18446744073709551615", u64::MAX),
+            ("0", 0),
+        ];
+        for (text, expected) in pairs {
+            assert_eq!(count(text), Ok(expected), "{text}");
+        }
+        let wrong = [
+            "", "k", "1.5", "-1", "1,5", "20,00", ",000", "1e-3", "NaN", "inf", "1e30", "20kk", "0x10",
+            "many",
+        ];
+        for bad in wrong {
+            assert!(count(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn bytes_are_read_with_their_unit() {
+        let pairs = [
+            ("1", 1.0),
+            ("2000", 2000.0),
+            ("7B", 7.0),
+            ("1K", 1024.0),
+            ("1.5m", 1_572_864.0),
+            ("2G", 2_147_483_648.0),
+            ("1 T", 1_099_511_627_776.0),
+            ("500MB", 5e8),
+            ("500 mb", 5e8),
+            ("1GiB", 1_073_741_824.0),
+            ("1kib", 1024.0),
+        ];
+        for (text, expected) in pairs {
+            assert_eq!(bytes(text), Ok(expected), "{text}");
+        }
+        for bad in ["G", "GB", "B", "2X", "2iB", "NaN", "", "ten MB"] {
+            assert!(bytes(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn lengths_are_brought_to_the_unit_of_the_mesh() {
+        let of = |text: &str, mesh| length(text).unwrap().in_unit_of(mesh);
+        assert_eq!(of("0.05", None).unwrap(), 0.05);
+        assert_eq!(of("0.05mm", Some(Unit::Mm)).unwrap(), 0.05);
+        assert_eq!(of("0.05 mm", Some(Unit::Cm)).unwrap(), 0.005);
+        assert_eq!(of("1in", Some(Unit::Mm)).unwrap(), 25.4);
+        assert_eq!(of("2m", Some(Unit::Mm)).unwrap(), 2000.0);
+        assert_eq!(of("50µm", Some(Unit::Mm)).unwrap(), 0.05);
+        assert!(of("1mm", None).unwrap_err().to_string().contains("--unit mm"));
+        for bad in ["mm", "1 furlong", "1 mm mm", "inf mm", ""] {
+            assert!(length(bad).is_err(), "{bad}");
+        }
+    }
+}

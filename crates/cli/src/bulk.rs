@@ -1,0 +1,192 @@
+//! Area and volume of a surface, and closed parts of it that are inside out.
+//!
+//! The volume is the sum of those of the tetrahedra over the triangles, V = Σ a·(b × c)/6: above 0 where normals point
+//! outwards. Open surfaces have none.
+
+use limitmesh::{FaceId, HalfEdgeId, Mesh};
+use serde::Serialize;
+
+use crate::vector::{cross, dot, length, minus};
+
+/// Area and volume, in squares and cubes of the mesh's unit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(crate) struct Bulk {
+    pub(crate) area: f64,
+    /// Null where the surface has a boundary.
+    pub(crate) volume: Option<f64>,
+}
+
+impl Bulk {
+    /// Of a mesh.
+    pub(crate) fn of(mesh: &Mesh) -> Self {
+        let surface = mesh.as_triangles();
+        let corner = surface.bounding_box().unwrap_or_default()[0];
+        let faces = || (0..surface.triangles.len()).map(|face| surface.corners(face));
+        let is_closed = mesh.topology().boundary_edge_count() == 0;
+        Self {
+            area: sum(faces().map(area)),
+            volume: is_closed.then(|| sum(faces().map(|corners| volume(corners, corner)))),
+        }
+    }
+}
+
+fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    0.5 * length(cross(minus(b, a), minus(c, a)))
+}
+
+/// Of the tetrahedron over a triangle with its tip at a point.
+fn volume(corners: [[f64; 3]; 3], tip: [f64; 3]) -> f64 {
+    let [a, b, c] = corners.map(|corner| minus(corner, tip));
+    dot(a, cross(b, c)) / 6.0
+}
+
+/// A sum of many numbers, compensated (Neumaier 1974): what a million roundings lose would show in a difference.
+fn sum(numbers: impl Iterator<Item = f64>) -> f64 {
+    let (mut sum, mut lost) = (0.0f64, 0.0);
+    for x in numbers {
+        let next = sum + x;
+        lost += if sum.abs() >= x.abs() { (sum - next) + x } else { (x - next) + sum };
+        sum = next;
+    }
+    sum + lost
+}
+
+/// Number of closed components whose normals point inwards, though no other closed component is around them whose inside
+/// they could bound.
+pub(crate) fn inside_out(mesh: &Mesh) -> usize {
+    let parts = components(mesh);
+    let positions = mesh.positions();
+    let surface = mesh.as_triangles();
+    let volume_of = |faces: &[u32]| {
+        let tip = surface.corners(faces[0] as usize)[0];
+        sum(faces.iter().map(|&face| volume(surface.corners(face as usize), tip)))
+    };
+    let closed: Vec<&Vec<u32>> = parts.iter().filter(|faces| is_closed(mesh, faces)).collect();
+    let turned = closed.iter().enumerate().filter(|(_, faces)| volume_of(faces) < 0.0);
+    let alone = turned.filter(|&(own, faces)| {
+        let point = positions[surface.triangles[faces[0] as usize][0] as usize];
+        let around = closed.iter().enumerate().filter(|&(other, _)| other != own);
+        let times: f64 = around
+            .map(|(_, faces)| {
+                let triangles = faces.iter().map(|&face| surface.triangles[face as usize]);
+                winding(point, positions, triangles)
+            })
+            .sum();
+        times < 0.5
+    });
+    alone.count()
+}
+
+/// The faces of each component, joined through edges.
+fn components(mesh: &Mesh) -> Vec<Vec<u32>> {
+    let topology = mesh.topology();
+    let mut is_met = vec![false; mesh.face_count()];
+    let mut parts = Vec::new();
+    for start in 0..mesh.face_count() {
+        if std::mem::replace(&mut is_met[start], true) {
+            continue;
+        }
+        let mut faces = vec![start as u32];
+        let mut next = 0;
+        while let Some(&face) = faces.get(next) {
+            next += 1;
+            for side in 0..3 {
+                let Some(twin) = topology.twin(HalfEdgeId::of(FaceId(face), side)) else { continue };
+                if !std::mem::replace(&mut is_met[twin.face().index()], true) {
+                    faces.push(twin.face().0);
+                }
+            }
+        }
+        parts.push(faces);
+    }
+    parts
+}
+
+fn is_closed(mesh: &Mesh, faces: &[u32]) -> bool {
+    let has_twin = |face: u32, side| mesh.topology().twin(HalfEdgeId::of(FaceId(face), side)).is_some();
+    faces.iter().all(|&face| (0..3).all(|side| has_twin(face, side)))
+}
+
+/// How often a closed surface runs around a point: the solid angles of its triangles (Van Oosterom and Strackee 1983)
+/// by that of a sphere.
+pub(crate) fn winding(
+    point: [f64; 3],
+    positions: &[[f64; 3]],
+    triangles: impl Iterator<Item = [u32; 3]>,
+) -> f64 {
+    let angles = triangles.map(|triangle| {
+        let [a, b, c] = triangle.map(|v| minus(positions[v as usize], point));
+        let [la, lb, lc] = [a, b, c].map(length);
+        let below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+        2.0 * dot(a, cross(b, c)).atan2(below)
+    });
+    angles.sum::<f64>() / (4.0 * std::f64::consts::PI)
+}
+
+#[cfg(test)]
+mod tests {
+    use limitmesh::PolygonSoup;
+    use limitmesh::limit::LimitTable;
+
+    use super::*;
+
+    #[test]
+    fn a_closed_surface_runs_once_around_what_is_inside() {
+        let soup = limitmesh_models::find("torus").expect("a model").soup();
+        let (mesh, _) = Mesh::from_soup(&soup, &Default::default()).expect("a mesh");
+        let around = |point| winding(point, mesh.positions(), mesh.triangles().iter().copied());
+        // A vertex pushed inwards along the normal is inside; the middle of the hole is not.
+        let normals = LimitTable::new(&limitmesh::scheme::Loop).normals(&mesh).expect("normals");
+        let (p, n) = (mesh.positions()[5], normals[5]);
+        let inside = [0, 1, 2].map(|axis| p[axis] - 0.1 * n[axis]);
+        let outside = [0, 1, 2].map(|axis| p[axis] + 0.1 * n[axis]);
+        assert!((around(inside) - 1.0).abs() < 1e-9, "{}", around(inside));
+        for point in [outside, [0.0; 3], [9.0, 9.0, 9.0]] {
+            assert!(around(point).abs() < 1e-9, "{point:?}: {}", around(point));
+        }
+    }
+
+    /// A cube from one corner to the opposite one, turned inside out or not.
+    fn cube(soup: &mut PolygonSoup, low: f64, high: f64, is_turned: bool) {
+        let first = soup.positions.len() as u32;
+        let side = |bit: u32| if bit == 0 { low } else { high };
+        soup.positions.extend((0..8u32).map(|c| [side(c & 1), side(c >> 1 & 1), side(c >> 2)]));
+        for mut face in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
+            if is_turned {
+                face.reverse();
+            }
+            soup.faces.push(&face.map(|corner: u32| first + corner));
+        }
+    }
+
+    /// Cubes by their corners and whether they are inside out.
+    fn cubes(cubes: &[(f64, f64, bool)]) -> Mesh {
+        let mut soup = PolygonSoup::default();
+        cubes.iter().for_each(|&(low, high, is_turned)| cube(&mut soup, low, high, is_turned));
+        Mesh::from_soup(&soup, &Default::default()).expect("a mesh").0
+    }
+
+    #[test]
+    fn area_and_volume_are_those_of_cubes() {
+        let whole = Bulk::of(&cubes(&[(1000.0, 1002.0, false)]));
+        assert!((whole.area - 24.0).abs() < 1e-12 && (whole.volume.expect("closed") - 8.0).abs() < 1e-11);
+        let hollow = Bulk::of(&cubes(&[(0.0, 4.0, false), (1.0, 2.0, true)]));
+        assert_eq!(hollow, Bulk { area: 102.0, volume: Some(63.0) });
+        let open = Mesh::from_triangles(vec![[0.0; 3], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0]], vec![[0, 1, 2]]);
+        assert_eq!(Bulk::of(&open.expect("a mesh")), Bulk { area: 3.0, volume: None });
+    }
+
+    #[test]
+    fn what_is_inside_out_is_not_a_cavity() {
+        let cases = [
+            (vec![(0.0, 1.0, false)], 0),
+            (vec![(0.0, 1.0, true)], 1),
+            (vec![(0.0, 4.0, false), (1.0, 2.0, true)], 0),
+            (vec![(0.0, 4.0, true), (1.0, 2.0, false)], 1),
+            (vec![(0.0, 1.0, false), (2.0, 3.0, true), (4.0, 5.0, true)], 2),
+        ];
+        for (parts, expected) in cases {
+            assert_eq!(inside_out(&cubes(&parts)), expected, "{parts:?}");
+        }
+    }
+}

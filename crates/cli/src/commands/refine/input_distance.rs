@@ -1,0 +1,123 @@
+//! How far a refined mesh is from the mesh that was read, proven.
+//!
+//! Exact refinement knows where on the control mesh each vertex comes from, and its triangles come from pieces that
+//! tile the control faces. So each triangle has a piece of the control mesh's surface as its partner, point by point; as both are
+//! flat, no two partners are farther apart than those at the corners. The greatest distance between a vertex and where it came
+//! from bounds the Hausdorff distance, in both directions. Below stand true distances of the points that were moved most along
+//! normals: along the surface, vertices drift where triangles are of different sizes, and the interval is wide there.
+
+use limitmesh::measure::{Bvh, MeasureError};
+use limitmesh::refine::{Exact, Origin};
+use limitmesh::{Mesh, Triangles};
+
+use crate::vector::{distance, dot, minus};
+
+/// Points whose distance is measured.
+const MEASURED: usize = 4;
+
+/// What rounding may do to a computed point or distance, as a share of the greatest coordinate: some hundred units in the last place.
+const ROUNDING: f64 = 2e-14;
+
+/// The distance between the mesh that was read and the refined one lies between these.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct InputDistance {
+    pub(super) lower: f64,
+    pub(super) upper: f64,
+}
+
+impl InputDistance {
+    /// Of a refined mesh whose triangles each come from one control face; `None` where they reach over several.
+    ///
+    /// # Errors
+    /// Coordinates too large to be measured.
+    pub(super) fn new(input: &Mesh, found: &Exact) -> Result<Option<Self>, MeasureError> {
+        if found.parents.len() != found.mesh.face_count() {
+            return Ok(None);
+        }
+        let moved = moves(input, found);
+        let upper = moved.iter().copied().fold(0.0, f64::max);
+        let off = ROUNDING * greatest(input);
+        let lower = lower(input, found, &moved)?;
+        Ok(Some(Self { lower: (lower - off).max(0.0), upper: if upper > 0.0 { upper + off } else { 0.0 } }))
+    }
+
+    /// Of another mesh that stands for the same limit surface, where these are within `apart` of each other.
+    ///
+    /// # Errors
+    /// Coordinates too large to be measured.
+    pub(super) fn of_other(self, input: &Mesh, found: &Exact, apart: f64) -> Result<Self, MeasureError> {
+        let lower = lower(input, found, &moves(input, found))?;
+        Ok(Self {
+            lower: (lower - ROUNDING * greatest(input)).max(0.0),
+            upper: (self.upper + apart).next_up(),
+        })
+    }
+
+    /// The same after vertices were rounded by so much at most.
+    pub(super) fn rounded(self, rounding: f64) -> Self {
+        Self { lower: (self.lower - rounding).max(0.0), upper: self.upper + rounding }
+    }
+}
+
+fn greatest(mesh: &Mesh) -> f64 {
+    mesh.positions().as_flattened().iter().fold(0.0, |greatest, x| greatest.max(x.abs()))
+}
+
+/// Where a vertex came from.
+fn place(input: &Mesh, origin: &Origin) -> [f64; 3] {
+    let corners = input.as_triangles().corners(origin.face as usize);
+    let weights = origin.barycentric;
+    [0, 1, 2].map(|axis| (0..3).map(|corner| weights[corner] * corners[corner][axis]).sum())
+}
+
+/// How far each vertex is from where it came from.
+fn moves(input: &Mesh, found: &Exact) -> Vec<f64> {
+    let pairs = found.mesh.positions().iter().zip(&found.origins);
+    pairs.map(|(&vertex, origin)| distance(vertex, place(input, origin))).collect()
+}
+
+/// The greatest true distance among the vertices that were moved most along normals, to the input, and of where they came from,
+/// to the result.
+fn lower(input: &Mesh, found: &Exact, moved: &[f64]) -> Result<f64, MeasureError> {
+    let places = found.origins.iter().map(|origin| place(input, origin));
+    let along = places.zip(found.mesh.positions()).zip(&found.normals);
+    let along: Vec<f64> =
+        along.map(|((there, &here), &normal)| dot(minus(here, there), normal).abs()).collect();
+    let mut order: Vec<usize> = (0..moved.len()).collect();
+    let count = MEASURED.min(order.len());
+    if count < order.len() {
+        order.select_nth_unstable_by(count, |&a, &b| along[b].total_cmp(&along[a]).then(a.cmp(&b)));
+    }
+    order.truncate(count);
+    order.sort_unstable();
+    let mut lower = 0.0f64;
+    for vertex in order {
+        let (there, here) = (place(input, &found.origins[vertex]), found.mesh.positions()[vertex]);
+        let far = moved[vertex];
+        for (point, surface) in [(here, input.as_triangles()), (there, found.mesh.as_triangles())] {
+            lower = lower.max(closest(point, surface, far)?);
+        }
+    }
+    Ok(lower)
+}
+
+/// The distance of a point from a surface that comes within `reach` of it.
+fn closest(point: [f64; 3], surface: Triangles<'_>, reach: f64) -> Result<f64, MeasureError> {
+    // Only triangles that come so near can be the closest.
+    let reach = reach * (1.0 + ROUNDING) + f64::MIN_POSITIVE;
+    let is_near = |corners: &[[f64; 3]; 3]| {
+        (0..3).all(|axis| {
+            let low = corners.iter().fold(f64::INFINITY, |low, p| low.min(p[axis]));
+            let high = corners.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[axis]));
+            low - reach <= point[axis] && point[axis] <= high + reach
+        })
+    };
+    let faces = 0..surface.triangles.len();
+    let near: Vec<[[f64; 3]; 3]> = faces.map(|face| surface.corners(face)).filter(is_near).collect();
+    if near.is_empty() {
+        return Ok(0.0);
+    }
+    let triangles: Vec<[u32; 3]> = (0..near.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let near = Bvh::new(Triangles { positions: near.as_flattened(), triangles: &triangles })?;
+    Ok(near.closest(point).distance)
+}

@@ -1,0 +1,119 @@
+//! Several inputs of one command: where each is written, and how they end together.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf, is_separator};
+
+use anyhow::Context;
+
+use crate::arguments::{FileFormat, RefineArguments};
+use crate::failure::{self, Outcome, usage};
+use crate::input;
+
+/// The same command for each input by itself, with names of files for what was a folder.
+///
+/// # Errors
+/// Several inputs for one file, or an input without a name for a folder.
+pub(super) fn jobs(arguments: &RefineArguments) -> anyhow::Result<Vec<RefineArguments>> {
+    let named =
+        [("--output", &arguments.output), ("--report", &arguments.report), ("--picture", &arguments.picture)];
+    if arguments.inputs.len() > 1
+        && let Some((option, _)) =
+            named.iter().find(|(_, path)| path.as_deref().is_some_and(|path| !is_folder(path)))
+    {
+        return usage(format!("several inputs need a folder for {option}, such as {option} FOLDER/"));
+    }
+    input::check_once(arguments.inputs.iter())?;
+    arguments.inputs.iter().map(|input| job(arguments, input)).collect()
+}
+
+fn job(arguments: &RefineArguments, input: &Path) -> anyhow::Result<RefineArguments> {
+    let extension = || {
+        Ok(match (arguments.to.map(FileFormat::format), input::builtin_name(input)) {
+            (Some(to), _) => to.extension(),
+            (None, Some(_)) => "ply",
+            (None, None) => input::format_of(input, arguments.build.from)?.extension(),
+        })
+    };
+    let place = |path: &Option<PathBuf>, extension: &dyn Fn() -> anyhow::Result<&'static str>| {
+        path.as_deref()
+            .map(|path| if is_folder(path) { file_in(path, input, extension()?) } else { Ok(path.into()) })
+    };
+    Ok(RefineArguments {
+        inputs: vec![input.to_owned()],
+        output: place(&arguments.output, &extension).transpose()?,
+        report: place(&arguments.report, &|| Ok("json")).transpose()?,
+        picture: place(&arguments.picture, &|| Ok("png")).transpose()?,
+        ..arguments.clone()
+    })
+}
+
+/// Whether a name stands for a folder: it ends with a slash, or there is one.
+fn is_folder(path: &Path) -> bool {
+    ends_with_separator(path) || path.is_dir()
+}
+
+fn ends_with_separator(path: &Path) -> bool {
+    path.as_os_str().as_encoded_bytes().last().is_some_and(|&last| is_separator(char::from(last)))
+}
+
+/// The file in a folder that is called as the input is.
+fn file_in(folder: &Path, input: &Path, extension: &str) -> anyhow::Result<PathBuf> {
+    let stem = match input::builtin_name(input) {
+        Some(model) => Some(OsStr::new(model)),
+        None => input.file_stem().filter(|&stem| stem != "-"),
+    };
+    let Some(stem) = stem else {
+        return usage(format!(
+            "{} has no name for a file in {}; name the file to write",
+            input::display_name(input),
+            folder.display()
+        ));
+    };
+    let mut name = stem.to_owned();
+    name.push(".");
+    name.push(extension);
+    Ok(folder.join(name))
+}
+
+/// Makes the folders that are named with a slash at the end.
+///
+/// # Errors
+/// One cannot be made.
+pub(super) fn make_folders(arguments: &RefineArguments) -> anyhow::Result<()> {
+    let mesh = arguments.output.as_ref().filter(|_| !arguments.exact.dry_run);
+    for folder in [mesh, arguments.report.as_ref(), arguments.picture.as_ref()].into_iter().flatten() {
+        if ends_with_separator(folder) {
+            std::fs::create_dir_all(folder)
+                .with_context(|| format!("the folder {} cannot be made", folder.display()))?;
+        }
+    }
+    Ok(())
+}
+
+/// Does all, goes on after one that fails, and says in the end how many did.
+pub(super) fn each<T>(
+    jobs: Vec<(RefineArguments, T)>,
+    mut run: impl FnMut(&RefineArguments, T) -> anyhow::Result<Outcome>,
+) -> anyhow::Result<Outcome> {
+    let count = jobs.len();
+    let (mut failed, mut short) = (0, 0);
+    for (job, with) in jobs {
+        match run(&job, with) {
+            Ok(Outcome::Done) => {}
+            Ok(Outcome::StoppedShort(why)) => {
+                short += 1;
+                failure::print_stopped_short(&why);
+            }
+            Err(error) if failure::is_broken_pipe(&error) => return Err(error),
+            Err(error) => {
+                failed += 1;
+                failure::print(&error);
+            }
+        }
+    }
+    anyhow::ensure!(failed == 0, "{failed} of {count} inputs failed, as told above");
+    Ok(match short {
+        0 => Outcome::Done,
+        _ => Outcome::StoppedShort(format!("{short} of {count} inputs, as told above")),
+    })
+}
