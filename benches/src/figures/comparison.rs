@@ -36,9 +36,14 @@ const SIZE: (u32, u32) = (216, 290);
 /// Into so many parts a triangle's side is cut for the colours inside of it to show.
 const PARTS: usize = 5;
 
-/// The colour scale ends at so many times the greatest distance of exact refinement: up to the paper's greatest, it would
-/// show little of the others.
-const REACH: f64 = 2.0;
+/// The colour scale goes up to so many times the greatest distance of exact refinement, and what is beyond is marked.
+const REACH: f64 = 3.0;
+
+/// It begins at this part of its end: by ratios, all four methods have their part of it.
+const SPAN: f64 = 1e-2;
+
+/// The colour of what is beyond.
+const BEYOND: [u8; 3] = [214, 39, 40];
 
 struct Column {
     mesh: Mesh,
@@ -67,7 +72,8 @@ pub(super) fn picture() -> Result<Vec<u8>> {
     ];
     let camera = Camera::fit_tightly(reference.mesh.as_triangles(), VIEW, SIZE.0, SIZE.1)?;
     let [_, _, exact, _] = &columns;
-    let scale = Scale::new(0.0, REACH * exact.symmetric);
+    let most = REACH * exact.symmetric;
+    let scale = Scale::logarithmic(SPAN * most, most).marking_above(BEYOND);
     let mut panels = Vec::new();
     for (letter, column) in ('a'..).zip(&columns) {
         panels.push(Panel::new(mesh(column, &camera)?, format!("({letter}) {}", column.words)));
@@ -81,7 +87,7 @@ pub(super) fn picture() -> Result<Vec<u8>> {
         panels.push(Panel::new(heat(column, &scale, &camera)?, caption));
     }
     let style = GridStyle::default().columns(columns.len()).gap(8).caption(TextStyle::default().size(15.0));
-    let bar = ColourBar::new(scale).title("distance").unit("%, top: or more").text_size(13.0);
+    let bar = ColourBar::new(scale).title("distance").unit("%").text_size(13.0);
     Ok(bar.beside(&grid(&panels, &style)?, style.background)?.encode_png()?)
 }
 
