@@ -28,8 +28,9 @@ const NEARLY_SQUARE: usize = 60;
 /// Edges beyond this are sharp by any standard: the gap must end before.
 const SHARP: usize = 80;
 
-/// Degrees that a gap between smooth and sharp edges is wide at least.
+/// Degrees that a gap between smooth edges and nearly square ones is wide at least, and one below sharp edges that are not.
 const GAP: usize = 15;
+const WIDE_GAP: usize = 30;
 
 /// A part of the length of sharp edges (one in so many) that may lie within the gap: chamfers and the like.
 const WITHIN: f64 = 50.0;
@@ -82,13 +83,15 @@ fn suggested(lengths: &[f64; 181]) -> Option<f64> {
             within * WITHIN > sharp
         });
         let begin = begin.map_or(0, |degrees| degrees + 1);
-        (end >= begin + GAP && sharp * FEW > all).then_some((begin, end))
+        (sharp * FEW > all).then_some((begin, end))
     };
     // What is nearly square is sharp before all else: the facets of a coarse cylinder may be taken for edges as well.
-    let widest = |ends: std::ops::RangeInclusive<usize>| {
-        ends.filter_map(gap).max_by_key(|&(begin, end)| (end - begin, end))
+    let widest = |ends: std::ops::RangeInclusive<usize>, least: usize| {
+        let gaps = ends.filter_map(gap).filter(|&(begin, end)| end >= begin + least);
+        gaps.max_by_key(|&(begin, end)| (end - begin, end))
     };
-    let (begin, end) = widest(NEARLY_SQUARE..=SHARP).or_else(|| widest(SEEN..=NEARLY_SQUARE))?;
+    let (begin, end) =
+        widest(NEARLY_SQUARE..=SHARP, GAP).or_else(|| widest(SEEN..=NEARLY_SQUARE, WIDE_GAP))?;
     if (begin..end).contains(&USUAL) {
         return Some(USUAL as f64);
     }
@@ -123,6 +126,8 @@ mod tests {
         assert_eq!(of(&[]), None);
         assert_eq!(of(&[1, 2, 3, 4, 5, 9, 12]), None);
         assert_eq!(of(&(0..90).collect::<Vec<_>>()), None);
+        // A coarse torus: round both ways.
+        assert_eq!(of(&[0, 8, 29, 45, 45]), None);
         // One fold among a thousand edges.
         let mut scan: Vec<usize> = (0..1000).map(|i| i % 12).collect();
         scan.push(100);

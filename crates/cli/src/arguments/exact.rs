@@ -80,6 +80,10 @@ pub(crate) struct ExactArguments {
     #[arg(long)]
     pub(crate) dry_run: bool,
 
+    /// Leave out how far the result is from the mesh that was read: saves a quarter of the memory of a result
+    #[arg(long)]
+    pub(crate) no_input_distance: bool,
+
     /// Say where each vertex and triangle came from, as properties of a PLY file
     ///
     /// Vertices have parent_face and the barycentric coordinates parent_a, parent_b and parent_c there, triangles

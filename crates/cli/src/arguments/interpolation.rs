@@ -2,6 +2,7 @@
 
 use clap::Args;
 
+use super::quantity::Unit;
 use super::values::{self, Extent};
 
 /// Whether vertices are taken for points of the limit surface.
@@ -28,9 +29,14 @@ impl InterpolationArguments {
         self.interpolate || self.interpolate_within.is_some()
     }
 
-    /// How near the surface is to pass, for a mesh with this diagonal; none without these options.
-    pub(crate) fn within(&self, diagonal: f64) -> Option<f64> {
-        self.interpolate_within
-            .map_or(self.interpolate.then_some(0.0), |within| Some(within.length(diagonal)))
+    /// How near the surface is to pass, for a mesh with this diagonal and unit; none without these options.
+    ///
+    /// # Errors
+    /// The length has a unit, and the mesh's is not known.
+    pub(crate) fn within(&self, diagonal: f64, unit: Option<Unit>) -> anyhow::Result<Option<f64>> {
+        match self.interpolate_within {
+            Some(within) => within.length(diagonal, unit).map(Some),
+            None => Ok(self.interpolate.then_some(0.0)),
+        }
     }
 }

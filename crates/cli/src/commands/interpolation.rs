@@ -4,7 +4,7 @@ use limitmesh::Mesh;
 use limitmesh::interpolate::{InterpolateOptions, Interpolated, InterpolationMethod, interpolate_observed};
 use limitmesh::scheme::Scheme;
 
-use crate::arguments::InterpolationArguments;
+use crate::arguments::{InterpolationArguments, Unit};
 use crate::format::{counted, number, upper_bound};
 use crate::progress::Progress;
 use crate::report::InterpolationReport;
@@ -15,12 +15,12 @@ use crate::report::InterpolationReport;
 /// Some vertex has no limit, or none that is near enough.
 pub(super) fn apply(
     mesh: Mesh,
-    arguments: InterpolationArguments,
+    (arguments, unit): (InterpolationArguments, Option<Unit>),
     scheme: &dyn Scheme,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, Option<InterpolationReport>)> {
     let diagonal = mesh.diagonal();
-    let Some(within) = arguments.within(diagonal) else { return Ok((mesh, None)) };
+    let Some(within) = arguments.within(diagonal, unit)? else { return Ok((mesh, None)) };
     let options = InterpolateOptions::default().within(within);
     let found = interpolate_observed(&mesh, scheme, &options, &mut progress.observer())?;
     progress.note(in_words(&found, within, diagonal));

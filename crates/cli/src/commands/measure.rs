@@ -136,7 +136,7 @@ fn load_reference(
     let report = describe(&input);
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
     let mesh = arguments.features.apply(input.mesh)?;
-    let (mesh, _) = interpolation::apply(mesh, arguments.interpolation, scheme.scheme(), progress)?;
+    let (mesh, _) = interpolation::apply(mesh, (arguments.interpolation, arguments.build.unit), scheme.scheme(), progress)?;
     let (mesh, levels) = if arguments.certified {
         (mesh, 0)
     } else {
@@ -153,7 +153,7 @@ fn load_reference(
         chosen: arguments.reference_levels.is_none(),
         boundary: arguments.features.boundary.unwrap_or_default(),
         crease_angle_degrees: arguments.features.crease_angle,
-        interpolate_within: arguments.interpolation.within(whole.diagonal),
+        interpolate_within: arguments.interpolation.within(whole.diagonal, arguments.build.unit)?,
     };
     let report = SurfaceReport {
         vertices: mesh.vertex_count(),

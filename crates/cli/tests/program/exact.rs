@@ -56,7 +56,8 @@ fn a_thousandth_of_the_diagonal_is_kept_by_default() {
     let diagonal = number(&info["mesh"]["bounding_box"]["diagonal"]);
     let expected = json!({
         "tolerance": 0.1 / 100.0 * diagonal, "tolerance_percent": 0.1, "triangles": null, "pixels": null,
-        "cameras": [], "balance": false, "optimize": false, "max_levels": 24, "max_memory": null, "provenance": false
+        "cameras": [], "balance": false, "optimize": false, "divide_flat": false, "max_levels": 24, "max_memory": null,
+        "provenance": false
     });
     assert_eq!(report["parameters"]["exact"], expected);
     assert_eq!(report["parameters"]["levels"], Value::Null);

@@ -71,7 +71,10 @@ fn what_has_moved_is_told_and_what_would_keep_it() {
     assert!(!kept.stderr.contains("moved by") && !kept.stderr.contains("would keep"), "{}", kept.stderr);
     let square = file(&folder, "square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
     let report = run("refine {} -o {} --boundary fixed --report -", &[&square, &output]).expect(0).json();
-    assert_eq!(report["input_distance"]["upper"], 0.0);
+    assert!(number(&report["input_distance"]["upper"]) < 1e-6);
+    let silent = run("refine builtin:cube -o {} --no-input-distance --report -", &[&output]).expect(0);
+    assert!(!silent.stderr.contains("moved by"), "{}", silent.stderr);
+    assert_eq!(silent.json()["input_distance"], Value::Null);
     assert_eq!(report["size"]["after"], json!({"area": 1.0, "volume": null}));
     // Other methods do not know where vertices came from.
     let stepwise = run("refine builtin:cube -o {} --method uniform --report -", &[&output]).expect(0).json();

@@ -108,6 +108,7 @@ fn exact_options(arguments: &RefineArguments) -> anyhow::Result<()> {
         ("--balance", exact.balance),
         ("--optimize", exact.optimize),
         ("--divide-flat", exact.divide_flat),
+        ("--no-input-distance", exact.no_input_distance),
         ("--max-memory", exact.max_memory.is_some()),
         ("--dry-run", exact.dry_run),
         ("--max-levels", exact.max_levels.is_some()),

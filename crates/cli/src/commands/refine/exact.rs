@@ -1,6 +1,6 @@
 //! Exact refinement: from the goals on the command line to the mesh, its certified distance, and what is said of it.
 
-use limitmesh::Mesh;
+use limitmesh::{Mesh, Triangles};
 use limitmesh::criterion::Camera;
 use limitmesh::progress::Stage;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_observed};
@@ -59,7 +59,6 @@ impl Goals {
             && arguments.angle.is_none()
             && cameras.is_empty();
         let tolerance = exact.tolerance.or(none.then_some(USUAL_TOLERANCE));
-        let diagonal = control.diagonal();
         let length = tolerance.map(|tolerance| tolerance.length(diagonal, arguments.build.unit));
         Ok(Self {
             length: length.transpose()?,
@@ -80,7 +79,7 @@ impl Goals {
             .balance(arguments.exact.balance)
             .optimize(arguments.exact.optimize)
             .flat_regions(!arguments.exact.divide_flat)
-            .origins(arguments.exact.provenance);
+            .origins(arguments.exact.provenance || !arguments.exact.no_input_distance);
         if let Some(pixels) = self.pixels {
             options = options.pixels(pixels, self.cameras.clone());
         }
@@ -131,9 +130,9 @@ fn as_typed(x: f64) -> String {
 
 /// Refines until the goals are met or a cap is reached.
 ///
-/// `inputs` is the input's face of each control face.
+/// `places` are the vertices as they were read, `inputs` the input's face of each control face.
 pub(super) fn run(
-    (control, inputs): (&Mesh, &[u32]),
+    (control, places, inputs): (&Mesh, &[[f64; 3]], &[u32]),
     goals: &Goals,
     arguments: &RefineArguments,
     progress: &Progress,
@@ -152,7 +151,7 @@ pub(super) fn run(
     progress.stage(format!("refining {}", counted(control.face_count(), "triangle", "triangles")));
     let options = goals.options(arguments);
     let mut found = exact_observed(control, arguments.scheme.scheme(), &options, &mut observer)?;
-    let moved = moved(control, &found, goals, arguments, progress)?;
+    let moved = moved((control, places), &found, goals, arguments, progress)?;
     let rounding = written(arguments)
         .map_or(0.0, |(format, options)| limitmesh_io::rounding(format, &options, found.mesh.positions()));
     if let Some(note) = round(&mut found, rounding, goals) {
@@ -229,13 +228,17 @@ const STAND_IN: f64 = 5e-4;
 
 /// How far the result is from the mesh that was read.
 fn moved(
-    control: &Mesh,
+    (control, places): (&Mesh, &[[f64; 3]]),
     found: &Exact,
     goals: &Goals,
     arguments: &RefineArguments,
     progress: &Progress,
 ) -> anyhow::Result<Option<InputDistance>> {
-    if let Some(moved) = InputDistance::new(control, found)? {
+    if arguments.exact.no_input_distance {
+        return Ok(None);
+    }
+    let input = Triangles { positions: places, triangles: control.triangles() };
+    if let Some(moved) = InputDistance::new(input, found)? {
         return Ok(Some(moved));
     }
     if !found.error.certified {
@@ -246,8 +249,8 @@ fn moved(
         ExactOptions::default().tolerance(STAND_IN * goals.diagonal).max_triangles(Some(MOST_EXACT));
     let between = exact_observed(control, arguments.scheme.scheme(), &options, &mut progress.observer())?;
     let apart = between.error.upper + found.error.upper;
-    let moved = InputDistance::new(control, &between)?;
-    Ok(moved.map(|moved| moved.of_other(control, found, apart)).transpose()?)
+    let moved = InputDistance::new(input, &between)?;
+    Ok(moved.map(|moved| moved.of_other(input, found, apart)).transpose()?)
 }
 
 /// How far the result is from the mesh that was read, if that is farther than it is from the limit surface, and what would

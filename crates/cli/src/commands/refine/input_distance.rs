@@ -3,12 +3,18 @@
 //! Exact refinement knows where on the control mesh each vertex comes from, and its triangles come from pieces that
 //! tile the control faces. So each triangle has a piece of the control mesh's surface as its partner, point by point; as both are
 //! flat, no two partners are farther apart than those at the corners. The greatest distance between a vertex and where it came
-//! from bounds the Hausdorff distance, in both directions. Below stand true distances of the points that were moved most along
+//! from bounds the Hausdorff distance, in both directions.
+//!
+//! Regions that lie in a plane are triangulated from their rims alone, which have partners as all edges have. A point of one region that
+//! is not in the other lies on a segment between partners of the rims: moved along these, the one rim must pass it to become the
+//! other. So the rims bound the distance, but for what control points may be off the plane.
+//!
+//! Below stand true distances of the points that were moved most along
 //! normals: along the surface, vertices drift where triangles are of different sizes, and the interval is wide there.
 
 use limitmesh::measure::{Bvh, MeasureError};
 use limitmesh::refine::{Exact, Origin};
-use limitmesh::{Mesh, Triangles};
+use limitmesh::Triangles;
 
 use crate::vector::{distance, dot, minus};
 
@@ -17,6 +23,10 @@ const MEASURED: usize = 4;
 
 /// What rounding may do to a computed point or distance, as a share of the greatest coordinate: some hundred units in the last place.
 const ROUNDING: f64 = 2e-14;
+
+/// How far control points and triangles of a region that lies in a plane may be off it together, as a share of the greatest coordinate:
+/// twice what exact refinement takes for flat.
+const FLAT: f64 = 4e-7;
 
 /// The distance between the mesh that was read and the refined one lies between these.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,22 +40,23 @@ impl InputDistance {
     ///
     /// # Errors
     /// Coordinates too large to be measured.
-    pub(super) fn new(input: &Mesh, found: &Exact) -> Result<Option<Self>, MeasureError> {
-        if found.parents.len() != found.mesh.face_count() {
+    pub(super) fn new(input: Triangles<'_>, found: &Exact) -> Result<Option<Self>, MeasureError> {
+        let is_known = found.origins.len() == found.mesh.vertex_count();
+        if !is_known || found.parents.len() != found.mesh.face_count() {
             return Ok(None);
         }
         let moved = moves(input, found);
         let upper = moved.iter().copied().fold(0.0, f64::max);
-        let off = ROUNDING * greatest(input);
-        let lower = lower(input, found, &moved)?;
-        Ok(Some(Self { lower: (lower - off).max(0.0), upper: if upper > 0.0 { upper + off } else { 0.0 } }))
+        let greatest = greatest(input);
+        let lower = lower(input, found, &moved)? - ROUNDING * greatest;
+        Ok(Some(Self { lower: lower.max(0.0), upper: upper + FLAT * greatest }))
     }
 
     /// Of another mesh that stands for the same limit surface, where these are within `apart` of each other.
     ///
     /// # Errors
     /// Coordinates too large to be measured.
-    pub(super) fn of_other(self, input: &Mesh, found: &Exact, apart: f64) -> Result<Self, MeasureError> {
+    pub(super) fn of_other(self, input: Triangles<'_>, found: &Exact, apart: f64) -> Result<Self, MeasureError> {
         let lower = lower(input, found, &moves(input, found))?;
         Ok(Self {
             lower: (lower - ROUNDING * greatest(input)).max(0.0),
@@ -59,26 +70,26 @@ impl InputDistance {
     }
 }
 
-fn greatest(mesh: &Mesh) -> f64 {
-    mesh.positions().as_flattened().iter().fold(0.0, |greatest, x| greatest.max(x.abs()))
+fn greatest(mesh: Triangles<'_>) -> f64 {
+    mesh.positions.as_flattened().iter().fold(0.0, |greatest, x| greatest.max(x.abs()))
 }
 
 /// Where a vertex came from.
-fn place(input: &Mesh, origin: &Origin) -> [f64; 3] {
-    let corners = input.as_triangles().corners(origin.face as usize);
+fn place(input: Triangles<'_>, origin: &Origin) -> [f64; 3] {
+    let corners = input.corners(origin.face as usize);
     let weights = origin.barycentric;
     [0, 1, 2].map(|axis| (0..3).map(|corner| weights[corner] * corners[corner][axis]).sum())
 }
 
 /// How far each vertex is from where it came from.
-fn moves(input: &Mesh, found: &Exact) -> Vec<f64> {
+fn moves(input: Triangles<'_>, found: &Exact) -> Vec<f64> {
     let pairs = found.mesh.positions().iter().zip(&found.origins);
     pairs.map(|(&vertex, origin)| distance(vertex, place(input, origin))).collect()
 }
 
 /// The greatest true distance among the vertices that were moved most along normals, to the input, and of where they came from,
 /// to the result.
-fn lower(input: &Mesh, found: &Exact, moved: &[f64]) -> Result<f64, MeasureError> {
+fn lower(input: Triangles<'_>, found: &Exact, moved: &[f64]) -> Result<f64, MeasureError> {
     let places = found.origins.iter().map(|origin| place(input, origin));
     let along = places.zip(found.mesh.positions()).zip(&found.normals);
     let along: Vec<f64> =
@@ -94,7 +105,7 @@ fn lower(input: &Mesh, found: &Exact, moved: &[f64]) -> Result<f64, MeasureError
     for vertex in order {
         let (there, here) = (place(input, &found.origins[vertex]), found.mesh.positions()[vertex]);
         let far = moved[vertex];
-        for (point, surface) in [(here, input.as_triangles()), (there, found.mesh.as_triangles())] {
+        for (point, surface) in [(here, input), (there, found.mesh.as_triangles())] {
             lower = lower.max(closest(point, surface, far)?);
         }
     }

@@ -85,15 +85,22 @@ fn refine(
     }
     let control = arguments.features.apply(control)?;
     let diagonal = control.diagonal();
-    let (control, interpolation) =
-        interpolation::apply(control, arguments.interpolation, arguments.scheme.scheme(), progress)?;
+    let before = Bulk::of(&control);
+    // Where the vertices were: interpolation moves them, and keeps the faces.
+    let places = control.positions().to_vec();
+    let (control, interpolation) = interpolation::apply(
+        control,
+        (arguments.interpolation, arguments.build.unit),
+        arguments.scheme.scheme(),
+        progress,
+    )?;
 
     let goals = match arguments.method {
         Method::Exact => Some(Goals::new(arguments, &control, diagonal)?),
         _ => None,
     };
     let parameters = ParametersReport {
-        interpolate_within: arguments.interpolation.within(diagonal),
+        interpolate_within: arguments.interpolation.within(diagonal, arguments.build.unit)?,
         ..match &goals {
             Some(goals) => exact::parameters(arguments, goals),
             None => stepwise::parameters(arguments),
@@ -106,10 +113,9 @@ fn refine(
         estimate::run(&control, &goals, arguments, told, progress)?;
         return Ok(Outcome::Done);
     };
-    let before = Bulk::of(&control);
     let start = Instant::now();
     let mut refined = match &goals {
-        Some(goals) => exact::run((&control, &input_faces), goals, arguments, progress)?,
+        Some(goals) => exact::run((&control, &places, &input_faces), goals, arguments, progress)?,
         None => stepwise::run(control, arguments, Some(format), progress)?,
     };
     let refining = start.elapsed();
