@@ -26,7 +26,8 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     let control = arguments.features.apply(control)?;
     let scheme = arguments.scheme.scheme();
     let diagonal = control.diagonal();
-    let (control, _) = interpolation::apply(control, (arguments.interpolation, arguments.build.unit), scheme, progress)?;
+    let (control, _) =
+        interpolation::apply(control, (arguments.interpolation, arguments.build.unit), scheme, progress)?;
     // Finer than what is measured against it by two levels, where that can be afforded.
     let wanted = USUAL_LEVELS.max(arguments.levels + 2);
     let levels = reference::affordable_levels(control.face_count(), wanted);
@@ -128,7 +129,11 @@ impl Judge<'_> {
             error: None,
             boundary: self.arguments.features.boundary.unwrap_or_default(),
             crease_angle_degrees: self.arguments.features.crease_angle,
-            interpolate_within: self.arguments.interpolation.within(self.diagonal, self.arguments.build.unit).unwrap_or_default(),
+            interpolate_within: self
+                .arguments
+                .interpolation
+                .within(self.diagonal, self.arguments.build.unit)
+                .unwrap_or_default(),
         }
     }
 

@@ -136,7 +136,12 @@ fn load_reference(
     let report = describe(&input);
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
     let mesh = arguments.features.apply(input.mesh)?;
-    let (mesh, _) = interpolation::apply(mesh, (arguments.interpolation, arguments.build.unit), scheme.scheme(), progress)?;
+    let (mesh, _) = interpolation::apply(
+        mesh,
+        (arguments.interpolation, arguments.build.unit),
+        scheme.scheme(),
+        progress,
+    )?;
     let (mesh, levels) = if arguments.certified {
         (mesh, 0)
     } else {

@@ -1,9 +1,9 @@
 //! Exact refinement: from the goals on the command line to the mesh, its certified distance, and what is said of it.
 
-use limitmesh::{Mesh, Triangles};
 use limitmesh::criterion::Camera;
 use limitmesh::progress::Stage;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_observed};
+use limitmesh::{Mesh, Triangles};
 use limitmesh_io::{Format, WriteOptions};
 
 use super::input_distance::InputDistance;

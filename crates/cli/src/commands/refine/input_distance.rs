@@ -12,9 +12,9 @@
 //! Below stand true distances of the points that were moved most along
 //! normals: along the surface, vertices drift where triangles are of different sizes, and the interval is wide there.
 
+use limitmesh::Triangles;
 use limitmesh::measure::{Bvh, MeasureError};
 use limitmesh::refine::{Exact, Origin};
-use limitmesh::Triangles;
 
 use crate::vector::{distance, dot, minus};
 
@@ -56,7 +56,12 @@ impl InputDistance {
     ///
     /// # Errors
     /// Coordinates too large to be measured.
-    pub(super) fn of_other(self, input: Triangles<'_>, found: &Exact, apart: f64) -> Result<Self, MeasureError> {
+    pub(super) fn of_other(
+        self,
+        input: Triangles<'_>,
+        found: &Exact,
+        apart: f64,
+    ) -> Result<Self, MeasureError> {
         let lower = lower(input, found, &moves(input, found))?;
         Ok(Self {
             lower: (lower - ROUNDING * greatest(input)).max(0.0),

@@ -27,8 +27,8 @@ use crate::input::{self, Input};
 use crate::output;
 use crate::progress::Progress;
 use crate::report::{
-    InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport, SizeReport, VERSION,
-    ViewReport,
+    InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport, SizeReport,
+    VERSION, ViewReport,
 };
 use exact::Goals;
 use provenance::Provenance;
