@@ -162,6 +162,24 @@ pub enum WriteError {
         /// Number of vertices.
         vertices: usize,
     },
+    /// There are not three corner normals for each triangle.
+    #[error("corner normals of {count} triangles for {triangles}, expected three for each")]
+    CornerNormals {
+        /// Triangles that have some.
+        count: usize,
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// A corner has a normal that does not exist.
+    #[error("triangle {triangle} has normal {normal}, but there are {normals}")]
+    NormalOutOfRange {
+        /// The triangle at fault.
+        triangle: usize,
+        /// The index met.
+        normal: u32,
+        /// Number of normals.
+        normals: usize,
+    },
     /// A property's name is empty, has other than visible ASCII characters, or is there twice.
     #[error("property '{name}': expected a name of visible ASCII characters that nothing else has")]
     PropertyName {

@@ -10,6 +10,7 @@ mod junctions;
 mod ring_shapes;
 mod sharpness;
 mod soup;
+mod split_surface;
 mod tags;
 mod topology;
 
@@ -22,6 +23,7 @@ pub use junctions::{Groups, Junctions};
 pub(crate) use ring_shapes::RingShapes;
 pub use sharpness::{Sector, Sharpness};
 pub use soup::{PolygonFaces, PolygonSoup};
+pub use split_surface::SplitSurface;
 pub use tags::{CornerTag, CreaseTag, Tags};
 pub(crate) use topology::{MAX_FACES, outgoing_half_edges, outgoing_half_edges_polled};
 pub use topology::{RingNeighbours, Topology};

@@ -1,7 +1,7 @@
 //! Results of exact refinement.
 
 use crate::index::HalfEdgeId;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, SplitSurface};
 
 /// Why an exact refinement ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,6 +90,11 @@ impl Exact {
             Ok(place) => self.sides[place].1,
             Err(_) => self.normals[self.mesh.topology().origin(corner).index()],
         }
+    }
+
+    /// The mesh with a vertex for each side of sharp edges, each with its limit normal.
+    pub fn split_surface(&self) -> SplitSurface {
+        SplitSurface::new(&self.mesh, |corner| self.corner_normal(corner))
     }
 }
 

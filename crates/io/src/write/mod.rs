@@ -24,6 +24,9 @@ pub struct Output<'a> {
     pub surface: Triangles<'a>,
     /// A normal for each vertex. OBJ, PLY (as `float`) and OFF hold them.
     pub normals: Option<&'a [[f64; 3]]>,
+    /// By triangle, the normals of its corners among these, where vertices have several: then there may be any number of normals. Only
+    /// OBJ holds that; other formats hold no normals then.
+    pub corner_normals: Option<&'a [[u32; 3]]>,
     /// Red, green and blue for each vertex. OBJ (after the coordinates), PLY and OFF hold them.
     pub colours: Option<&'a [[u8; 3]]>,
     /// A number for each vertex, such as a distance. PLY holds it, as property `quality`.
@@ -44,6 +47,7 @@ impl<'a> Output<'a> {
         Self {
             surface,
             normals: None,
+            corner_normals: None,
             colours: None,
             quality: None,
             vertex_properties: &[],
@@ -56,6 +60,12 @@ impl<'a> Output<'a> {
     /// Sets [`Self::normals`].
     pub fn normals(mut self, normals: &'a [[f64; 3]]) -> Self {
         self.normals = Some(normals);
+        self
+    }
+
+    /// Sets [`Self::normals`] and [`Self::corner_normals`].
+    pub fn normals_of_corners(mut self, normals: &'a [[f64; 3]], corners: &'a [[u32; 3]]) -> Self {
+        (self.normals, self.corner_normals) = (Some(normals), Some(corners));
         self
     }
 
@@ -93,6 +103,13 @@ impl<'a> Output<'a> {
     pub fn corners(mut self, corners: &'a [CornerTag]) -> Self {
         self.corners = corners;
         self
+    }
+}
+
+impl Output<'_> {
+    /// Normals where each vertex has one.
+    fn vertex_normals(&self) -> Option<&[[f64; 3]]> {
+        self.normals.filter(|_| self.corner_normals.is_none())
     }
 }
 
@@ -181,7 +198,7 @@ fn check(output: &Output<'_>, format: Format, options: &WriteOptions) -> Result<
     let Triangles { positions, triangles } = output.surface;
     let vertices = positions.len();
     let counts = [
-        ("normals", output.normals.map(<[_]>::len)),
+        ("normals", output.vertex_normals().map(<[_]>::len)),
         ("colours", output.colours.map(<[_]>::len)),
         ("quality values", output.quality.map(<[_]>::len)),
     ];
@@ -206,6 +223,18 @@ fn check(output: &Output<'_>, format: Format, options: &WriteOptions) -> Result<
     for (what, beyond) in named {
         if let Some((index, vertex)) = beyond {
             return Err(WriteError::VertexOutOfRange { what, index, vertex, vertices });
+        }
+    }
+    if let Some(corners) = output.corner_normals {
+        let (count, normals) = (corners.len(), output.normals.unwrap_or_default().len());
+        if count != triangles.len() {
+            return Err(WriteError::CornerNormals { count, triangles: triangles.len() });
+        }
+        if normals > u32::MAX as usize {
+            return Err(WriteError::TooMany { what: "normals", count: normals, limit: u32::MAX, format });
+        }
+        if let Some((triangle, normal)) = first_beyond(corners.iter().map(<[u32; 3]>::as_slice), normals) {
+            return Err(WriteError::NormalOutOfRange { triangle, normal, normals });
         }
     }
     check_finite("position", positions.as_flattened(), 3, format, format == Format::Stl && !options.ascii)?;

@@ -22,14 +22,15 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
         normal.iter().for_each(|&x| out.number(x));
         out.end_line()?;
     }
-    for triangle in output.surface.triangles {
+    for (at, triangle) in output.surface.triangles.iter().enumerate() {
         out.bytes(b"f");
-        for &vertex in triangle {
+        let normals = output.corner_normals.map_or(triangle, |corners| &corners[at]);
+        for (&vertex, &normal) in triangle.iter().zip(normals) {
             // There may be 2³² − 1 vertices, so that the last one's number fits.
             out.integer(vertex + 1);
             if output.normals.is_some() {
                 out.bytes(b"//");
-                out.bare_integer(vertex + 1);
+                out.bare_integer(normal + 1);
             }
         }
         out.end_line()?;

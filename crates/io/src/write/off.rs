@@ -6,7 +6,7 @@ use std::io::{self, Write};
 
 pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<()> {
     let mut out = Pieces::new(writer);
-    let keyword: &[u8] = match (output.colours.is_some(), output.normals.is_some()) {
+    let keyword: &[u8] = match (output.colours.is_some(), output.vertex_normals().is_some()) {
         (false, false) => b"OFF",
         (true, false) => b"COFF",
         (false, true) => b"NOFF",
@@ -19,7 +19,7 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
         out.bare_number(x);
         out.number(y);
         out.number(z);
-        if let Some(normals) = output.normals {
+        if let Some(normals) = output.vertex_normals() {
             normals[vertex].iter().for_each(|&x| out.number(x));
         }
         if let Some(colours) = output.colours {

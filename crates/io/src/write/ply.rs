@@ -38,7 +38,7 @@ fn header(output: &Output<'_>, ascii: bool) -> String {
         }
     };
     let mut properties = vec![("double", "x"), ("double", "y"), ("double", "z")];
-    if output.normals.is_some() {
+    if output.vertex_normals().is_some() {
         properties.extend(["nx", "ny", "nz"].map(|name| ("float", name)));
     }
     if output.colours.is_some() {
@@ -60,7 +60,7 @@ fn header(output: &Output<'_>, ascii: bool) -> String {
 #[inline]
 fn vertex_bytes(out: &mut Pieces<'_>, output: &Output<'_>, vertex: usize) -> io::Result<()> {
     output.surface.positions[vertex].iter().for_each(|x| out.bytes(&x.to_le_bytes()));
-    if let Some(normals) = output.normals {
+    if let Some(normals) = output.vertex_normals() {
         normals[vertex].iter().for_each(|&x| out.bytes(&(x as f32).to_le_bytes()));
     }
     if let Some(colours) = output.colours {
@@ -78,7 +78,7 @@ fn vertex_text(out: &mut Pieces<'_>, output: &Output<'_>, vertex: usize) -> io::
     out.bare_number(x);
     out.number(y);
     out.number(z);
-    if let Some(normals) = output.normals {
+    if let Some(normals) = output.vertex_normals() {
         normals[vertex].iter().for_each(|&x| out.single(x as f32));
     }
     if let Some(colours) = output.colours {
