@@ -134,6 +134,12 @@ pub(crate) struct RefineArguments {
     #[arg(long)]
     pub(crate) ascii: bool,
 
+    /// Write a vertex for each side of sharp edges, with the limit normal of that side: PLY only
+    ///
+    /// OBJ files hold normals by corner, with or without this.
+    #[arg(long)]
+    pub(crate) split_normals: bool,
+
     /// Write a JSON report: input, repairs, parameters, result, seconds (- for standard output, or FOLDER/)
     #[arg(long, value_name = "FILE.json")]
     pub(crate) report: Option<PathBuf>,

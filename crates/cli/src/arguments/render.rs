@@ -35,6 +35,12 @@ pub(crate) struct RenderArguments {
     #[arg(long)]
     pub(crate) smooth: bool,
 
+    /// Shade both sides of edges by themselves where the faces meet at more than this angle [degrees, above 0 to 180]
+    ///
+    /// Edges that the file tags as sharp for ever are shaded so in any case.
+    #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
+    pub(crate) crease_angle: Option<f64>,
+
     /// Direction of sight, from the viewer into the scene
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub(crate) view: Option<[f64; 3]>,

@@ -1,5 +1,6 @@
 //! `limitmesh render`: a picture of a mesh.
 
+use limitmesh::mesh::SplitSurface;
 use limitmesh_render::{Shading, Style};
 
 use super::picture;
@@ -12,12 +13,23 @@ use crate::progress::Progress;
 /// Reads a mesh and draws it.
 pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     picture::check_name(&arguments.output)?;
-    let mesh = input::load(&arguments.input, &arguments.build, progress)?.mesh;
+    let mut mesh = input::load(&arguments.input, &arguments.build, progress)?.mesh;
+    if let Some(angle) = arguments.crease_angle {
+        mesh = mesh.with_creases_above(angle.to_radians())?;
+    }
     progress.stage(format!("drawing {}", counted(mesh.face_count(), "triangle", "triangles")));
     let shading = if arguments.flat { Shading::Flat } else { Shading::Smooth };
     let style = Style::default().shading(shading).wireframe(arguments.wireframe);
     let view = picture::view_direction(arguments.view);
-    picture::draw(&arguments.output, mesh.as_triangles(), None, view, &style, arguments.size)?;
+    let split = SplitSurface::by_faces(&mesh);
+    picture::draw(
+        &arguments.output,
+        split.as_triangles(),
+        Some(&split.normals),
+        view,
+        &style,
+        arguments.size,
+    )?;
     let drawn = counted(mesh.face_count(), "triangle", "triangles");
     progress.note(format!("{}: {drawn} drawn", arguments.output.display()));
     Ok(Outcome::Done)

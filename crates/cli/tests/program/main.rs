@@ -11,6 +11,7 @@ mod quantities;
 mod refine;
 mod render;
 mod reproduce;
+mod shading;
 mod size;
 mod streams;
 mod usage;

@@ -45,6 +45,9 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
             arguments.output_name()
         ));
     }
+    if arguments.split_normals && format.is_some_and(|format| format != Format::Ply) {
+        return usage("--split-normals is for PLY files: OBJ holds normals by corner, and the others none");
+    }
     if arguments.exact.dry_run && arguments.picture.is_some() {
         return usage("--dry-run gives no mesh that --picture could draw");
     }

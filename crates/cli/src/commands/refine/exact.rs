@@ -7,6 +7,7 @@ use limitmesh::{Mesh, Triangles};
 use limitmesh_io::{Format, WriteOptions};
 
 use super::input_distance::InputDistance;
+use super::normals::Normals;
 use super::provenance::Provenance;
 use super::{Refined, cameras, view, view_report};
 use crate::arguments::{Extent, Length, MOST_EXACT, RefineArguments, Unit};
@@ -167,10 +168,13 @@ pub(super) fn run(
         achieved.extend(moved_in_words(moved, &error, control, goals, arguments));
     }
     let outcome = outcome(&found, control, goals, &achieved, arguments);
-    let Exact { mesh, normals, origins, parents, pixels, open_cones, stop, levels, .. } = found;
+    let wanted = written(arguments).is_some_and(|(format, _)| Normals::are_held(format))
+        || arguments.picture.is_some();
+    let normals = wanted.then(|| Normals::of_exact(&mut found));
+    let Exact { mesh, origins, parents, pixels, open_cones, stop, levels, .. } = found;
     Ok(Refined {
         mesh,
-        normals: Some(normals),
+        normals,
         provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents, inputs)),
         achieved,
         how: counted(levels, "level", "levels"),

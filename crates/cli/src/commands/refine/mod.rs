@@ -6,9 +6,11 @@ mod estimate;
 mod exact;
 mod input_distance;
 mod jobs;
+mod normals;
 mod provenance;
 mod stepwise;
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -31,6 +33,7 @@ use crate::report::{
     VERSION, ViewReport,
 };
 use exact::Goals;
+use normals::Normals;
 use provenance::Provenance;
 
 /// The dilatant factor where none is given: the paper's in most of its experiments.
@@ -39,7 +42,7 @@ const USUAL_DILATATION: f64 = 1.0;
 /// What a method gave, and what is said of it.
 struct Refined {
     mesh: Mesh,
-    normals: Option<Vec<[f64; 3]>>,
+    normals: Option<Normals>,
     provenance: Option<Provenance>,
     /// How near the mesh is to the limit surface: sentences of a line each.
     achieved: Vec<String>,
@@ -70,7 +73,7 @@ fn refine(
     format: Option<Format>,
     progress: &Progress,
 ) -> anyhow::Result<Outcome> {
-    let kept: &[&str] = if format.is_some_and(holds_normals) { &["normals"] } else { &[] };
+    let kept: &[&str] = if format.is_some_and(Normals::are_held) { &["normals"] } else { &[] };
     let input = input::load_keeping(arguments.input(), &arguments.build, kept, progress)?;
     let input_report = InputReport {
         path: input.name,
@@ -125,7 +128,10 @@ fn refine(
 
     progress.stage(format!("writing {}", arguments.output_name()));
     let start = Instant::now();
-    write(path, format, arguments.ascii, &refined)?;
+    if let Some(note) = refined.normals.as_ref().and_then(|all| all.note(format, arguments.split_normals)) {
+        progress.note(note);
+    }
+    write(path, format, arguments, &refined)?;
     let writing = start.elapsed();
     progress.note(summary(arguments, &refined, refining));
 
@@ -150,7 +156,12 @@ fn refine(
         progress.stage(format!("drawing {}", path.display()));
         let style = Style::default().wireframe(true);
         let view = picture::view_direction(arguments.view);
-        picture::draw(path, mesh.as_triangles(), normals.as_deref(), view, &style, picture::SIZE)?;
+        let (surface, normals) = match &normals {
+            Some(Normals::BySide(split)) => (split.as_triangles(), Some(&split.normals[..])),
+            Some(Normals::ByVertex(normals)) => (mesh.as_triangles(), Some(&normals[..])),
+            None => (mesh.as_triangles(), None),
+        };
+        picture::draw(path, surface, normals, view, &style, picture::SIZE)?;
     }
     Ok(outcome)
 }
@@ -172,24 +183,22 @@ fn lost_tags(tags: &Tags, format: Format) -> Option<String> {
     Some(format!("{}: followed, but left out of the output, whose format has none", found.join(" and ")))
 }
 
-/// Whether limit normals are written to files of a format.
-fn holds_normals(format: Format) -> bool {
-    format == Format::Ply
-}
-
-fn write(path: &Path, format: Format, ascii: bool, refined: &Refined) -> anyhow::Result<()> {
+fn write(path: &Path, format: Format, arguments: &RefineArguments, refined: &Refined) -> anyhow::Result<()> {
     let Refined { mesh, normals, provenance, .. } = refined;
     let mut output = Output::new(mesh.as_triangles());
-    if let Some(normals) = normals.as_deref().filter(|_| holds_normals(format)) {
-        output = output.normals(normals);
+    if let Some(normals) = normals {
+        output = normals.add_to(output, format, arguments.split_normals);
     }
-    let of_vertices = provenance.as_ref().map(Provenance::of_vertices);
-    let of_faces = provenance.as_ref().map(Provenance::of_faces);
+    let sources = normals.as_ref().and_then(|all| all.sources(format, arguments.split_normals));
+    let provenance =
+        provenance.as_ref().map(|all| sources.map_or(Cow::Borrowed(all), |list| Cow::Owned(all.of(list))));
+    let of_vertices = provenance.as_deref().map(Provenance::of_vertices);
+    let of_faces = provenance.as_deref().map(Provenance::of_faces);
     if let (Some(vertices), Some(faces)) = (&of_vertices, &of_faces) {
         output = output.vertex_properties(vertices).face_properties(faces);
     }
     let output = output.creases(&mesh.tags().creases).corners(&mesh.tags().corners);
-    output::write_mesh(path, format, &output, &WriteOptions::default().ascii(ascii))
+    output::write_mesh(path, format, &output, &WriteOptions::default().ascii(arguments.ascii))
 }
 
 /// The view that makes the angle depend on the viewer.

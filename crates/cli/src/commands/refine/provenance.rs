@@ -4,6 +4,7 @@ use limitmesh::refine::Origin;
 use limitmesh_io::Property;
 
 /// Columns of numbers, one for each vertex or triangle.
+#[derive(Clone)]
 pub(super) struct Provenance {
     /// Of each vertex.
     faces: Vec<u32>,
@@ -27,6 +28,21 @@ impl Provenance {
             barycentric: [0, 1, 2].map(column),
             parents,
             inputs: [of_vertices, of_triangles],
+        }
+    }
+
+    /// The same where vertices stand several times: by what they are copies of.
+    pub(super) fn of(&self, sources: &[u32]) -> Self {
+        let whole = |list: &[u32]| sources.iter().map(|&v| list[v as usize]).collect();
+        let [of_vertices, of_triangles] = &self.inputs;
+        Self {
+            faces: whole(&self.faces),
+            barycentric: self
+                .barycentric
+                .each_ref()
+                .map(|list| sources.iter().map(|&v| list[v as usize]).collect()),
+            parents: self.parents.clone(),
+            inputs: [whole(of_vertices), of_triangles.clone()],
         }
     }
 

@@ -11,6 +11,7 @@ use limitmesh::refine::{
 };
 use limitmesh_io::Format;
 
+use super::normals::Normals;
 use super::{Refined, view, view_report};
 use crate::arguments::{Method, RefineArguments, Seam};
 use crate::failure::Outcome;
@@ -102,22 +103,24 @@ fn finish(
     arguments: &RefineArguments,
     format: Option<Format>,
     progress: &Progress,
-) -> anyhow::Result<(Mesh, Option<Vec<[f64; 3]>>)> {
+) -> anyhow::Result<(Mesh, Option<Normals>)> {
     let scheme = arguments.scheme.scheme();
-    let wanted = format == Some(Format::Ply) || arguments.picture.is_some();
-    let normals = match wanted.then(|| LimitTable::new(scheme).normals(&mesh)) {
+    let wanted = format.is_some_and(Normals::are_held) || arguments.picture.is_some();
+    let sided = match wanted.then(|| LimitTable::new(scheme).sided_normals(&mesh)) {
         Some(Err(why)) => {
             progress.note(format!("no limit normals: {why}"));
             None
         }
-        normals => normals.and_then(Result::ok),
+        sided => sided.and_then(Result::ok),
     };
-    if !arguments.limit {
-        return Ok((mesh, normals));
+    let mut mesh = mesh;
+    if arguments.limit {
+        progress.stage("moving the vertices to the limit");
+        let options = UniformOptions::default().levels(0).limit(true);
+        mesh = uniform(&mesh, scheme, &options)?.mesh;
     }
-    progress.stage("moving the vertices to the limit");
-    let options = UniformOptions::default().levels(0).limit(true);
-    Ok((uniform(&mesh, scheme, &options)?.mesh, normals))
+    let normals = sided.map(|sided| Normals::of_sides(&mesh, sided));
+    Ok((mesh, normals))
 }
 
 /// What was asked for, defaults filled in.

@@ -1,0 +1,84 @@
+//! The limit normals of a refined mesh, for files and pictures: one for each vertex, or, where edges are sharp, one for each side.
+
+use limitmesh::Mesh;
+use limitmesh::limit::SidedNormals;
+use limitmesh::mesh::{Sharpness, SplitSurface};
+use limitmesh::refine::Exact;
+use limitmesh_io::{Format, Output};
+
+/// Normals of a mesh.
+pub(super) enum Normals {
+    /// One for each vertex.
+    ByVertex(Vec<[f64; 3]>),
+    /// Vertices on sharp edges have one for each side.
+    BySide(SplitSurface),
+}
+
+impl Normals {
+    /// Those of an exact refinement.
+    pub(super) fn of_exact(found: &mut Exact) -> Self {
+        if !found.sides.is_empty() {
+            return Self::BySide(found.split_surface());
+        }
+        if found.mesh.tags().creases.is_empty() {
+            return Self::ByVertex(std::mem::take(&mut found.normals));
+        }
+        // Collapses leave no normals by side: there the faces' own have to do.
+        let mesh = &found.mesh;
+        let (sharp, faces) = (Sharpness::of(mesh).lasting(), SplitSurface::by_faces(mesh));
+        Self::BySide(SplitSurface::new(mesh, |h| {
+            let (vertex, face) = (mesh.topology().origin(h), h.face().index());
+            let corner = h.index() % 3;
+            match sharp.is_tagged(vertex) {
+                true => faces.normals[faces.triangles[face][corner] as usize],
+                false => found.normals[vertex.index()],
+            }
+        }))
+    }
+
+    /// The limit normals of a mesh by side.
+    pub(super) fn of_sides(mesh: &Mesh, sided: SidedNormals) -> Self {
+        if mesh.tags().creases.is_empty() {
+            return Self::ByVertex(sided.into_by_vertex());
+        }
+        Self::BySide(SplitSurface::new(mesh, |h| sided.at(mesh.topology(), h)))
+    }
+
+    /// Whether files of a format hold any.
+    pub(super) fn are_held(format: Format) -> bool {
+        matches!(format, Format::Ply | Format::Obj)
+    }
+
+    /// Adds them to what is written; `is_split` if a vertex is to stand once for each side where the format needs that.
+    pub(super) fn add_to<'a>(&'a self, output: Output<'a>, format: Format, is_split: bool) -> Output<'a> {
+        match self {
+            _ if !Self::are_held(format) => output,
+            Self::ByVertex(normals) => output.normals(normals),
+            Self::BySide(split) if format == Format::Obj => {
+                output.normals_of_corners(&split.normals, &split.triangles)
+            }
+            Self::BySide(split) if is_split => {
+                Output { surface: split.as_triangles(), ..output }.normals(&split.normals)
+            }
+            // Averages over both sides would make flat faces look like pillows.
+            Self::BySide(_) => output,
+        }
+    }
+
+    /// The vertices that are copies of others, by what they are copies of, where a file has a vertex for each side.
+    pub(super) fn sources(&self, format: Format, is_split: bool) -> Option<&[u32]> {
+        match self {
+            Self::BySide(split) if is_split && format == Format::Ply => Some(&split.sources),
+            _ => None,
+        }
+    }
+
+    /// What is said of a file that has to do without them.
+    pub(super) fn note(&self, format: Format, is_split: bool) -> Option<&'static str> {
+        let is_left_out = matches!(self, Self::BySide(_)) && format == Format::Ply && !is_split;
+        is_left_out.then_some(
+            "limit normals left out: vertices on sharp edges have one for each side; --split-normals writes a vertex for \
+             each, and OBJ files hold them as they are",
+        )
+    }
+}
