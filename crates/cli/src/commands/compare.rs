@@ -23,7 +23,7 @@ use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport};
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     let control = input::load(&arguments.input, &arguments.build.options(), progress)?.mesh;
-    let control = arguments.features.apply(control)?;
+    let control = arguments.features.apply(control)?.mesh;
     let scheme = arguments.scheme.scheme();
     let diagonal = control.diagonal();
     let (control, _) = interpolation::apply(control, arguments.interpolation, scheme, progress)?;
@@ -129,6 +129,7 @@ impl Judge<'_> {
             boundary: self.arguments.features.boundary.unwrap_or_default(),
             crease_angle_degrees: self.arguments.features.crease_angle,
             interpolate_within: self.arguments.interpolation.within(self.diagonal),
+            concave_corners: self.arguments.features.concave_corners(),
         }
     }
 

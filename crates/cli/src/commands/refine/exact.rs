@@ -8,7 +8,7 @@ use limitmesh_io::{Format, WriteOptions};
 
 use super::provenance::Provenance;
 use super::{Refined, cameras, view, view_report};
-use crate::arguments::{Extent, RefineArguments};
+use crate::arguments::{Extent, Featured, RefineArguments};
 use crate::failure::Outcome;
 use crate::format::{bytes, counted, thousands, upper_bound};
 use crate::progress::Progress;
@@ -120,7 +120,7 @@ fn as_typed(x: f64) -> String {
 
 /// Refines until the goals are met or a cap is reached.
 pub(super) fn run(
-    control: &Mesh,
+    Featured { mesh: control, concave }: &Featured,
     goals: &Goals,
     arguments: &RefineArguments,
     progress: &Progress,
@@ -144,12 +144,14 @@ pub(super) fn run(
     let error = ErrorReport::new(&found.error, goals.diagonal);
     let outcome = outcome(&found, goals, &error, arguments);
     let achieved = achieved(&found, &error);
+    let inverted = found.inverted_triangles();
     let Exact { mesh, normals, origins, parents, pixels, open_cones, stop, levels, refused, .. } = found;
     Ok(Refined {
         mesh,
         normals: Some(normals),
-        provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents)),
+        provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents, &concave.parts)),
         achieved: Some(achieved),
+        inverted: Some(inverted),
         how: how(levels, refused),
         report: MethodReport {
             steps: Vec::new(),

@@ -1,5 +1,6 @@
 //! Where the vertices and triangles of an exact refinement came from, as properties of a PLY file.
 
+use limitmesh::mesh::FaceParts;
 use limitmesh::refine::Origin;
 use limitmesh_io::Property;
 
@@ -13,13 +14,15 @@ pub(super) struct Provenance {
 }
 
 impl Provenance {
-    /// Takes the origins of the vertices and the parents of the triangles apart.
-    pub(super) fn new(origins: &[Origin], parents: Vec<u32>) -> Self {
-        let column = |corner: usize| origins.iter().map(|origin| origin.barycentric[corner]).collect();
+    /// Takes the origins of the vertices and the parents of the triangles apart; those on parts of faces are told of the
+    /// whole ones.
+    pub(super) fn new(origins: &[Origin], parents: Vec<u32>, parts: &FaceParts) -> Self {
+        let on_whole = |origin: &Origin| parts.on_whole(origin.face, origin.barycentric);
+        let column = |corner: usize| origins.iter().map(|origin| on_whole(origin).1[corner]).collect();
         Self {
-            faces: origins.iter().map(|origin| origin.face).collect(),
+            faces: origins.iter().map(|origin| parts.whole(origin.face)).collect(),
             barycentric: [0, 1, 2].map(column),
-            parents,
+            parents: parents.into_iter().map(|face| parts.whole(face)).collect(),
         }
     }
 

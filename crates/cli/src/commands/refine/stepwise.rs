@@ -44,6 +44,7 @@ pub(super) fn run(
         normals,
         provenance: None,
         achieved: None,
+        inverted: None,
         how: counted(steps.len(), "step", "steps") + early,
         outcome: outcome(arguments, &mesh, &steps, stop),
         mesh,
