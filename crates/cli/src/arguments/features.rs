@@ -20,6 +20,23 @@ pub(crate) enum Boundary {
     Fixed,
 }
 
+/// What becomes of corners whose faces take 180° or more between two sharp edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum ConcaveCorners {
+    /// Sharp edges inside divide them: flat faces stay flat
+    Divided,
+    /// As OpenSubdiv has them: the surface folds over there
+    AsTagged,
+}
+
+/// A control mesh with its tags.
+pub(crate) struct Featured {
+    pub(crate) mesh: Mesh,
+    /// What was done about concave corners.
+    pub(crate) concave: limitmesh::mesh::ConcaveCorners,
+}
+
 /// Where the surface is sharp, beside the tags of the file.
 #[derive(Args, Debug, Clone, Copy)]
 pub(crate) struct FeatureArguments {
@@ -32,28 +49,45 @@ pub(crate) struct FeatureArguments {
     /// What becomes of open boundaries [default: smooth]
     #[arg(long, value_enum, value_name = "RULE")]
     pub(crate) boundary: Option<Boundary>,
+
+    /// What becomes of corners that take 180° or more between two sharp edges [default: as-tagged; divided with --crease-angle,
+    /// or with --boundary corners or fixed]
+    #[arg(long, value_enum, value_name = "RULE")]
+    pub(crate) concave_corners: Option<ConcaveCorners>,
 }
 
 impl FeatureArguments {
     /// Whether any is given.
     pub(crate) fn are_given(&self) -> bool {
-        self.crease_angle.is_some() || self.boundary.is_some()
+        self.crease_angle.is_some() || self.boundary.is_some() || self.concave_corners.is_some()
+    }
+
+    /// What becomes of concave corners, by the other options where it was not said.
+    pub(crate) fn concave_corners(&self) -> ConcaveCorners {
+        let is_asked = self.crease_angle.is_some() || self.boundary.unwrap_or_default() != Boundary::Smooth;
+        let usual = if is_asked { ConcaveCorners::Divided } else { ConcaveCorners::AsTagged };
+        self.concave_corners.unwrap_or(usual)
     }
 
     /// The control mesh with the tags that these options put on it.
     ///
     /// # Errors
     /// None that the command line's own checks leave.
-    pub(crate) fn apply(&self, mesh: Mesh) -> Result<Mesh, MeshError> {
+    pub(crate) fn apply(&self, mesh: Mesh) -> Result<Featured, MeshError> {
         let rule = match self.boundary.unwrap_or_default() {
             Boundary::Smooth => BoundaryRule::Smooth,
             Boundary::Corners => BoundaryRule::Corners,
             Boundary::Fixed => BoundaryRule::Fixed,
         };
         let mesh = mesh.with_boundary(rule);
-        match self.crease_angle {
-            Some(angle) => mesh.with_creases_above(angle.to_radians()),
-            None => Ok(mesh),
-        }
+        let mesh = match self.crease_angle {
+            Some(angle) => mesh.with_creases_above(angle.to_radians())?,
+            None => mesh,
+        };
+        let (mesh, concave) = match self.concave_corners() {
+            ConcaveCorners::Divided => mesh.with_divided_concave_corners()?,
+            ConcaveCorners::AsTagged => (mesh, Default::default()),
+        };
+        Ok(Featured { mesh, concave })
     }
 }

@@ -18,7 +18,7 @@ mod values;
 pub(crate) use camera::cameras_in;
 pub(crate) use compare::CompareArguments;
 pub(crate) use exact::ExactArguments;
-pub(crate) use features::{Boundary, FeatureArguments};
+pub(crate) use features::{Boundary, ConcaveCorners, FeatureArguments, Featured};
 pub(crate) use info::InfoArguments;
 pub(crate) use interpolation::InterpolationArguments;
 pub(crate) use measure::MeasureArguments;

@@ -23,7 +23,7 @@ use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport};
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     let control = input::load(&arguments.input, &arguments.build, progress)?.mesh;
-    let control = arguments.features.apply(control)?;
+    let control = arguments.features.apply(control)?.mesh;
     let scheme = arguments.scheme.scheme();
     let diagonal = control.diagonal();
     let (control, _) =
@@ -134,6 +134,7 @@ impl Judge<'_> {
                 .interpolation
                 .within(self.diagonal, self.arguments.build.unit)
                 .unwrap_or_default(),
+            concave_corners: self.arguments.features.concave_corners(),
         }
     }
 

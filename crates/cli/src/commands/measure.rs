@@ -135,7 +135,7 @@ fn load_reference(
     let scheme = arguments.scheme.unwrap_or_default();
     let report = describe(&input);
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
-    let mesh = arguments.features.apply(input.mesh)?;
+    let mesh = arguments.features.apply(input.mesh)?.mesh;
     let (mesh, _) = interpolation::apply(
         mesh,
         (arguments.interpolation, arguments.build.unit),
@@ -159,6 +159,7 @@ fn load_reference(
         boundary: arguments.features.boundary.unwrap_or_default(),
         crease_angle_degrees: arguments.features.crease_angle,
         interpolate_within: arguments.interpolation.within(whole.diagonal, arguments.build.unit)?,
+        concave_corners: arguments.features.concave_corners(),
     };
     let report = SurfaceReport {
         vertices: mesh.vertex_count(),
@@ -248,8 +249,8 @@ fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
     let of_limit = of_limit || arguments.features.are_given() || arguments.interpolation.are_given();
     if arguments.limit_of.is_none() && of_limit {
         return usage(
-            "--reference-levels, --scheme, --crease-angle, --boundary, --interpolate and --interpolate-within belong to a limit \
-             surface; they need --limit-of",
+            "--reference-levels, --scheme, --crease-angle, --boundary, --concave-corners, --interpolate and --interpolate-within \
+             belong to a limit surface; they need --limit-of",
         );
     }
     let given = [Some(&arguments.surface), arguments.reference.as_ref(), arguments.limit_of.as_ref()];

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::certified::CertifiedReport;
 use super::diagnosis::DiagnosisReport;
-use crate::arguments::{Boundary, SchemeName};
+use crate::arguments::{Boundary, ConcaveCorners, SchemeName};
 use crate::format::number;
 
 /// What a sampled distance is, in every report of one.
@@ -56,6 +56,7 @@ pub(crate) struct LimitReport {
     pub(crate) crease_angle_degrees: Option<f64>,
     /// How near it passes to the vertices of the control mesh; null where these are its control points.
     pub(crate) interpolate_within: Option<f64>,
+    pub(crate) concave_corners: ConcaveCorners,
 }
 
 /// What lengths are given in per cent of: the diagonal of the bounding box of the control mesh where one is known, of the

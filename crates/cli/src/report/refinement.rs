@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::diagnosis::DiagnosisReport;
 use super::{InputReport, InterpolationReport};
-use crate::arguments::{Boundary, Method, RefineArguments, SchemeName, Seam};
+use crate::arguments::{Boundary, ConcaveCorners, Method, RefineArguments, SchemeName, Seam};
 use crate::bulk::Bulk;
 use crate::format::{lower_bound, upper_bound};
 
@@ -110,6 +110,7 @@ pub(crate) struct ParametersReport {
     pub(crate) crease_angle_degrees: Option<f64>,
     /// How near the limit surface is to pass to the input's vertices, in the mesh's unit; null where these are the control points.
     pub(crate) interpolate_within: Option<f64>,
+    pub(crate) concave_corners: ConcaveCorners,
     pub(crate) max_triangles: usize,
     /// Distance within which vertices were merged: 0 at equal positions, null for none.
     pub(crate) weld: Option<f64>,
@@ -134,6 +135,7 @@ impl ParametersReport {
             boundary: arguments.features.boundary.unwrap_or_default(),
             crease_angle_degrees: arguments.features.crease_angle,
             interpolate_within: None,
+            concave_corners: arguments.features.concave_corners(),
             max_triangles: arguments.max_triangles(),
             weld: match weld {
                 Weld::Never => None,
@@ -335,6 +337,8 @@ pub(crate) struct OutputReport {
     pub(crate) euler_characteristic: i64,
     pub(crate) components: usize,
     pub(crate) t_junctions: usize,
+    /// Triangles whose normal is more than 90° from the limit normal at one of their corners; null for the stepwise methods.
+    pub(crate) inverted_triangles: Option<usize>,
     pub(crate) min_angle_degrees: f64,
     pub(crate) mean_min_angle_degrees: f64,
     /// Triangles with a least angle in [0°, 5°), [5°, 10°) … [55°, 60°].
@@ -343,7 +347,7 @@ pub(crate) struct OutputReport {
 
 impl OutputReport {
     /// Examines a mesh.
-    pub(crate) fn of(path: String, mesh: &Mesh) -> Self {
+    pub(crate) fn of(path: String, mesh: &Mesh, inverted_triangles: Option<usize>) -> Self {
         let surface = mesh.as_triangles();
         let tightness = watertightness(surface);
         let quality = triangle_quality(surface);
@@ -357,6 +361,7 @@ impl OutputReport {
             euler_characteristic: tightness.euler_characteristic,
             components: tightness.components,
             t_junctions: tightness.t_junctions,
+            inverted_triangles,
             min_angle_degrees: quality.min_angle_degrees,
             mean_min_angle_degrees: quality.mean_min_angle_degrees,
             angle_histogram: quality.histogram,

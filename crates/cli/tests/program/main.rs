@@ -2,6 +2,7 @@
 
 mod common;
 mod compare;
+mod concave;
 mod exact;
 mod examine;
 mod interpolate;

@@ -73,6 +73,9 @@ pub struct Diagnosis {
     pub bow_tie_vertices: Finding,
     /// Tags that name no vertex or edge of the mesh, by their place among the input's tags (creases first).
     pub dropped_tags: Finding,
+    /// Corners with a sector of 180° and more that was divided by sharp edges (no defect), named by their vertices in the mesh.
+    /// Whoever calls [`Mesh::with_divided_concave_corners`](super::Mesh::with_divided_concave_corners) adds them.
+    pub concave_corners: Finding,
 }
 
 /// How a finding is told.
@@ -99,7 +102,7 @@ const fn wording(
 }
 
 /// In the order of the struct's fields.
-const WORDINGS: [Wording; 12] = [
+const WORDINGS: [Wording; 13] = [
     wording(
         "polygons",
         false,
@@ -175,6 +178,13 @@ const WORDINGS: [Wording; 12] = [
         "left out",
         "tag",
     ),
+    wording(
+        "concave_corners",
+        false,
+        ["corner of 180° or more", "corners of 180° or more"],
+        "divided by sharp edges, so that flat faces stay flat",
+        "vertex",
+    ),
 ];
 
 impl Diagnosis {
@@ -192,6 +202,7 @@ impl Diagnosis {
             &self.non_manifold_edges,
             &self.bow_tie_vertices,
             &self.dropped_tags,
+            &self.concave_corners,
         ]
     }
 

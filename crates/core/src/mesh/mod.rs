@@ -4,7 +4,9 @@
 //! Takes a [`PolygonSoup`], gives a [`Mesh`] and a [`Diagnosis`] of what was found and repaired on the way.
 
 mod build;
+mod concave;
 mod diagnosis;
+mod face_parts;
 mod features;
 mod junctions;
 mod ring_shapes;
@@ -17,7 +19,9 @@ mod topology;
 pub(crate) use crate::geometry::NONE;
 pub use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule};
 pub use build::{BuildOptions, Weld};
+pub use concave::ConcaveCorners;
 pub use diagnosis::{Diagnosis, Finding};
+pub use face_parts::FaceParts;
 pub use features::BoundaryRule;
 pub use junctions::{Groups, Junctions};
 pub(crate) use ring_shapes::RingShapes;

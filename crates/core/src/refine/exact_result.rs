@@ -1,7 +1,9 @@
 //! Results of exact refinement.
 
-use crate::index::HalfEdgeId;
+use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::{Mesh, SplitSurface};
+use crate::parallel;
+use crate::vector::vector;
 
 /// Why an exact refinement ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,6 +97,33 @@ impl Exact {
     /// The mesh with a vertex for each side of sharp edges, each with its limit normal.
     pub fn split_surface(&self) -> SplitSurface {
         SplitSurface::new(&self.mesh, |corner| self.corner_normal(corner))
+    }
+
+    /// Triangles that are turned over: their normal is more than 90° from the limit normal at one of their corners, on their
+    /// own side of sharp edges. There the surface folds, or is not regular. After optimisation corners on sharp edges are
+    /// left aside.
+    pub fn inverted_triangles(&self) -> usize {
+        let is_left_aside = self.on_unsided_creases();
+        let is_inverted = |face: usize| {
+            let normal = self.mesh.unit_face_normal(face);
+            (0..3).any(|corner| {
+                let h = HalfEdgeId::of(FaceId(face as u32), corner);
+                let v = self.mesh.topology().origin(h).0;
+                is_left_aside.binary_search(&v).is_err() && normal.dot(vector(self.corner_normal(h))) < 0.0
+            })
+        };
+        let pieces =
+            parallel::pieces(self.mesh.face_count(), |faces| faces.filter(|&f| is_inverted(f)).count());
+        pieces.iter().sum()
+    }
+
+    /// The vertices on creases where no normals by side are known, ascending.
+    fn on_unsided_creases(&self) -> Vec<u32> {
+        let creases = if self.sides.is_empty() { &self.mesh.tags().creases[..] } else { &[] };
+        let mut vertices: Vec<u32> = creases.iter().flat_map(|crease| crease.vertices).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        vertices
     }
 }
 

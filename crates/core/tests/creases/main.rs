@@ -7,6 +7,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod concave;
 mod features;
 mod limits;
 mod plain;

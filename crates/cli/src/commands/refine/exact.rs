@@ -1,8 +1,9 @@
 //! Exact refinement: from the goals on the command line to the mesh, its certified distance, and what is said of it.
 
 use limitmesh::criterion::Camera;
+use limitmesh::mesh::FaceParts;
 use limitmesh::progress::Stage;
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_observed};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Origin, exact_observed};
 use limitmesh::{Mesh, Triangles};
 use limitmesh_io::{Format, WriteOptions};
 
@@ -10,7 +11,7 @@ use super::input_distance::InputDistance;
 use super::normals::Normals;
 use super::provenance::Provenance;
 use super::{Refined, cameras, view, view_report};
-use crate::arguments::{Extent, Length, MOST_EXACT, RefineArguments, Unit};
+use crate::arguments::{Extent, Featured, Length, MOST_EXACT, RefineArguments, Unit};
 use crate::dihedral::Dihedrals;
 use crate::failure::Outcome;
 use crate::format::{bytes, counted, number, thousands, upper_bound};
@@ -131,9 +132,9 @@ fn as_typed(x: f64) -> String {
 
 /// Refines until the goals are met or a cap is reached.
 ///
-/// `places` are the vertices as they were read, `inputs` the input's face of each control face.
+/// `before` is the mesh that was read.
 pub(super) fn run(
-    (control, places, inputs): (&Mesh, &[[f64; 3]], &[u32]),
+    (Featured { mesh: control, concave }, before): (&Featured, &Before),
     goals: &Goals,
     arguments: &RefineArguments,
     progress: &Progress,
@@ -152,7 +153,7 @@ pub(super) fn run(
     progress.stage(format!("refining {}", counted(control.face_count(), "triangle", "triangles")));
     let options = goals.options(arguments);
     let mut found = exact_observed(control, arguments.scheme.scheme(), &options, &mut observer)?;
-    let moved = moved((control, places), &found, goals, arguments, progress)?;
+    let moved = moved((control, before, &concave.parts), &found, goals, arguments, progress)?;
     let rounding = written(arguments)
         .map_or(0.0, |(format, options)| limitmesh_io::rounding(format, &options, found.mesh.positions()));
     if let Some(note) = round(&mut found, rounding, goals) {
@@ -168,15 +169,18 @@ pub(super) fn run(
         achieved.extend(moved_in_words(moved, &error, control, goals, arguments));
     }
     let outcome = outcome(&found, control, goals, &achieved, arguments);
+    let inverted = found.inverted_triangles();
     let wanted = written(arguments).is_some_and(|(format, _)| Normals::are_held(format))
         || arguments.picture.is_some();
     let normals = wanted.then(|| Normals::of_exact(&mut found));
     let Exact { mesh, origins, parents, pixels, open_cones, stop, levels, .. } = found;
+    let places = (&before.faces[..], &concave.parts);
     Ok(Refined {
         mesh,
         normals,
-        provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents, inputs)),
+        provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents, places)),
         achieved,
+        inverted: Some(inverted),
         how: counted(levels, "level", "levels"),
         report: MethodReport {
             steps: Vec::new(),
@@ -230,9 +234,17 @@ fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
 /// faces.
 const STAND_IN: f64 = 5e-4;
 
+/// The mesh that was read, before corners were divided and control points moved.
+pub(super) struct Before {
+    pub(super) positions: Vec<[f64; 3]>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The input's face of each face.
+    pub(super) faces: Vec<u32>,
+}
+
 /// How far the result is from the mesh that was read.
 fn moved(
-    (control, places): (&Mesh, &[[f64; 3]]),
+    (control, before, parts): (&Mesh, &Before, &FaceParts),
     found: &Exact,
     goals: &Goals,
     arguments: &RefineArguments,
@@ -241,8 +253,13 @@ fn moved(
     if arguments.exact.no_input_distance {
         return Ok(None);
     }
-    let input = Triangles { positions: places, triangles: control.triangles() };
-    if let Some(moved) = InputDistance::new(input, found)? {
+    let input = Triangles { positions: &before.positions, triangles: &before.triangles };
+    let on_whole = |found: &Exact| -> Vec<Origin> {
+        let origins = found.origins.iter().map(|origin| parts.on_whole(origin.face, origin.barycentric));
+        origins.map(|(face, barycentric)| Origin { face, barycentric }).collect()
+    };
+    let origins = on_whole(found);
+    if let Some(moved) = InputDistance::new(input, (found, &origins))? {
         return Ok(Some(moved));
     }
     if !found.error.certified {
@@ -253,8 +270,8 @@ fn moved(
         ExactOptions::default().tolerance(STAND_IN * goals.diagonal).max_triangles(Some(MOST_EXACT));
     let between = exact_observed(control, arguments.scheme.scheme(), &options, &mut progress.observer())?;
     let apart = between.error.upper + found.error.upper;
-    let moved = InputDistance::new(input, &between)?;
-    Ok(moved.map(|moved| moved.of_other(input, found, apart)).transpose()?)
+    let moved = InputDistance::new(input, (&between, &on_whole(&between)))?;
+    Ok(moved.map(|moved| moved.of_other(input, (found, &origins), apart)).transpose()?)
 }
 
 /// How far the result is from the mesh that was read, if that is farther than it is from the limit surface, and what would

@@ -36,19 +36,23 @@ pub(super) struct InputDistance {
 }
 
 impl InputDistance {
-    /// Of a refined mesh whose triangles each come from one control face; `None` where they reach over several.
+    /// Of a refined mesh whose triangles each come from one control face, and where on the input its vertices came from; `None` where
+    /// triangles reach over several.
     ///
     /// # Errors
     /// Coordinates too large to be measured.
-    pub(super) fn new(input: Triangles<'_>, found: &Exact) -> Result<Option<Self>, MeasureError> {
-        let is_known = found.origins.len() == found.mesh.vertex_count();
+    pub(super) fn new(
+        input: Triangles<'_>,
+        (found, origins): (&Exact, &[Origin]),
+    ) -> Result<Option<Self>, MeasureError> {
+        let is_known = origins.len() == found.mesh.vertex_count();
         if !is_known || found.parents.len() != found.mesh.face_count() {
             return Ok(None);
         }
-        let moved = moves(input, found);
+        let moved = moves(input, found, origins);
         let upper = moved.iter().copied().fold(0.0, f64::max);
         let greatest = greatest(input);
-        let lower = lower(input, found, &moved)? - ROUNDING * greatest;
+        let lower = lower(input, (found, origins), &moved)? - ROUNDING * greatest;
         Ok(Some(Self { lower: lower.max(0.0), upper: upper + FLAT * greatest }))
     }
 
@@ -59,10 +63,10 @@ impl InputDistance {
     pub(super) fn of_other(
         self,
         input: Triangles<'_>,
-        found: &Exact,
+        (found, origins): (&Exact, &[Origin]),
         apart: f64,
     ) -> Result<Self, MeasureError> {
-        let lower = lower(input, found, &moves(input, found))?;
+        let lower = lower(input, (found, origins), &moves(input, found, origins))?;
         Ok(Self {
             lower: (lower - ROUNDING * greatest(input)).max(0.0),
             upper: (self.upper + apart).next_up(),
@@ -87,15 +91,19 @@ fn place(input: Triangles<'_>, origin: &Origin) -> [f64; 3] {
 }
 
 /// How far each vertex is from where it came from.
-fn moves(input: Triangles<'_>, found: &Exact) -> Vec<f64> {
-    let pairs = found.mesh.positions().iter().zip(&found.origins);
+fn moves(input: Triangles<'_>, found: &Exact, origins: &[Origin]) -> Vec<f64> {
+    let pairs = found.mesh.positions().iter().zip(origins);
     pairs.map(|(&vertex, origin)| distance(vertex, place(input, origin))).collect()
 }
 
 /// The greatest true distance among the vertices that were moved most along normals, to the input, and of where they came from,
 /// to the result.
-fn lower(input: Triangles<'_>, found: &Exact, moved: &[f64]) -> Result<f64, MeasureError> {
-    let places = found.origins.iter().map(|origin| place(input, origin));
+fn lower(
+    input: Triangles<'_>,
+    (found, origins): (&Exact, &[Origin]),
+    moved: &[f64],
+) -> Result<f64, MeasureError> {
+    let places = origins.iter().map(|origin| place(input, origin));
     let along = places.zip(found.mesh.positions()).zip(&found.normals);
     let along: Vec<f64> =
         along.map(|((there, &here), &normal)| dot(minus(here, there), normal).abs()).collect();
@@ -108,7 +116,7 @@ fn lower(input: Triangles<'_>, found: &Exact, moved: &[f64]) -> Result<f64, Meas
     order.sort_unstable();
     let mut lower = 0.0f64;
     for vertex in order {
-        let (there, here) = (place(input, &found.origins[vertex]), found.mesh.positions()[vertex]);
+        let (there, here) = (place(input, &origins[vertex]), found.mesh.positions()[vertex]);
         let far = moved[vertex];
         for (point, surface) in [(here, input), (there, found.mesh.as_triangles())] {
             lower = lower.max(closest(point, surface, far)?);

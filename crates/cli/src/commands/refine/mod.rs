@@ -21,7 +21,7 @@ use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
 
 use super::{interpolation, picture};
-use crate::arguments::{Method, RefineArguments, Unit};
+use crate::arguments::{Featured, Method, RefineArguments, Unit};
 use crate::bulk::Bulk;
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds};
@@ -32,7 +32,7 @@ use crate::report::{
     InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport, SizeReport,
     VERSION, ViewReport,
 };
-use exact::Goals;
+use exact::{Before, Goals};
 use normals::Normals;
 use provenance::Provenance;
 
@@ -46,6 +46,8 @@ struct Refined {
     provenance: Option<Provenance>,
     /// How near the mesh is to the limit surface: sentences of a line each.
     achieved: Vec<String>,
+    /// Triangles that are turned over against the limit surface; not known of the stepwise methods.
+    inverted: Option<usize>,
     /// How it came about, in words.
     how: String,
     report: MethodReport,
@@ -82,24 +84,33 @@ fn refine(
         faces: input.diagnosis.input_faces,
         left_out: input.left_out,
     };
-    let Input { mesh: control, diagnosis, face_inputs: input_faces, reading, building, .. } = input;
+    let Input { mesh: control, mut diagnosis, face_inputs, reading, building, .. } = input;
     if let Some(note) = format.and_then(|format| lost_tags(control.tags(), format)) {
         progress.note(note);
     }
-    let control = arguments.features.apply(control)?;
-    let diagonal = control.diagonal();
     let before = Bulk::of(&control);
-    // Where the vertices were: interpolation moves them, and keeps the faces.
-    let places = control.positions().to_vec();
-    let (control, interpolation) = interpolation::apply(
-        control,
+    let read = Before {
+        positions: control.positions().to_vec(),
+        triangles: control.triangles().to_vec(),
+        faces: face_inputs,
+    };
+    let control = arguments.features.apply(control)?;
+    if let Some(note) = divided_corners(&control) {
+        progress.note(note);
+    }
+    diagnosis.concave_corners = control.concave.corners.clone();
+    let Featured { mesh, concave } = control;
+    let diagonal = mesh.diagonal();
+    let (mesh, interpolation) = interpolation::apply(
+        mesh,
         (arguments.interpolation, arguments.build.unit),
         arguments.scheme.scheme(),
         progress,
     )?;
+    let control = Featured { mesh, concave };
 
     let goals = match arguments.method {
-        Method::Exact => Some(Goals::new(arguments, &control, diagonal)?),
+        Method::Exact => Some(Goals::new(arguments, &control.mesh, diagonal)?),
         _ => None,
     };
     let parameters = ParametersReport {
@@ -111,15 +122,15 @@ fn refine(
     };
     // Without a name to write to, this is a dry run: the arguments see to that.
     let (Some(path), Some(format), false) = (&arguments.output, format, arguments.exact.dry_run) else {
-        let goals = goals.map_or_else(|| Goals::new(arguments, &control, diagonal), Ok)?;
+        let goals = goals.map_or_else(|| Goals::new(arguments, &control.mesh, diagonal), Ok)?;
         let told = (input_report, (&diagnosis).into(), parameters);
-        estimate::run(&control, &goals, arguments, told, progress)?;
+        estimate::run(&control.mesh, &goals, arguments, told, progress)?;
         return Ok(Outcome::Done);
     };
     let start = Instant::now();
     let mut refined = match &goals {
-        Some(goals) => exact::run((&control, &places, &input_faces), goals, arguments, progress)?,
-        None => stepwise::run(control, arguments, Some(format), progress)?,
+        Some(goals) => exact::run((&control, &read), goals, arguments, progress)?,
+        None => stepwise::run(control.mesh, arguments, Some(format), progress)?,
     };
     let refining = start.elapsed();
 
@@ -135,7 +146,10 @@ fn refine(
     let writing = start.elapsed();
     progress.note(summary(arguments, &refined, refining));
 
-    let Refined { mesh, normals, report, outcome, .. } = refined;
+    if let Some(note) = refined.inverted.and_then(turned_over) {
+        progress.note(note);
+    }
+    let Refined { mesh, normals, inverted, report, outcome, .. } = refined;
     if let Some(report_path) = &arguments.report {
         progress.stage("examining the result");
         let report = RefineReport {
@@ -146,7 +160,7 @@ fn refine(
             interpolation,
             method: report,
             size: SizeReport { before, after },
-            output: OutputReport::of(arguments.output_name(), &mesh),
+            output: OutputReport::of(arguments.output_name(), &mesh, inverted),
             seconds: phases(reading, building, refining, writing),
         };
         progress.clear();
@@ -181,6 +195,22 @@ fn lost_tags(tags: &Tags, format: Format) -> Option<String> {
         .map(|(count, one, many)| counted(count, one, many))
         .collect();
     Some(format!("{}: followed, but left out of the output, whose format has none", found.join(" and ")))
+}
+
+/// Tells about sharp edges that divide corners of 180° and more.
+fn divided_corners(control: &Featured) -> Option<String> {
+    let concave = &control.concave;
+    let corners = counted(concave.corners.count, "corner", "corners");
+    let edges = counted(concave.edges, "sharp edge", "sharp edges");
+    let divide = if concave.edges == 1 { "divides" } else { "divide" };
+    (concave.edges > 0)
+        .then(|| format!("{edges} {divide} {corners} of 180° or more, so that flat faces stay flat"))
+}
+
+/// Tells about triangles that are turned over.
+fn turned_over(inverted: usize) -> Option<String> {
+    let triangles = counted(inverted, "triangle is", "triangles are");
+    (inverted > 0).then(|| format!("{triangles} turned over against the limit surface: it folds there"))
 }
 
 fn write(path: &Path, format: Format, arguments: &RefineArguments, refined: &Refined) -> anyhow::Result<()> {

@@ -1,5 +1,6 @@
 //! Where the vertices and triangles of an exact refinement came from, as properties of a PLY file.
 
+use limitmesh::mesh::FaceParts;
 use limitmesh::refine::Origin;
 use limitmesh_io::Property;
 
@@ -16,17 +17,18 @@ pub(super) struct Provenance {
 }
 
 impl Provenance {
-    /// Takes the origins of the vertices and the parents of the triangles apart; `inputs` is the input's face of each control
-    /// face.
-    pub(super) fn new(origins: &[Origin], parents: Vec<u32>, inputs: &[u32]) -> Self {
-        let input = |face: &u32| inputs[*face as usize];
-        let of_vertices = origins.iter().map(|origin| input(&origin.face)).collect();
-        let of_triangles = parents.iter().map(input).collect();
-        let column = |corner: usize| origins.iter().map(|origin| origin.barycentric[corner]).collect();
+    /// Takes the origins of the vertices and the parents of the triangles apart; those on parts of faces are told of the
+    /// whole ones, and `inputs` is the input's face of each of these.
+    pub(super) fn new(origins: &[Origin], parents: Vec<u32>, (inputs, parts): (&[u32], &FaceParts)) -> Self {
+        let input = |face: u32| inputs[parts.whole(face) as usize];
+        let of_vertices = origins.iter().map(|origin| input(origin.face)).collect();
+        let of_triangles = parents.iter().map(|&face| input(face)).collect();
+        let on_whole = |origin: &Origin| parts.on_whole(origin.face, origin.barycentric);
+        let column = |corner: usize| origins.iter().map(|origin| on_whole(origin).1[corner]).collect();
         Self {
-            faces: origins.iter().map(|origin| origin.face).collect(),
+            faces: origins.iter().map(|origin| parts.whole(origin.face)).collect(),
             barycentric: [0, 1, 2].map(column),
-            parents,
+            parents: parents.into_iter().map(|face| parts.whole(face)).collect(),
             inputs: [of_vertices, of_triangles],
         }
     }

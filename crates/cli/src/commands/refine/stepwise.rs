@@ -45,6 +45,7 @@ pub(super) fn run(
         normals,
         provenance: None,
         achieved: Vec::new(),
+        inverted: None,
         how: counted(steps.len(), "step", "steps") + early,
         outcome: outcome(arguments, &mesh, &steps, stop),
         mesh,

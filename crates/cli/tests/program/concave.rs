@@ -1,0 +1,112 @@
+//! Corners of 180° and more: divided where the program tags edges, as they are where the file does.
+
+use serde_json::{Value, json};
+
+use crate::common::{file, folder, run, soup};
+
+/// An L of height 1: two caps of four triangles round a corner, and six sides.
+const L: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n\
+    f 1 3 2\nf 1 4 3\nf 1 5 4\nf 1 6 5\nf 7 8 9\nf 7 9 10\nf 7 10 11\nf 7 11 12\nf 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12\n";
+
+/// A flat sheet round the origin but for a quarter, with a tag on the corner there.
+const TAGGED: &str = "v 0 0 0\nv 1 0 0\nv 0.8 0.6 0\nv 0.28 0.96 0\nv -0.28 0.96 0\nv -0.8 0.6 0\nv -1 0 0\nv -0.8 -0.6 0\n\
+    v -0.28 -0.96 0\nv 0 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 5\nf 1 5 6\nf 1 6 7\nf 1 7 8\nf 1 8 9\nf 1 9 10\nt corner 1/1/0 0 10.0\n";
+
+#[test]
+fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
+    let folder = folder();
+    let input = file(&folder, "l.obj", L);
+    let output = folder.path().join("out.ply");
+    let refine = |options: &str| {
+        let words = format!("refine {{}} -o {{}} --crease-angle 30 --report - {options}");
+        let run = run(&words, &[&input, &output]).expect(0);
+        (run.json(), run.stderr)
+    };
+    let off = || {
+        let run = run("measure {} {} --certified --json", &[&output, &input]).expect(0);
+        run.json()["hausdorff"]["upper"].as_f64().expect("a number")
+    };
+    let (report, told) = refine("");
+    assert_eq!(report["diagnosis"]["concave_corners"], json!({ "count": 2, "first": [3, 9] }));
+    assert_eq!(report["diagnosis"]["clean"], true);
+    assert_eq!(report["parameters"]["concave_corners"], "divided");
+    assert_eq!(
+        (&report["output"]["inverted_triangles"], &report["output"]["triangles"]),
+        (&json!(0), &json!(20))
+    );
+    assert!(told.contains("2 sharp edges divide 2 corners of 180° or more"), "{told}");
+    assert!(!told.contains("turned over"), "{told}");
+    assert!(off() < 1e-9);
+
+    let (report, told) = refine("--concave-corners as-tagged");
+    assert_eq!(report["diagnosis"]["concave_corners"]["count"], 0);
+    assert_eq!(report["parameters"]["concave_corners"], "as-tagged");
+    assert!(report["output"]["inverted_triangles"].as_u64().expect("a count") > 0);
+    assert!(told.contains("triangles are turned over against the limit surface"), "{told}");
+    assert!(off() > 0.02);
+    let (report, _) = refine("--method uniform --levels 2");
+    assert_eq!(report["output"]["inverted_triangles"], Value::Null);
+    // It is the same limit surface for measuring.
+    refine("");
+    let measure = "measure {} --limit-of {} --crease-angle 30 --certified --json";
+    let measured = run(measure, &[&output, &input]).expect(0).json();
+    assert!(measured["hausdorff"]["upper"].as_f64().expect("a number") < 1e-6);
+    assert_eq!(measured["reference"]["limit"]["concave_corners"], "divided");
+}
+
+#[test]
+fn tags_of_files_are_followed_as_they_are_unless_asked() {
+    let folder = folder();
+    let input = file(&folder, "tagged.obj", TAGGED);
+    let output = folder.path().join("out.ply");
+    let report = |options: &str| {
+        run(&format!("refine {{}} -o {{}} --report - {options}"), &[&input, &output]).expect(0).json()
+    };
+    let tagged = report("");
+    assert_eq!(tagged["parameters"]["concave_corners"], "as-tagged");
+    assert_eq!(tagged["diagnosis"]["concave_corners"]["count"], 0);
+    let divided = report("--concave-corners divided");
+    assert_eq!(divided["diagnosis"]["concave_corners"]["count"], 1);
+    assert_eq!(divided["output"]["inverted_triangles"], 0);
+    assert_eq!(report("--boundary corners")["parameters"]["concave_corners"], "divided");
+}
+
+#[test]
+fn origins_name_the_faces_of_the_control_mesh_before_they_were_divided() {
+    let folder = folder();
+    let input = file(&folder, "tagged.obj", TAGGED);
+    let output = folder.path().join("out.ply");
+    run("refine {} -o {} --concave-corners divided --provenance --ascii", &[&input, &output]).expect(0);
+    let text = std::fs::read_to_string(&output).expect("readable");
+    let mesh = soup(&output);
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip_while(|line| *line != "end_header")
+        .skip(1)
+        .map(|line| line.split_whitespace().map(|word| word.parse().expect("a number")).collect())
+        .collect();
+    let (vertices, faces) = rows.split_at(mesh.positions.len());
+    let input = soup(&input);
+    let flat = |v: u32| [0, 1].map(|axis| input.positions[v as usize][axis]);
+    let corners: Vec<Vec<[f64; 2]>> =
+        input.faces.iter().map(|face| face.iter().map(|&v| flat(v)).collect()).collect();
+    let is_parent = |row: &Vec<f64>| row.last().is_some_and(|&parent| (parent as usize) < corners.len());
+    assert!(!faces.is_empty() && faces.iter().all(is_parent));
+    let mut origins = Vec::new();
+    for row in vertices {
+        let [face, weights @ ..] = &row[row.len() - 4..] else { continue };
+        assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{row:?}");
+        let face = &corners[*face as usize];
+        origins.push([0, 1].map(|axis| (0..3).map(|i| weights[i] * face[i][axis]).sum::<f64>()));
+    }
+    // The first vertices are those of the file, and no two vertices come from one place.
+    for (v, origin) in origins.iter().enumerate().take(input.positions.len()) {
+        let expected = flat(v as u32);
+        assert!((origin[0] - expected[0]).abs() + (origin[1] - expected[1]).abs() < 1e-12);
+    }
+    for (i, a) in origins.iter().enumerate() {
+        for b in &origins[..i] {
+            assert!((a[0] - b[0]).abs() + (a[1] - b[1]).abs() > 1e-9, "{a:?} twice");
+        }
+    }
+}
