@@ -150,7 +150,7 @@ pub fn write(path: &Path, output: &Output<'_>, options: &WriteOptions) -> Result
     write_as(path, Format::from_path(path)?, output, options)
 }
 
-/// [`write`] in a format that the name need not tell.
+/// [`write()`] in a format that the name need not tell.
 ///
 /// # Errors
 /// The output does not fit together or into the format, or the system refuses.
