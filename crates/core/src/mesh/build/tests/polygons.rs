@@ -255,3 +255,36 @@ fn many_corners_take_little_time() {
     assert!(diagnosis.twisted_polygons.is_empty());
     assert_tiles(&points, mesh.triangles());
 }
+
+/// A polygon that goes round three vertices thousands of times bounds nothing, and is not looked at corner by corner.
+#[test]
+fn going_round_and_round_is_a_twist() {
+    let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    let face: Vec<u32> = (0..30_000).map(|corner| corner % 3).collect();
+    let (mesh, diagnosis) = build_soup(&soup(&flat(&points), &[&face]));
+    assert_eq!(diagnosis.twisted_polygons.count, 1);
+    assert_eq!(mesh.triangles().len(), 1);
+}
+
+/// Holes that are joined to the rim by slits, which come twice to the vertices at their ends.
+#[test]
+fn polygons_with_slits_are_no_twists() {
+    let (mut points, mut face) = (vec![[0.0, 0.0]], vec![0u32]);
+    // Thirty triangular holes, each reached from the first corner along a ray.
+    for hole in 0..30 {
+        let angle = 0.02 + 0.05 * f64::from(hole);
+        let at = |turn: f64, far: f64| [far * (angle + turn).cos(), far * (angle + turn).sin()];
+        let first = points.len() as u32;
+        points.extend([at(0.0, 1.0), at(0.01, 2.0), at(0.02, 1.5)]);
+        face.extend([first, first + 1, first + 2, first, 0]);
+    }
+    let first = points.len() as u32;
+    points.extend([[0.0, 9.0], [9.0, 9.0], [9.0, 0.0]]);
+    face.extend([first, first + 1, first + 2]);
+    // Clockwise so far.
+    face.reverse();
+    assert!(face.len() > 64);
+    let (mesh, diagnosis) = build_soup(&soup(&flat(&points), &[&face]));
+    assert!(diagnosis.twisted_polygons.is_empty(), "{:?}", found(&diagnosis));
+    assert_eq!(mesh.triangles().len(), face.len() - 2);
+}

@@ -283,3 +283,51 @@ fn tags_follow_their_vertices() {
     assert_eq!(creases, [([4, 5], 2.0), ([1, 2], 3.0)]);
     assert_eq!(mesh.tags().corners, [corner(0, 10.0), corner(1, 5.0)]);
 }
+
+/// Squares of coordinates that vanish or overflow say nothing about a face's area.
+#[test]
+fn tiny_and_huge_faces_have_an_area() {
+    for size in [1e-305, 1e-300, 1e-160, 1e-120, 1.0, 1e120, 1e160, 1e300] {
+        let positions = TETRAHEDRON.map(|p| p.map(|x| x * size));
+        let (mesh, diagnosis) = build_soup(&soup(&positions, &SIDES));
+        assert!(diagnosis.is_clean() && mesh.triangles().len() == 4, "{size}: {:?}", found(&diagnosis));
+        // The middle of an edge takes nothing from that: it is on one line with the ends.
+        let mut positions = positions.to_vec();
+        positions.push([0.5 * size, 0.0, 0.0]);
+        let faces = [SIDES.as_slice(), &[&[0, 4, 1]]].concat();
+        let (_, diagnosis) = build_soup(&soup(&positions, &faces));
+        assert_eq!(diagnosis.zero_area_faces, finding(&[4]), "{size}");
+    }
+}
+
+#[test]
+fn faces_know_which_of_the_input_they_are_from() {
+    let trace = |soup: &PolygonSoup| Mesh::from_soup_traced(soup, &BuildOptions::default()).unwrap();
+    // A line, a square, a face that is turned round, one that repeats it.
+    let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0]];
+    let faces: [&[u32]; 4] = [&[0, 0, 1], &[0, 1, 2, 3], &[1, 2, 4], &[4, 2, 1]];
+    assert_eq!(trace(&soup(&positions, &faces)).2, [1, 1, 2]);
+    // Three sheets along an edge, closed so that the edge lies inside each: cut, and split in its middle.
+    let mut positions = vec![[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];
+    let mut faces: Vec<Vec<u32>> = Vec::new();
+    for i in 0..3u32 {
+        let angle = f64::from(i) * 2.0;
+        positions.push([angle.cos(), angle.sin(), 0.0]);
+        faces.push(vec![0, 1, 2 + i]);
+    }
+    for (a, b) in [(2, 3), (3, 4)] {
+        faces.extend([vec![0, a, b], vec![1, b, a]]);
+    }
+    let slices: Vec<&[u32]> = faces.iter().map(Vec::as_slice).collect();
+    let (mesh, _, inputs) = trace(&soup(&positions, &slices));
+    assert_eq!(inputs.len(), mesh.face_count());
+    for (face, &input) in inputs.iter().enumerate() {
+        // Each corner, or for the middle of an edge its ends, are corners of the input's face.
+        let corners: Vec<[f64; 3]> = faces[input as usize].iter().map(|&v| positions[v as usize]).collect();
+        let plane = |p: [f64; 3]| {
+            let [a, b, c] = [0, 1, 2].map(|i| vector(corners[i]));
+            (vector(p) - a).dot((b - a).cross(c - a))
+        };
+        assert!(mesh.as_triangles().corners(face).iter().all(|&p| plane(p).abs() < 1e-12), "{face}");
+    }
+}
