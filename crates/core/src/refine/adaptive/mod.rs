@@ -88,10 +88,10 @@ pub(super) fn adaptive(
     options: &ExactOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
-    with_engine(mesh, scheme, options, observer, |engine| {
+    let (most, cap) = options.budget();
+    let most = most.max(mesh.face_count());
+    let found = with_engine(mesh, scheme, options, observer, |engine| {
         let floor = engine.floor(options.tolerance);
-        let (most, cap) = options.budget();
-        let most = most.max(mesh.face_count());
         if !options.balance {
             return engine.finest(floor, (most, cap), options);
         }
@@ -102,7 +102,12 @@ pub(super) fn adaptive(
         }
         let plain = Engine { is_balanced: false, ..engine.clone() }.finest(floor, (most, cap), options)?;
         engine.least_balanced(plain, floor, (most, cap), options)
-    })
+    })?;
+    // Flat regions whose rims cross, or that share edges, keep more triangles than plans counted.
+    if options.flat_regions && found.mesh.face_count() > most {
+        return adaptive(mesh, scheme, &options.clone().flat_regions(false), observer);
+    }
+    Ok(found)
 }
 
 /// The triangles that goals so many times as coarse take; with angles or pixels but for those of leaves that turn out to fail among

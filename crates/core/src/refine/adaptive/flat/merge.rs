@@ -53,6 +53,7 @@ impl FlatRegions {
             block.map(|region| self.covering(region, &whole, (starts, sharp, corners), is_stopped)).collect()
         })?;
         let coverings: Vec<Option<Covering>> = coverings.into_iter().flat_map(|list: Vec<_>| list).collect();
+        let coverings = self.apart(coverings, &whole, watch)?;
         if coverings.iter().all(Option::is_none) {
             return Ok(whole);
         }
@@ -103,6 +104,44 @@ impl FlatRegions {
         }
         let is_same = triangles.len() < before.len() && (after - area).abs() <= SAME_AREA * area;
         is_same.then(|| by_face(triangles, &along))
+    }
+
+    /// The coverings whose new edges are none that the mesh has elsewhere: two flat sheets may share their rims, and an edge has two
+    /// faces.
+    fn apart(
+        &self,
+        mut coverings: Vec<Option<Covering>>,
+        whole: &Assembled,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Vec<Option<Covering>>, Cancelled> {
+        let mut is_covered = vec![false; whole.positions.len()];
+        watch.each(coverings.iter().flatten().flatten(), |(triangle, _)| {
+            triangle.iter().for_each(|&vertex| is_covered[vertex as usize] = true);
+        })?;
+        // By its ends, the region that an edge is inside of; none where it is on rims, or elsewhere.
+        let mut owners = HashMap::new();
+        watch.each(whole.triangles.iter().zip(&whole.parents), |(&triangle, &parent)| {
+            let own = self.region(parent);
+            for [from, to] in edges(triangle) {
+                if is_covered[from as usize] && is_covered[to as usize] {
+                    let owner = owners.entry([from.min(to), from.max(to)]).or_insert(own);
+                    *owner = owner.filter(|_| *owner == own);
+                }
+            }
+        })?;
+        watch.each((0u32..).zip(&mut coverings), |(region, covering)| {
+            let Some(triangles) = covering else { return };
+            let all = || triangles.iter().flat_map(|&(triangle, _)| edges(triangle));
+            let directed: HashSet<[u32; 2]> = all().collect();
+            let inner = all().filter(|&[from, to]| from < to && directed.contains(&[to, from]));
+            let inner: Vec<[u32; 2]> = inner.collect();
+            if inner.iter().any(|ends| owners.get(ends).is_some_and(|&owner| owner != Some(region))) {
+                *covering = None;
+            } else {
+                owners.extend(inner.into_iter().map(|ends| (ends, Some(region))));
+            }
+        })?;
+        Ok(coverings)
     }
 
     /// The mesh with the coverings that there are.
@@ -221,9 +260,12 @@ impl FlatRegions {
     }
 }
 
+fn edges(triangle: [u32; 3]) -> [[u32; 2]; 3] {
+    [0, 1, 2].map(|edge| [triangle[edge], triangle[(edge + 1) % 3]])
+}
+
 /// Gives each triangle a control face: that of a rim edge of its own, else that of a triangle beside it.
 fn by_face(triangles: Vec<[u32; 3]>, along: &HashMap<[u32; 2], u32>) -> Covering {
-    let edges = |triangle: [u32; 3]| [0, 1, 2].map(|edge| [triangle[edge], triangle[(edge + 1) % 3]]);
     let mut by_edge = HashMap::new();
     for (at, &triangle) in triangles.iter().enumerate() {
         edges(triangle).into_iter().for_each(|ends| {
