@@ -71,7 +71,7 @@ pub(crate) fn gaps(folder: &Path) -> Result<()> {
 
 /// Distances between a mesh and a finer one, and what else is measured.
 fn measurements(bunny: &Mesh, canyon: &Mesh) -> Result<()> {
-    let fine = limitmesh::measure::limit_reference(bunny, &Loop, 4)?;
+    let fine = limitmesh::refine::limit_reference(bunny, &Loop, 4)?;
     let (a, b) = (bunny.as_triangles(), fine.as_triangles());
     gap("bunny, sampled distances", &|observer| {
         Ok(hausdorff_observed(a, b, &SamplingOptions::default().samples(1_000_000), observer).map(|_| ())?)

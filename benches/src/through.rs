@@ -8,7 +8,8 @@ use std::path::Path;
 use anyhow::Result;
 use limitmesh::Mesh;
 use limitmesh::interpolate::{InterpolateOptions, interpolate};
-use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between, limit_reference};
+use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between};
+use limitmesh::refine::limit_reference;
 use limitmesh::scheme::Loop;
 
 use crate::mesh;

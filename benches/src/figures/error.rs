@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 use limitmesh::Mesh;
-use limitmesh::measure::limit_reference;
 use limitmesh::refine::SeamRule;
+use limitmesh::refine::limit_reference;
 use limitmesh::scheme::Loop;
 use limitmesh_paper::methods;
 use limitmesh_render::plot::{Axis, Plot, Series};

@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use limitmesh::Mesh;
-use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between, limit_reference};
+use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between};
+use limitmesh::refine::limit_reference;
 use limitmesh::scheme::Loop;
 
 /// The limit surface is stood for by at most so many triangles. All its vertices are samples: enough, and still seconds.

@@ -110,7 +110,7 @@ mod tests {
     fn the_integral_over_a_sphere_is_four_pi_times_its_radius() {
         // √K = 1/r, and the area is 4πr².
         let control = super::super::builtin("icosphere").unwrap();
-        let mut mesh = limitmesh::measure::limit_reference(&control, &Loop, 3).unwrap();
+        let mut mesh = limitmesh::refine::limit_reference(&control, &Loop, 3).unwrap();
         let onto_sphere = |p: &[f64; 3]| p.map(|x| 2.5 * x / dot(*p, *p).sqrt());
         let positions = mesh.positions().iter().map(onto_sphere).collect();
         mesh = mesh.with_positions(positions).unwrap();

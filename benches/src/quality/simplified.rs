@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::Result;
-use limitmesh::measure::limit_reference;
+use limitmesh::refine::limit_reference;
 use limitmesh::refine::{ExactOptions, exact};
 use limitmesh::scheme::Loop;
 use limitmesh::simplify::{Features, SimplifyOptions, simplify};

@@ -79,7 +79,7 @@ struct Compared {
 }
 
 fn compare(model: &Model, judge: &Judge<'_>, level: usize) -> Result<Compared> {
-    let uniform = limitmesh::measure::limit_reference(&model.mesh, &Loop, level)?;
+    let uniform = limitmesh::refine::limit_reference(&model.mesh, &Loop, level)?;
     let theirs = judge.distance(&uniform)?;
     let triangles = uniform.face_count();
     drop(uniform);

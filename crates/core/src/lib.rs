@@ -7,7 +7,8 @@
 //! ```
 //!
 //! ```
-//! use limitmesh::measure::{SamplingOptions, hausdorff, limit_reference};
+//! use limitmesh::measure::{SamplingOptions, hausdorff};
+//! use limitmesh::refine::limit_reference;
 //! use limitmesh::refine::{ExactOptions, exact};
 //! use limitmesh::scheme::Loop;
 //! use limitmesh::Mesh;

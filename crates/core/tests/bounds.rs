@@ -5,9 +5,8 @@
 
 use limitmesh::Mesh;
 use limitmesh::criterion::{Camera, View, Viewpoint};
-use limitmesh::measure::{
-    Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff_between, limit_reference,
-};
+use limitmesh::measure::{Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff_between};
+use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
 use limitmesh::scheme::Loop;
 

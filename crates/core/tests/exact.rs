@@ -8,8 +8,9 @@ use std::ops::ControlFlow;
 
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
-use limitmesh::measure::{Bvh, SamplingOptions, hausdorff, hausdorff_between, limit_reference};
+use limitmesh::measure::{Bvh, SamplingOptions, hausdorff, hausdorff_between};
 use limitmesh::progress::{Progress, Stage};
+use limitmesh::refine::limit_reference;
 use limitmesh::refine::{ExactOptions, ExactStop, exact, exact_estimate, exact_observed};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 use support::vertices_are_of_uniform_refinement;

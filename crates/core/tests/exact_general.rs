@@ -5,8 +5,9 @@
 mod support;
 
 use limitmesh::Mesh;
-use limitmesh::measure::{SamplingOptions, hausdorff, limit_reference};
+use limitmesh::measure::{SamplingOptions, hausdorff};
 use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
+use limitmesh::refine::limit_reference;
 use limitmesh::refine::{ExactOptions, ExactStop, exact};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use support::{Random, octahedron, tagged_obj, vertices_are_of_uniform_refinement};

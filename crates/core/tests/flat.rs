@@ -5,8 +5,9 @@
 use std::f64::consts::TAU;
 
 use limitmesh::Mesh;
-use limitmesh::measure::{SamplingOptions, hausdorff, limit_reference};
+use limitmesh::measure::{SamplingOptions, hausdorff};
 use limitmesh::mesh::{CreaseTag, INFINITELY_SHARP, Tags};
+use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate};
 use limitmesh::scheme::Loop;
 

@@ -10,7 +10,8 @@ mod support;
 
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
-use limitmesh::measure::{Bvh, distances_to, limit_reference};
+use limitmesh::measure::{Bvh, distances_to};
+use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
 use limitmesh::scheme::Loop;
 use support::Random;

@@ -6,8 +6,9 @@
 use std::time::Instant;
 
 use limitmesh::Mesh;
-use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between, limit_reference};
+use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between};
 use limitmesh::refine::SeamRule;
+use limitmesh::refine::limit_reference;
 use limitmesh::scheme::Loop;
 use serde::Serialize;
 

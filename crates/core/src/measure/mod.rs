@@ -7,7 +7,6 @@ mod certified;
 mod climb;
 mod frame;
 mod hausdorff;
-mod limit_reference;
 mod quality;
 mod samples;
 mod watertight;
@@ -22,7 +21,6 @@ pub use hausdorff::{
     Hausdorff, OneSided, SamplingOptions, distances_to, distances_to_observed, hausdorff, hausdorff_between,
     hausdorff_between_observed, hausdorff_observed,
 };
-pub use limit_reference::limit_reference;
 pub use quality::{TriangleQuality, triangle_quality};
 pub use watertight::{Watertightness, watertightness, watertightness_observed};
 

@@ -8,6 +8,7 @@ mod exact;
 mod exact_options;
 mod exact_result;
 mod junctions;
+mod limit_reference;
 mod simplified;
 mod split;
 mod step;
@@ -18,6 +19,7 @@ mod uniform;
 pub use exact::{exact, exact_estimate, exact_estimate_observed, exact_observed, is_certified};
 pub use exact_options::ExactOptions;
 pub use exact_result::{ErrorBounds, Estimate, Exact, ExactStop, Origin};
+pub use limit_reference::limit_reference;
 pub use stepwise::{SeamRule, StepwiseOptions, stepwise, stepwise_observed};
 pub use uniform::{UniformOptions, uniform, uniform_observed};
 

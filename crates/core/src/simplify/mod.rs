@@ -160,7 +160,7 @@ pub struct Simplified {
 /// Where no more edges can go, the result has more triangles than asked for.
 ///
 /// ```
-/// use limitmesh::measure::limit_reference;
+/// use limitmesh::refine::limit_reference;
 /// use limitmesh::simplify::{Features, SimplifyOptions, simplify};
 /// use limitmesh::scheme::Loop;
 /// use limitmesh::Mesh;

@@ -1,10 +1,9 @@
 use super::*;
 use crate::index::FaceId;
-use crate::measure::{
-    Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff, limit_reference,
-};
+use crate::measure::{Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff};
 use crate::mesh::{BuildOptions, CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use crate::models;
+use crate::refine::limit_reference;
 use crate::scheme::Loop;
 use proptest::prelude::*;
 

@@ -12,7 +12,8 @@ mod liars;
 mod support;
 
 use limitmesh::Mesh;
-use limitmesh::measure::{Bvh, CertifiedOptions, certified_hausdorff, limit_reference};
+use limitmesh::measure::{Bvh, CertifiedOptions, certified_hausdorff};
+use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 

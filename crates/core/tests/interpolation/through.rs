@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use limitmesh::interpolate::{
     InterpolateOptions, Interpolated, InterpolationMethod, interpolate as interpolate_within,
 };
-use limitmesh::measure::limit_reference;
 use limitmesh::mesh::{BoundaryRule, CreaseTag, PolygonSoup, Tags};
+use limitmesh::refine::limit_reference;
 use limitmesh::refine::{ExactOptions, exact};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 use limitmesh::{Mesh, VertexId};

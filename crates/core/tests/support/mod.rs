@@ -4,9 +4,9 @@
 use std::collections::{BTreeMap, HashMap};
 
 use limitmesh::Mesh;
-use limitmesh::measure::limit_reference;
 use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
 use limitmesh::refine::Exact;
+use limitmesh::refine::limit_reference;
 use limitmesh::scheme::Scheme;
 
 pub type Point = [f64; 3];

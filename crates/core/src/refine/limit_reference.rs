@@ -1,8 +1,8 @@
 //! The reference that the paper measures against: a control mesh refined uniformly, its vertices on the limit
 //! surface.
 
+use super::{RefineError, UniformOptions, uniform};
 use crate::mesh::Mesh;
-use crate::refine::{RefineError, UniformOptions, uniform};
 use crate::scheme::Scheme;
 
 /// The limit surface of `control` under `scheme`, as triangles after `levels` uniform refinements with all vertices on
