@@ -3,7 +3,7 @@
 //! ```text
 //! soup ─▶ control mesh ─▶ limit surface ─▶ refinement ─▶ triangles
 //!       mesh           scheme, limit    criterion,     measure
-//!                                       refine, emit
+//!                                   refine, closure
 //! ```
 //!
 //! ```
