@@ -109,7 +109,7 @@ fn ply_text_with_extra_elements_and_properties() {
     let body = "1.5 2 7 8\n2.5 0\n255 0 2 .1 .2 0 0\n\n 0 1 0 0 0\n0 1 1 9 1 0\n7 0 0 1 0\n\
                 0.5 3 0 1 2 1\n0.5 4 0 1 2 3 1\n0\nanything after the last element\n";
     let mut soup = ply(text, body.as_bytes());
-    assert_eq!(soup.left_out.last().map(String::as_str), Some("33 bytes after the last element"));
+    assert_eq!(soup.left_out.last().map(String::as_str), Some("32 bytes after the last element"));
     soup.left_out.pop();
     assert_eq!(soup.positions, SQUARE);
     assert_eq!(polygons(&soup), [&[0, 1, 2][..], &[0, 1, 2, 3]]);

@@ -94,7 +94,8 @@ fn origins_name_the_faces_of_the_control_mesh_before_they_were_divided() {
     assert!(!faces.is_empty() && faces.iter().all(is_parent));
     let mut origins = Vec::new();
     for row in vertices {
-        let [face, weights @ ..] = &row[row.len() - 4..] else { continue };
+        // The last column is the face of the file.
+        let [face, weights @ ..] = &row[row.len() - 5..row.len() - 1] else { continue };
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{row:?}");
         let face = &corners[*face as usize];
         origins.push([0, 1].map(|axis| (0..3).map(|i| weights[i] * face[i][axis]).sum::<f64>()));
