@@ -2,7 +2,8 @@
 
 use limitmesh::Mesh;
 use limitmesh::mesh::{BuildOptions, PolygonSoup, Weld};
-use limitmesh_io::{Format, Output, WriteOptions, read_bytes, write_to};
+use limitmesh_io::gltf::{Geometry, Joining};
+use limitmesh_io::{Asset, Format, Output, WriteOptions, read_bytes, write_to};
 
 /// Most faces and corners that are built into a mesh, to keep each run short; reading has no limit.
 const LARGEST: usize = 4096;
@@ -37,6 +38,27 @@ fn build(soup: &PolygonSoup, options: &BuildOptions) {
         match read_bytes(&bytes, format) {
             Ok(again) => assert_eq!(again.positions, mesh.positions(), "positions changed in {format}"),
             Err(error) => panic!("what was written cannot be read: {error}"),
+        }
+    }
+}
+
+/// Takes the meshes out of a glTF document, puts them back, and reads what is written.
+pub fn edit(bytes: &[u8]) {
+    let Ok(mut asset) = Asset::from_bytes(bytes, None) else { return };
+    let _ = asset.contents();
+    for mesh in 0..asset.mesh_count().min(16) {
+        let Ok(own) = asset.mesh(mesh, Joining::Together) else { continue };
+        let positions = &own.soup.positions;
+        for part in own.parts.iter().filter(|part| part.faces.len() <= LARGEST) {
+            let faces = part.faces.clone().map(|face| own.soup.faces.get(face));
+            let triangles: Vec<[u32; 3]> = faces.filter_map(|face| face.try_into().ok()).collect();
+            let _ = asset.replace(mesh, part.primitive, &Geometry { positions, normals: None, triangles: &triangles });
+        }
+    }
+    for format in [Format::Glb, Format::Gltf] {
+        let Ok(written) = asset.to_bytes(format) else { continue };
+        if let Err(error) = Asset::from_bytes(&written, None) {
+            panic!("what was written cannot be read: {error}");
         }
     }
 }

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 use limitmesh::mesh::{BuildOptions, Diagnosis, MeshError, Weld};
 use limitmesh::{Mesh, PolygonSoup};
-use limitmesh_io::Format;
+use limitmesh_io::gltf::Contents;
+use limitmesh_io::{Asset, Format};
 
 use crate::arguments::{BuildArguments, FileFormat};
 use crate::failure::usage;
@@ -24,10 +25,12 @@ const STANDARD_INPUT: &str = "-";
 pub(crate) struct Soup {
     /// As given on the command line.
     pub(crate) name: String,
-    /// `obj`, `ply`, `stl`, `off` or `builtin`.
+    /// `obj`, `ply`, `stl`, `off`, `gltf`, `glb` or `builtin`.
     pub(crate) format: &'static str,
     /// Positions, polygons and tags.
     pub(crate) soup: PolygonSoup,
+    /// What else a glTF document holds.
+    pub(crate) contents: Option<Contents>,
     /// Time taken to read or generate it.
     pub(crate) reading: Duration,
 }
@@ -36,7 +39,7 @@ pub(crate) struct Soup {
 pub(crate) struct Input {
     /// As given on the command line.
     pub(crate) name: String,
-    /// `obj`, `ply`, `stl`, `off` or `builtin`.
+    /// `obj`, `ply`, `stl`, `off`, `gltf`, `glb` or `builtin`.
     pub(crate) format: &'static str,
     /// What else the file held and was left out, in words.
     pub(crate) left_out: Vec<String>,
@@ -60,21 +63,42 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
     let name = display_name(path);
     progress.stage(format!("reading {name}"));
     let start = Instant::now();
-    let (soup, format) = match builtin_name(path) {
-        Some(model) => (builtin(model)?, "builtin"),
+    let (soup, contents, format) = match builtin_name(path) {
+        Some(model) => (builtin(model)?, None, "builtin"),
         None => {
             let format = format_of(path, build.from)?;
-            let soup = if path.as_os_str() == STANDARD_INPUT {
-                let mut bytes = Vec::new();
-                std::io::stdin().lock().read_to_end(&mut bytes).context("standard input cannot be read")?;
-                limitmesh_io::read_bytes(&bytes, format).map_err(|why| anyhow::anyhow!("{name}: {why}"))?
+            let (soup, contents) = if format.is_gltf() {
+                let asset = asset(path)?;
+                (asset.scene_soup()?, Some(asset.contents()?))
+            } else if path.as_os_str() == STANDARD_INPUT {
+                let bytes = standard_input()?;
+                let soup = limitmesh_io::read_bytes(&bytes, format);
+                (soup.map_err(|why| anyhow::anyhow!("{name}: {why}"))?, None)
             } else {
-                limitmesh_io::read_as(path, format)?
+                (limitmesh_io::read_as(path, format)?, None)
             };
-            (soup, format.extension())
+            (soup, contents, format.extension())
         }
     };
-    Ok(Soup { name, format, soup, reading: start.elapsed() })
+    Ok(Soup { name, format, soup, contents, reading: start.elapsed() })
+}
+
+/// Opens a glTF document: a file, or standard input for `-`.
+///
+/// # Errors
+/// It cannot be read, or breaks the rules.
+pub(crate) fn asset(path: &Path) -> anyhow::Result<Asset> {
+    if path.as_os_str() == STANDARD_INPUT {
+        let bytes = standard_input()?;
+        return Asset::from_bytes(&bytes, None).map_err(|why| anyhow::anyhow!("standard input: {why}"));
+    }
+    Ok(Asset::open(path)?)
+}
+
+fn standard_input() -> anyhow::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    std::io::stdin().lock().read_to_end(&mut bytes).context("standard input cannot be read")?;
+    Ok(bytes)
 }
 
 /// Refuses to read standard input twice.
@@ -134,7 +158,7 @@ pub(crate) fn load_keeping(
     progress: &Progress,
 ) -> anyhow::Result<Input> {
     let options = &build.options()?;
-    let Soup { name, format, mut soup, reading } = read(path, build, progress)?;
+    let Soup { name, format, mut soup, reading, .. } = read(path, build, progress)?;
     progress.stage(format!("connecting {}", counted(soup.faces.len(), "face", "faces")));
     let start = Instant::now();
     let (mesh, diagnosis, face_inputs) =

@@ -1,10 +1,10 @@
 //! Writing: text and JSON to standard output, files whole or not at all.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use limitmesh_io::{Format, Output, WriteError, WriteOptions};
+use limitmesh_io::{Asset, Format, Output, WriteError, WriteOptions};
 use serde::Serialize;
 
 use crate::interrupt;
@@ -61,6 +61,12 @@ pub(crate) fn write_mesh(
         Err(WriteError::Writer { reason }) => Err(reason.into()),
         result => Ok(result?),
     }
+}
+
+/// Writes an asset and what belongs to it, whole or not at all; gives files that it names and that were not found.
+pub(crate) fn write_asset(path: &Path, asset: &Asset, format: Format) -> anyhow::Result<Vec<PathBuf>> {
+    let name = path.display().to_string();
+    Ok(interrupt::uninterrupted(name, || asset.write(path, format))?)
 }
 
 /// Writes JSON to a file, or to standard output for `-`.

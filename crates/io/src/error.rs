@@ -1,6 +1,7 @@
 //! What can go wrong with a file, and where.
 
 use crate::format::{Format, UnknownFormat};
+use crate::gltf::GltfFlaw;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -48,6 +49,14 @@ pub enum ReadError {
         /// What is wrong, and where.
         flaw: Flaw,
     },
+    /// Something in a glTF document breaks its rules.
+    #[error("{}glTF {flaw}", prefix(path))]
+    Gltf {
+        /// The file, if it was one.
+        path: Option<PathBuf>,
+        /// What is wrong, and where.
+        flaw: GltfFlaw,
+    },
 }
 
 impl From<UnknownFormat> for ReadError {
@@ -60,7 +69,10 @@ impl ReadError {
     /// The same error with the file's name.
     pub(crate) fn in_file(mut self, file: &Path) -> Self {
         match &mut self {
-            Self::Empty { path, .. } | Self::OtherContent { path, .. } | Self::Flaw { path, .. } => {
+            Self::Empty { path, .. }
+            | Self::OtherContent { path, .. }
+            | Self::Flaw { path, .. }
+            | Self::Gltf { path, .. } => {
                 *path = Some(file.to_owned());
             }
             Self::UnknownFormat(_) | Self::Io { .. } => {}
@@ -249,6 +261,12 @@ pub enum WriteError {
         limit: u32,
         /// The format.
         format: Format,
+    },
+    /// A glTF document cannot be put together.
+    #[error("glTF {flaw}")]
+    Gltf {
+        /// What is wrong, and where.
+        flaw: GltfFlaw,
     },
 }
 

@@ -15,6 +15,10 @@ pub enum Format {
     Stl,
     /// Geomview OFF, ASCII.
     Off,
+    /// glTF 2.0 as JSON text, with files beside it.
+    Gltf,
+    /// glTF 2.0 in one binary file.
+    Glb,
 }
 
 /// A file name whose extension is none of the formats.
@@ -30,10 +34,13 @@ impl fmt::Display for UnknownFormat {
         match self.path.extension() {
             Some(extension) => write!(
                 out,
-                "{path}: the extension '{}' is not one that is known, expected .obj, .ply, .stl or .off",
+                "{path}: the extension '{}' is not one that is known, expected .obj, .ply, .stl, .off, .gltf or .glb",
                 extension.display()
             ),
-            None => write!(out, "{path}: the name has no extension, expected .obj, .ply, .stl or .off"),
+            None => write!(
+                out,
+                "{path}: the name has no extension, expected .obj, .ply, .stl, .off, .gltf or .glb"
+            ),
         }
     }
 }
@@ -42,7 +49,7 @@ impl std::error::Error for UnknownFormat {}
 
 impl Format {
     /// All formats.
-    pub const ALL: &[Self] = &[Self::Obj, Self::Ply, Self::Stl, Self::Off];
+    pub const ALL: &[Self] = &[Self::Obj, Self::Ply, Self::Stl, Self::Off, Self::Gltf, Self::Glb];
 
     /// The usual extension, in small letters and without the point.
     pub fn extension(self) -> &'static str {
@@ -51,6 +58,8 @@ impl Format {
             Self::Ply => "ply",
             Self::Stl => "stl",
             Self::Off => "off",
+            Self::Gltf => "gltf",
+            Self::Glb => "glb",
         }
     }
 
@@ -65,12 +74,18 @@ impl Format {
             .ok_or_else(|| UnknownFormat { path: path.to_owned() })
     }
 
+    /// Whether it is glTF, in either form.
+    pub fn is_gltf(self) -> bool {
+        matches!(self, Self::Gltf | Self::Glb)
+    }
+
     fn article(self) -> &'static str {
         match self {
             Self::Ply => "a PLY file",
             Self::Obj => "an OBJ file",
             Self::Stl => "an STL file",
             Self::Off => "an OFF file",
+            Self::Gltf | Self::Glb => "a glTF file",
         }
     }
 }
@@ -82,6 +97,8 @@ impl fmt::Display for Format {
             Self::Ply => "PLY",
             Self::Stl => "STL",
             Self::Off => "OFF",
+            Self::Gltf => "glTF",
+            Self::Glb => "GLB",
         })
     }
 }
@@ -106,6 +123,10 @@ const SIGNATURES: [(&[u8], &str); 11] = [
 
 /// What else `bytes` plainly are, in words, if they cannot be of format `named`; `None` if they may be.
 pub(crate) fn looks_like_other(bytes: &[u8], named: Format) -> Option<&'static str> {
+    // Both forms of glTF are met under both names, and tell themselves apart.
+    if named.is_gltf() && (bytes.starts_with(b"glTF") || bytes.starts_with(b"{")) {
+        return None;
+    }
     // A binary STL may begin with any 80 bytes at all, so that its length speaks first.
     if is_binary_stl(bytes) {
         return (named != Format::Stl).then_some("a binary STL file");

@@ -1,4 +1,4 @@
-//! OBJ, PLY, STL and OFF files: read into a [`PolygonSoup`], written from triangles.
+//! OBJ, PLY, STL, OFF and glTF files: read into a [`PolygonSoup`], written from triangles.
 //!
 //! The format is chosen by the file's extension and checked against its content. Reading keeps every number
 //! at the precision the file has it; a damaged file is an [error](ReadError) that names the line or byte, the
@@ -11,6 +11,9 @@
 //! | PLY | ASCII and binary of both byte orders, triangle strips | `f64`, binary (or ASCII), normals, colours, quality, named properties |
 //! | STL | ASCII and binary, several solids; three vertices a facet, not merged | `f32` binary (or ASCII with `f64` digits) |
 //! | OFF | polygons; extra columns are skipped | `f64` digits, normals, colours |
+//! | glTF | what the scene shows, all instances, in its coordinates; Draco and meshopt | `f32`, normals: one mesh |
+//!
+//! A glTF [`Asset`] can be edited, too: its meshes are taken out one by one and replaced, and everything else stays.
 //!
 //! ```
 //! use limitmesh_io::{Format, Output, WriteOptions, read_bytes, write_to};
@@ -27,12 +30,14 @@
 
 mod error;
 mod format;
+pub mod gltf;
 mod read;
 mod scan;
 mod write;
 
 pub use error::{Flaw, Place, ReadError, WriteError};
 pub use format::{Format, UnknownFormat};
+pub use gltf::Asset;
 pub use read::{read, read_as, read_bytes};
 pub use write::{
     Output, Property, PropertyValues, WriteOptions, check_writable, rounding, write, write_as, write_to,

@@ -71,7 +71,8 @@ fn room_is_exact() {
         .collect();
     let output =
         limitmesh_io::Output::new(limitmesh::Triangles { positions: &positions, triangles: &triangles });
-    for &format in Format::ALL {
+    // A glTF document is kept while its meshes are read.
+    for &format in Format::ALL.iter().filter(|format| !format.is_gltf()) {
         for ascii in [false, true] {
             let mut bytes = Vec::new();
             let options = limitmesh_io::WriteOptions::default().ascii(ascii);

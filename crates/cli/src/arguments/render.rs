@@ -16,7 +16,7 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct RenderArguments {
-    /// Mesh file (.obj, .ply, .stl, .off), - for standard input, or builtin:NAME
+    /// Mesh file (.obj, .ply, .stl, .off, .gltf, .glb), - for standard input, or builtin:NAME
     pub(crate) input: PathBuf,
 
     /// Picture to write (.png), or - for standard output

@@ -110,6 +110,10 @@ pub(crate) enum FileFormat {
     Stl,
     /// Geomview OFF
     Off,
+    /// glTF as text
+    Gltf,
+    /// glTF in one binary file
+    Glb,
 }
 
 impl FileFormat {
@@ -120,6 +124,8 @@ impl FileFormat {
             Self::Ply => Format::Ply,
             Self::Stl => Format::Stl,
             Self::Off => Format::Off,
+            Self::Gltf => Format::Gltf,
+            Self::Glb => Format::Glb,
         }
     }
 }

@@ -14,11 +14,12 @@ use crate::mesh_info;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::information::{PolygonCount, TagCounts};
-use crate::report::{InformationReport, InputReport, MeshInformation, VERSION};
+use crate::report::{AssetInformation, InformationReport, InputReport, MeshInformation, VERSION};
 
 /// Examines a file and prints what it holds.
 pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    let input::Soup { name, format, soup, .. } = input::read(&arguments.input, &arguments.build, progress)?;
+    let input::Soup { name, format, soup, contents, .. } =
+        input::read(&arguments.input, &arguments.build, progress)?;
     let options = arguments.build.options()?;
     let mut corners = BTreeMap::<usize, usize>::new();
     for face in soup.faces.iter() {
@@ -46,6 +47,7 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         input,
         polygons,
         tags,
+        asset: contents.map(AssetInformation::from),
         diagnosis: (&diagnosis).into(),
         mesh: mesh_info::examine(&mesh),
     };
@@ -92,6 +94,44 @@ fn describe_file(report: &InformationReport) -> String {
         let (creases, corners) =
             (counted(creases, "crease", "creases"), counted(corners, "corner", "corners"));
         text.push_str(&format!("tagged: {creases}, {corners}\n"));
+    }
+    report.asset.iter().for_each(|asset| text.push_str(&describe_asset(asset)));
+    text
+}
+
+/// What a glTF document holds, a line for each mesh and primitive.
+fn describe_asset(asset: &AssetInformation) -> String {
+    let mut text = String::from("\nasset\n");
+    let counts: Vec<String> =
+        asset.counts.iter().map(|(name, count)| format!("{name}: {}", thousands(*count))).collect();
+    if !counts.is_empty() {
+        text.push_str(&format!("  {}\n", counts.join(", ")));
+    }
+    if !asset.extensions.is_empty() {
+        text.push_str(&format!("  extensions: {}\n", asset.extensions.join(", ")));
+    }
+    for (number, mesh) in asset.meshes.iter().enumerate() {
+        let name = mesh.name.as_ref().map_or(String::new(), |name| format!(" '{name}'"));
+        let shown = match mesh.shown {
+            1 => String::new(),
+            0 => ", not in the scene".to_owned(),
+            times => format!(", {} times in the scene", thousands(times)),
+        };
+        text.push_str(&format!("  mesh {number}{name}{shown}\n"));
+        for (number, primitive) in mesh.primitives.iter().enumerate() {
+            let vertices = counted(primitive.vertices, "vertex", "vertices");
+            let indices = counted(primitive.indices, "index", "indices");
+            let mut parts =
+                vec![format!("{}, {vertices}, {indices}", primitive.mode), primitive.attributes.join(" ")];
+            if primitive.morph_targets > 0 {
+                parts.push(counted(primitive.morph_targets, "morph target", "morph targets"));
+            }
+            parts.extend(primitive.material.iter().map(|name| format!("material '{name}'")));
+            if !primitive.extensions.is_empty() {
+                parts.push(primitive.extensions.join(" "));
+            }
+            text.push_str(&format!("    primitive {number}: {}\n", parts.join("; ")));
+        }
     }
     text
 }

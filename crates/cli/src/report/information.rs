@@ -1,5 +1,8 @@
 //! The report of `limitmesh info`.
 
+use std::collections::BTreeMap;
+
+use limitmesh_io::gltf::{Contents, MeshContents, PrimitiveContents};
 use serde::Serialize;
 
 use super::InputReport;
@@ -15,8 +18,65 @@ pub(crate) struct InformationReport {
     /// Polygons in the file by their number of corners, ascending.
     pub(crate) polygons: Vec<PolygonCount>,
     pub(crate) tags: TagCounts,
+    /// What a glTF document holds; null for other formats.
+    pub(crate) asset: Option<AssetInformation>,
     pub(crate) diagnosis: DiagnosisReport,
     pub(crate) mesh: MeshInformation,
+}
+
+/// What a glTF document holds.
+#[derive(Debug, Serialize)]
+pub(crate) struct AssetInformation {
+    pub(crate) meshes: Vec<AssetMesh>,
+    /// Nodes, materials and so on, by the document's names for them.
+    pub(crate) counts: BTreeMap<String, usize>,
+    pub(crate) extensions: Vec<String>,
+}
+
+/// A mesh of a glTF document.
+#[derive(Debug, Serialize)]
+pub(crate) struct AssetMesh {
+    pub(crate) name: Option<String>,
+    /// How often the scene has it.
+    pub(crate) shown: usize,
+    pub(crate) primitives: Vec<AssetPrimitive>,
+}
+
+/// A primitive of a mesh.
+#[derive(Debug, Serialize)]
+pub(crate) struct AssetPrimitive {
+    /// Such as `triangles` or `triangle strip`.
+    pub(crate) mode: &'static str,
+    pub(crate) vertices: usize,
+    pub(crate) indices: usize,
+    pub(crate) attributes: Vec<String>,
+    pub(crate) morph_targets: usize,
+    pub(crate) material: Option<String>,
+    pub(crate) extensions: Vec<String>,
+}
+
+impl From<Contents> for AssetInformation {
+    fn from(contents: Contents) -> Self {
+        let primitive = |found: PrimitiveContents| AssetPrimitive {
+            mode: found.mode,
+            vertices: found.vertices,
+            indices: found.corners,
+            attributes: found.attributes,
+            morph_targets: found.targets,
+            material: found.material,
+            extensions: found.extensions,
+        };
+        let mesh = |found: MeshContents| AssetMesh {
+            name: found.name,
+            shown: found.shown,
+            primitives: found.primitives.into_iter().map(primitive).collect(),
+        };
+        Self {
+            meshes: contents.meshes.into_iter().map(mesh).collect(),
+            counts: contents.counts.into_iter().collect(),
+            extensions: contents.extensions,
+        }
+    }
 }
 
 /// How many polygons have so many corners.

@@ -12,13 +12,13 @@ pub(crate) mod refinement;
 pub(crate) use certified::CertifiedReport;
 pub(crate) use comparison::{CertifiedErrorReport, ComparedMethod};
 pub(crate) use diagnosis::DiagnosisReport;
-pub(crate) use information::{InformationReport, MeshInformation};
+pub(crate) use information::{AssetInformation, InformationReport, MeshInformation};
 pub(crate) use interpolation::InterpolationReport;
 pub(crate) use measurement::{DistanceReport, LimitReport, MeasureReport, SurfaceReport};
 pub(crate) use refinement::{
-    CameraReport, ErrorReport, EstimateReport, ExactParametersReport, InputDistanceReport, MethodReport,
-    OutputReport, ParametersReport, PredictionReport, RefineReport, RoundEntry, SecondsReport, SizeReport,
-    StepEntry, ViewReport,
+    AssetMeshReport, AssetReport, CameraReport, ErrorReport, EstimateReport, ExactParametersReport,
+    InputDistanceReport, MethodReport, OutputReport, ParametersReport, PredictionReport, RefineReport,
+    RoundEntry, SecondsReport, SizeReport, StepEntry, ViewReport,
 };
 
 use serde::Serialize;
@@ -31,7 +31,7 @@ pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub(crate) struct InputReport {
     /// As given on the command line.
     pub(crate) path: String,
-    /// `obj`, `ply`, `stl`, `off` or `builtin`.
+    /// `obj`, `ply`, `stl`, `off`, `gltf`, `glb` or `builtin`.
     pub(crate) format: &'static str,
     /// Positions in the file.
     pub(crate) vertices: usize,

@@ -29,6 +29,36 @@ pub(crate) struct RefineReport {
     pub(crate) seconds: SecondsReport,
 }
 
+/// The report on an asset of several meshes.
+#[derive(Debug, Serialize)]
+pub(crate) struct AssetReport {
+    pub(crate) version: &'static str,
+    /// As given on the command line.
+    pub(crate) path: String,
+    /// Attributes that were left out, by their names in the asset.
+    pub(crate) left_out: Vec<String>,
+    /// The meshes that were refined.
+    pub(crate) meshes: Vec<AssetMeshReport>,
+    pub(crate) seconds: SecondsReport,
+}
+
+/// What became of a mesh of an asset. All lengths are the scene's.
+#[derive(Debug, Serialize)]
+pub(crate) struct AssetMeshReport {
+    /// Its number.
+    pub(crate) mesh: usize,
+    /// How many times larger it appears in the scene than in its own coordinates, at most.
+    pub(crate) scale: f64,
+    pub(crate) input: InputReport,
+    pub(crate) diagnosis: DiagnosisReport,
+    pub(crate) parameters: ParametersReport,
+    pub(crate) interpolation: Option<InterpolationReport>,
+    #[serde(flatten)]
+    pub(crate) method: MethodReport,
+    pub(crate) size: SizeReport,
+    pub(crate) output: OutputReport,
+}
+
 /// Area and volume of the mesh that was read and of the one that was written.
 #[derive(Debug, Serialize)]
 pub(crate) struct SizeReport {

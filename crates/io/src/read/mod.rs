@@ -8,6 +8,7 @@ mod stl;
 
 use crate::error::{Flaw, Place, ReadError};
 use crate::format::{Format, looks_like_other};
+use crate::gltf::Asset;
 use limitmesh::mesh::{PolygonFaces, PolygonSoup};
 use std::io;
 use std::path::Path;
@@ -27,11 +28,22 @@ pub fn read(path: &Path) -> Result<PolygonSoup, ReadError> {
 /// The same, but for unknown extensions.
 pub fn read_as(path: &Path, format: Format) -> Result<PolygonSoup, ReadError> {
     let bytes = read_all(path).map_err(|reason| ReadError::Io { path: path.to_owned(), reason })?;
-    read_bytes(&bytes, format).map_err(|error| error.in_file(path))
+    let soup = match format {
+        Format::Gltf | Format::Glb => {
+            check_content(&bytes, format).and_then(|()| read_gltf(&bytes, path.parent()))
+        }
+        _ => read_bytes(&bytes, format),
+    };
+    soup.map_err(|error| error.in_file(path))
+}
+
+/// All that a document's scene shows, in the scene's coordinates.
+fn read_gltf(bytes: &[u8], folder: Option<&Path>) -> Result<PolygonSoup, ReadError> {
+    Asset::from_bytes(bytes, folder)?.scene_soup()
 }
 
 /// All bytes of a file or a pipe. A device is refused: some, like `/dev/zero`, never end.
-fn read_all(path: &Path) -> io::Result<Vec<u8>> {
+pub(crate) fn read_all(path: &Path) -> io::Result<Vec<u8>> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::FileTypeExt;
@@ -43,24 +55,31 @@ fn read_all(path: &Path) -> io::Result<Vec<u8>> {
     std::fs::read(path)
 }
 
-/// Reads the bytes of a mesh file in the given format.
+/// Reads the bytes of a mesh file in the given format. glTF documents may name no other files then.
 ///
 /// # Errors
 /// As for [`read`].
 pub fn read_bytes(bytes: &[u8], format: Format) -> Result<PolygonSoup, ReadError> {
-    if bytes.is_empty() {
-        return Err(ReadError::Empty { path: None, format });
-    }
-    if let Some(looks_like) = looks_like_other(bytes, format) {
-        return Err(ReadError::OtherContent { path: None, format, looks_like });
-    }
+    check_content(bytes, format)?;
     let soup = match format {
+        Format::Gltf | Format::Glb => return read_gltf(bytes, None),
         Format::Obj => obj::read(bytes),
         Format::Ply => ply::read(bytes),
         Format::Stl => stl::read(bytes),
         Format::Off => off::read(bytes),
     };
     soup.map_err(|flaw| flaw.in_format(format))
+}
+
+/// Refuses what is empty or plainly of another kind.
+fn check_content(bytes: &[u8], format: Format) -> Result<(), ReadError> {
+    if bytes.is_empty() {
+        return Err(ReadError::Empty { path: None, format });
+    }
+    match looks_like_other(bytes, format) {
+        Some(looks_like) => Err(ReadError::OtherContent { path: None, format, looks_like }),
+        None => Ok(()),
+    }
 }
 
 /// Most elements of a kind that `u32` indices can name.

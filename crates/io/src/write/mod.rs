@@ -9,10 +9,12 @@ mod stl;
 mod whole;
 
 pub use property::{Property, PropertyValues};
+pub(crate) use whole::{WholeFile, write_together};
 pub use whole::{check_writable, write_whole};
 
 use crate::error::WriteError;
 use crate::format::Format;
+use crate::gltf;
 use limitmesh::mesh::{CornerTag, CreaseTag, Triangles};
 use std::io::Write;
 use std::path::Path;
@@ -22,7 +24,7 @@ use std::path::Path;
 pub struct Output<'a> {
     /// Positions and triangles.
     pub surface: Triangles<'a>,
-    /// A normal for each vertex. OBJ, PLY (as `float`) and OFF hold them.
+    /// A normal for each vertex. OBJ, PLY and glTF (both as `float`), and OFF hold them.
     pub normals: Option<&'a [[f64; 3]]>,
     /// By triangle, the normals of its corners among these, where vertices have several: then there may be any number of normals. Only
     /// OBJ holds that; other formats hold no normals then.
@@ -129,20 +131,33 @@ impl WriteOptions {
     }
 }
 
-/// The greatest distance from one of these positions to what a file of this format holds of it: 0 but for binary STL, which rounds
-/// coordinates to `f32`.
+/// The greatest distance from one of these positions to what a file of this format holds of it, at most: 0 but for binary STL and
+/// glTF, which round coordinates to `f32`.
 pub fn rounding(format: Format, options: &WriteOptions, positions: &[[f64; 3]]) -> f64 {
-    if format != Format::Stl || options.ascii {
+    if !is_single(format, options) {
         return 0.0;
     }
-    let off = |x: f64| (x - f64::from(x as f32)).abs();
+    let off = |x: f64| match format {
+        // Half the last place at most, which holds at whatever scale a scene shows the mesh.
+        Format::Gltf | Format::Glb => x.abs() * f64::from(f32::EPSILON) * 0.5,
+        _ => (x - f64::from(x as f32)).abs(),
+    };
     positions.iter().map(|&[x, y, z]| off(x).hypot(off(y)).hypot(off(z))).fold(0.0, f64::max)
+}
+
+/// Whether coordinates are rounded to `f32`.
+fn is_single(format: Format, options: &WriteOptions) -> bool {
+    match format {
+        Format::Stl => !options.ascii,
+        Format::Gltf | Format::Glb => true,
+        Format::Obj | Format::Ply | Format::Off => false,
+    }
 }
 
 /// Writes a mesh file in the format of its extension, whole or not at all (see [`write_whole`]).
 ///
 /// What the format cannot hold is left out: [`Output`] says which holds what. Positions keep every bit in
-/// OBJ, PLY, OFF and ASCII STL; binary STL rounds them to `f32`. STL repeats them in each facet.
+/// OBJ, PLY, OFF and ASCII STL; binary STL and glTF round them to `f32`. STL repeats them in each facet.
 ///
 /// # Errors
 /// The extension is unknown, the output does not fit together or into the format, or the system refuses.
@@ -161,6 +176,9 @@ pub fn write_as(
     options: &WriteOptions,
 ) -> Result<(), WriteError> {
     check(output, format, options)?;
+    if matches!(format, Format::Gltf | Format::Glb) {
+        return gltf::write_fresh(Some(path), format, output).map(drop);
+    }
     whole::write_whole_with(path, |writer| write_checked(writer, format, output, options))
 }
 
@@ -189,6 +207,7 @@ fn write_checked(
         Format::Ply => ply::write(writer, output, options.ascii)?,
         Format::Stl => stl::write(writer, output, options.ascii)?,
         Format::Off => off::write(writer, output)?,
+        Format::Gltf | Format::Glb => writer.write_all(&gltf::write_fresh(None, format, output)?)?,
     }
     Ok(writer.flush()?)
 }
@@ -237,7 +256,7 @@ fn check(output: &Output<'_>, format: Format, options: &WriteOptions) -> Result<
             return Err(WriteError::NormalOutOfRange { triangle, normal, normals });
         }
     }
-    check_finite("position", positions.as_flattened(), 3, format, format == Format::Stl && !options.ascii)?;
+    check_finite("position", positions.as_flattened(), 3, format, is_single(format, options))?;
     if let Some(normals) = output.normals.filter(|_| format != Format::Stl) {
         check_finite("normal", normals.as_flattened(), 3, format, format == Format::Ply)?;
     }

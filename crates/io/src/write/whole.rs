@@ -76,6 +76,45 @@ pub(super) fn write_whole_with(
     file.persist(&target).map(drop).map_err(|error| failed(error.error))
 }
 
+/// A file with all its bytes.
+pub(crate) struct WholeFile {
+    pub(crate) path: PathBuf,
+    pub(crate) bytes: Vec<u8>,
+}
+
+/// Writes several files that belong together: all under other names first, which are changed only when all are there.
+pub(crate) fn write_together(files: &[WholeFile]) -> Result<(), WriteError> {
+    let mut waiting = Vec::with_capacity(files.len());
+    for WholeFile { path, bytes } in files {
+        let failed = |reason: io::Error| WriteError::File { path: path.clone(), reason };
+        let earlier = earlier(path).map_err(failed)?;
+        if earlier.as_ref().is_some_and(|e| !e.is_file()) {
+            waiting.push((path, None));
+            continue;
+        }
+        let target = target(path, earlier.as_ref()).map_err(failed)?;
+        let mut file = temporary_beside(&target).map_err(failed)?;
+        file.write_all(bytes).map_err(failed)?;
+        if let Some(earlier) = earlier {
+            fs::set_permissions(file.path(), earlier.permissions()).map_err(failed)?;
+        }
+        waiting.push((path, Some((file, target))));
+    }
+    for ((path, file), WholeFile { bytes, .. }) in waiting.into_iter().zip(files) {
+        match file {
+            Some((file, target)) => {
+                let failed = |error: tempfile::PersistError| WriteError::File {
+                    path: path.clone(),
+                    reason: error.error,
+                };
+                file.persist(&target).map_err(failed)?;
+            }
+            None => write_whole(path, bytes)?,
+        }
+    }
+    Ok(())
+}
+
 /// A new file in the folder of `target`, which is removed unless it is renamed.
 fn temporary_beside(target: &Path) -> io::Result<tempfile::NamedTempFile> {
     let folder = match target.parent() {

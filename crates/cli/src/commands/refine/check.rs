@@ -142,7 +142,10 @@ pub(super) fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
     let mut written = Vec::with_capacity(3);
     if let Some(output) = arguments.output.as_deref() {
         output::check_writable(output)?;
-        let binary = matches!(arguments.format()?, Some(Format::Ply | Format::Stl)) && !arguments.ascii;
+        let binary = match arguments.format()? {
+            Some(Format::Ply | Format::Stl) => !arguments.ascii,
+            format => format == Some(Format::Glb),
+        };
         if output::is_standard_output(output) && binary && std::io::stdout().is_terminal() {
             return usage(
                 "binary files are not for a terminal; --ascii writes text, or send it on with > or |",

@@ -175,9 +175,11 @@ pub(super) fn run(
     let normals = wanted.then(|| Normals::of_exact(&mut found));
     let Exact { mesh, origins, parents, pixels, open_cones, stop, levels, .. } = found;
     let places = (&before.faces[..], &concave.parts);
+    let inputs = parents.iter().map(|&face| before.faces[concave.parts.whole(face) as usize]).collect();
     Ok(Refined {
         mesh,
         normals,
+        inputs,
         provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents, places)),
         achieved,
         inverted: Some(inverted),
@@ -224,7 +226,7 @@ fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
     }
     (rounding > NOTED * found.error.upper).then(|| {
         format!(
-            "binary STL rounds vertices by up to {}; --ascii, PLY, OBJ and OFF keep them as they are",
+            "binary STL and glTF round vertices by up to {}; ASCII STL, PLY, OBJ and OFF keep them as they are",
             upper_bound(rounding)
         )
     })

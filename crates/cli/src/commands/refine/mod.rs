@@ -1,7 +1,9 @@
 //! `limitmesh refine`: reads a control mesh, refines it, writes the result, a report and a picture.
 
+mod asset;
 mod cameras;
 mod check;
+mod control;
 mod estimate;
 mod exact;
 mod input_distance;
@@ -21,7 +23,7 @@ use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
 
 use super::{interpolation, picture};
-use crate::arguments::{Featured, Method, RefineArguments, Unit};
+use crate::arguments::{Method, RefineArguments, Unit};
 use crate::bulk::Bulk;
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds};
@@ -32,7 +34,8 @@ use crate::report::{
     InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport, SizeReport,
     VERSION, ViewReport,
 };
-use exact::{Before, Goals};
+use control::Control;
+use exact::Goals;
 use normals::Normals;
 use provenance::Provenance;
 
@@ -44,6 +47,8 @@ struct Refined {
     mesh: Mesh,
     normals: Option<Normals>,
     provenance: Option<Provenance>,
+    /// The input's face of each triangle; empty where that is not known.
+    inputs: Vec<u32>,
     /// How near the mesh is to the limit surface: sentences of a line each.
     achieved: Vec<String>,
     /// Triangles that are turned over against the limit surface; not known of the stepwise methods.
@@ -75,6 +80,9 @@ fn refine(
     format: Option<Format>,
     progress: &Progress,
 ) -> anyhow::Result<Outcome> {
+    if let Some(asset) = asset::Job::of(arguments, format)? {
+        return asset.run(progress);
+    }
     let kept: &[&str] = if format.is_some_and(Normals::are_held) { &["normals"] } else { &[] };
     let input = input::load_keeping(arguments.input(), &arguments.build, kept, progress)?;
     let input_report = InputReport {
@@ -84,31 +92,13 @@ fn refine(
         faces: input.diagnosis.input_faces,
         left_out: input.left_out,
     };
-    let Input { mesh: control, mut diagnosis, face_inputs, reading, building, .. } = input;
-    if let Some(note) = format.and_then(|format| lost_tags(control.tags(), format)) {
+    let Input { mesh, diagnosis, face_inputs, reading, building, .. } = input;
+    if let Some(note) = format.and_then(|format| lost_tags(mesh.tags(), format)) {
         progress.note(note);
     }
-    let before = Bulk::of(&control);
-    let read = Before {
-        positions: control.positions().to_vec(),
-        triangles: control.triangles().to_vec(),
-        faces: face_inputs,
-    };
-    let control = arguments.features.apply(control)?;
-    if let Some(note) = divided_corners(&control) {
-        progress.note(note);
-    }
-    diagnosis.concave_corners = control.concave.corners.clone();
-    let Featured { mesh, concave } = control;
-    let diagonal = mesh.diagonal();
-    let (mesh, interpolation) = interpolation::apply(
-        mesh,
-        (arguments.interpolation, arguments.build.unit),
-        arguments.scheme.scheme(),
-        progress,
-    )?;
-    let control = Featured { mesh, concave };
-
+    let control = Control::new((mesh, diagnosis, face_inputs), None, arguments, progress)?;
+    let Control { featured: control, diagnosis, before: read, bulk: before, interpolation, diagonal } =
+        control;
     let goals = match arguments.method {
         Method::Exact => Some(Goals::new(arguments, &control.mesh, diagonal)?),
         _ => None,
@@ -144,7 +134,7 @@ fn refine(
     }
     write(path, format, arguments, &refined)?;
     let writing = start.elapsed();
-    progress.note(summary(arguments, &refined, refining));
+    progress.note(summary(&arguments.output_name(), &refined, refining));
 
     if let Some(note) = refined.inverted.and_then(turned_over) {
         progress.note(note);
@@ -171,8 +161,10 @@ fn refine(
         let style = Style::default().wireframe(true);
         let view = picture::view_direction(arguments.view);
         let (surface, normals) = match &normals {
-            Some(Normals::BySide(split)) => (split.as_triangles(), Some(&split.normals[..])),
-            Some(Normals::ByVertex(normals)) => (mesh.as_triangles(), Some(&normals[..])),
+            Some(normals) => {
+                let (surface, normals) = normals.surface(&mesh);
+                (surface, Some(normals))
+            }
             None => (mesh.as_triangles(), None),
         };
         picture::draw(path, surface, normals, view, &style, picture::SIZE)?;
@@ -195,16 +187,6 @@ fn lost_tags(tags: &Tags, format: Format) -> Option<String> {
         .map(|(count, one, many)| counted(count, one, many))
         .collect();
     Some(format!("{}: followed, but left out of the output, whose format has none", found.join(" and ")))
-}
-
-/// Tells about sharp edges that divide corners of 180° and more.
-fn divided_corners(control: &Featured) -> Option<String> {
-    let concave = &control.concave;
-    let corners = counted(concave.corners.count, "corner", "corners");
-    let edges = counted(concave.edges, "sharp edge", "sharp edges");
-    let divide = if concave.edges == 1 { "divides" } else { "divide" };
-    (concave.edges > 0)
-        .then(|| format!("{edges} {divide} {corners} of 180° or more, so that flat faces stay flat"))
 }
 
 /// Tells about triangles that are turned over.
@@ -269,15 +251,14 @@ fn change_in_words(before: Bulk, after: Bulk, unit: Option<Unit>) -> String {
 }
 
 /// The result in lines of at most 100 columns, names of files aside.
-fn summary(arguments: &RefineArguments, refined: &Refined, refining: Duration) -> String {
+fn summary(name: &str, refined: &Refined, refining: Duration) -> String {
     let Refined { mesh, achieved, how, .. } = refined;
     let edges = match mesh.topology().boundary_edge_count() {
         0 => "closed".to_owned(),
         open => counted(open, "open edge", "open edges"),
     };
     let first = format!(
-        "{}: {}, {}, {edges} ({how}; {})",
-        arguments.output_name(),
+        "{name}: {}, {}, {edges} ({how}; {})",
         counted(mesh.face_count(), "triangle", "triangles"),
         counted(mesh.vertex_count(), "vertex", "vertices"),
         seconds(refining.as_secs_f64())

@@ -1,9 +1,9 @@
 //! The limit normals of a refined mesh, for files and pictures: one for each vertex, or, where edges are sharp, one for each side.
 
-use limitmesh::Mesh;
 use limitmesh::limit::SidedNormals;
 use limitmesh::mesh::{Sharpness, SplitSurface};
 use limitmesh::refine::Exact;
+use limitmesh::{Mesh, Triangles};
 use limitmesh_io::{Format, Output};
 
 /// Normals of a mesh.
@@ -46,7 +46,7 @@ impl Normals {
 
     /// Whether files of a format hold any.
     pub(super) fn are_held(format: Format) -> bool {
-        matches!(format, Format::Ply | Format::Obj)
+        matches!(format, Format::Ply | Format::Obj | Format::Gltf | Format::Glb)
     }
 
     /// Adds them to what is written; `is_split` if a vertex is to stand once for each side where the format needs that.
@@ -57,7 +57,7 @@ impl Normals {
             Self::BySide(split) if format == Format::Obj => {
                 output.normals_of_corners(&split.normals, &split.triangles)
             }
-            Self::BySide(split) if is_split => {
+            Self::BySide(split) if is_split || format.is_gltf() => {
                 Output { surface: split.as_triangles(), ..output }.normals(&split.normals)
             }
             // Averages over both sides would make flat faces look like pillows.
@@ -70,6 +70,14 @@ impl Normals {
         match self {
             Self::BySide(split) if is_split && format == Format::Ply => Some(&split.sources),
             _ => None,
+        }
+    }
+
+    /// Positions, normals and triangles of a mesh with these normals, where each vertex has one.
+    pub(super) fn surface<'a>(&'a self, mesh: &'a Mesh) -> (Triangles<'a>, &'a [[f64; 3]]) {
+        match self {
+            Self::ByVertex(normals) => (mesh.as_triangles(), normals),
+            Self::BySide(split) => (split.as_triangles(), &split.normals),
         }
     }
 

@@ -44,6 +44,7 @@ pub(super) fn run(
     Ok(Refined {
         normals,
         provenance: None,
+        inputs: Vec::new(),
         achieved: Vec::new(),
         inverted: None,
         how: counted(steps.len(), "step", "steps") + early,

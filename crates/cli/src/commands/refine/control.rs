@@ -1,0 +1,66 @@
+//! The control mesh of a refinement: what was read, with the tags that options put on it, made to interpolate if asked.
+
+use limitmesh::Mesh;
+
+use super::exact::Before;
+use super::interpolation;
+use crate::arguments::{Featured, RefineArguments};
+use crate::bulk::Bulk;
+use crate::format::counted;
+use crate::progress::Progress;
+use crate::report::InterpolationReport;
+use limitmesh::mesh::Diagnosis;
+
+/// What is refined, and what it is compared with.
+pub(super) struct Control {
+    pub(super) featured: Featured,
+    pub(super) diagnosis: Diagnosis,
+    /// The mesh that was read.
+    pub(super) before: Before,
+    pub(super) bulk: Bulk,
+    pub(super) interpolation: Option<InterpolationReport>,
+    /// What lengths are given in per cent of.
+    pub(super) diagonal: f64,
+}
+
+impl Control {
+    /// Of a mesh with the input's face of each of its faces. Lengths in per cent are of `diagonal`, or of the mesh's own.
+    ///
+    /// # Errors
+    /// There is no control mesh that interpolates as asked.
+    pub(super) fn new(
+        (mesh, mut diagnosis, faces): (Mesh, Diagnosis, Vec<u32>),
+        diagonal: Option<f64>,
+        arguments: &RefineArguments,
+        progress: &Progress,
+    ) -> anyhow::Result<Self> {
+        let bulk = Bulk::of(&mesh);
+        let before =
+            Before { positions: mesh.positions().to_vec(), triangles: mesh.triangles().to_vec(), faces };
+        let featured = arguments.features.apply(mesh)?;
+        if let Some(note) = divided_corners(&featured) {
+            progress.note(note);
+        }
+        diagnosis.concave_corners = featured.concave.corners.clone();
+        let Featured { mesh, concave } = featured;
+        let diagonal = diagonal.unwrap_or_else(|| mesh.diagonal());
+        let (mesh, interpolation) = interpolation::apply(
+            mesh,
+            (arguments.interpolation, arguments.build.unit),
+            arguments.scheme.scheme(),
+            progress,
+        )?;
+        let featured = Featured { mesh, concave };
+        Ok(Self { featured, diagnosis, before, bulk, interpolation, diagonal })
+    }
+}
+
+/// Tells about sharp edges that divide corners of 180° and more.
+fn divided_corners(control: &Featured) -> Option<String> {
+    let concave = &control.concave;
+    let corners = counted(concave.corners.count, "corner", "corners");
+    let edges = counted(concave.edges, "sharp edge", "sharp edges");
+    let divide = if concave.edges == 1 { "divides" } else { "divide" };
+    (concave.edges > 0)
+        .then(|| format!("{edges} {divide} {corners} of 180° or more, so that flat faces stay flat"))
+}

@@ -1,0 +1,231 @@
+//! From the document that was read and what was appended to the document that is written: text, bytes, and the files
+//! beside it.
+
+use super::container::Container;
+use super::edit::{Edits, Members, items_of, quoted};
+use super::flaw::{GltfFlaw, Result};
+use super::geometry::{Appended, NewPrimitive};
+use super::json::At;
+use super::primitive::DRACO;
+use super::source::Source;
+use super::uri::{self, Uri};
+use serde_json::{Value, json};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+
+/// What is changed in a document.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Changes {
+    /// By mesh and primitive.
+    pub(super) primitives: BTreeMap<(usize, usize), NewPrimitive>,
+    pub(super) appended: Appended,
+}
+
+/// Where the new bytes go.
+pub(super) enum Place<'a> {
+    /// To the binary chunk of a GLB, after what was the first buffer.
+    Chunk,
+    /// To a file of this name.
+    File(&'a str),
+    /// Into the document.
+    Inside,
+}
+
+/// What is written.
+pub(super) struct Written {
+    pub(super) container: Container,
+    /// What the file has that was named, if one was.
+    pub(super) beside: Option<Vec<u8>>,
+}
+
+impl Changes {
+    /// The document with the changes.
+    pub(super) fn apply(&self, source: &Source, place: &Place<'_>) -> Result<Written> {
+        let text = &source.container.text;
+        let top = Members::of(text)?;
+        let mut edits = Edits::new(text);
+        let (buffer, start, bytes) = self.buffer(source, place, &top, &mut edits)?;
+        let count = |key: &str| source.json.get(key).and_then(Value::as_array).map_or(0, Vec::len);
+        let (views, accessors) = (count("bufferViews"), count("accessors"));
+        let new_views = self.appended.views.iter().map(|&(offset, length, target)| {
+            json!({"buffer": buffer, "byteOffset": start + offset, "byteLength": length, "target": target}).to_string()
+        });
+        append(&mut edits, text, &top, "bufferViews", new_views.collect())?;
+        let new_accessors = self.appended.accessors.iter().enumerate().map(|(i, accessor)| {
+            let mut accessor = accessor.clone();
+            accessor["bufferView"] = Value::from(views + i);
+            accessor.to_string()
+        });
+        append(&mut edits, text, &top, "accessors", new_accessors.collect())?;
+        self.primitives_in(&top, &mut edits, accessors)?;
+        let text = self.without_idle_extension(source, edits.apply())?;
+        let mut container = Container { text, ..Container::default() };
+        let beside = match place {
+            Place::Chunk => {
+                container.bin = (!bytes.is_empty()).then_some(bytes);
+                container.others.clone_from(&source.container.others);
+                None
+            }
+            Place::File(_) => (!bytes.is_empty()).then_some(bytes),
+            Place::Inside => None,
+        };
+        Ok(Written { container, beside })
+    }
+
+    /// The number of the buffer with the new bytes, where they start in it, and all of what goes to the place.
+    fn buffer<'a>(
+        &self,
+        source: &'a Source,
+        place: &Place<'_>,
+        top: &Members<'a>,
+        edits: &mut Edits<'a>,
+    ) -> Result<(usize, usize, Vec<u8>)> {
+        let text = &source.container.text;
+        let new = &self.appended.bytes;
+        let buffers = top.get("buffers").map_or_else(|| Ok(Vec::new()), items_of)?;
+        let uri = |bytes: &[u8]| match place {
+            Place::Chunk => None,
+            Place::File(name) => Some(quoted(&uri::escaped(name))),
+            Place::Inside => {
+                Some(quoted(&format!("data:application/octet-stream;base64,{}", uri::to_base64(bytes))))
+            }
+        };
+        // The first buffer is the chunk's, or was and has to go elsewhere.
+        let is_in_chunk = source.is_in_chunk();
+        if let (Some(&first), true) = (buffers.first(), matches!(place, Place::Chunk) || is_in_chunk) {
+            let mut bytes = source.first_buffer()?.to_vec();
+            if !new.is_empty() {
+                bytes.resize(bytes.len().next_multiple_of(4), 0);
+            }
+            let start = bytes.len();
+            bytes.extend(new);
+            let members = Members::of(first)?;
+            let length = Some(bytes.len().to_string());
+            let uri = uri(&bytes);
+            if members.get("uri").is_none() && uri.is_none() {
+                if let Some(old) = members.get("byteLength") {
+                    edits.replace(old, length.unwrap_or_default());
+                }
+            } else {
+                edits.replace(first, members.with(&[("uri", uri), ("byteLength", length)]));
+            }
+            return Ok((0, start, bytes));
+        }
+        if !new.is_empty() {
+            let uri = uri(new).map(|uri| format!("\"uri\":{uri},")).unwrap_or_default();
+            let item = format!("{{{uri}\"byteLength\":{}}}", new.len());
+            append(edits, text, top, "buffers", vec![item])?;
+        }
+        Ok((buffers.len(), 0, new.clone()))
+    }
+
+    /// New attributes, indices and modes of primitives; `first` is the number of the first new accessor.
+    fn primitives_in<'a>(&self, top: &Members<'a>, edits: &mut Edits<'a>, first: usize) -> Result<()> {
+        let meshes = top.get("meshes").map_or_else(|| Ok(Vec::new()), items_of)?;
+        for (&(mesh, primitive), new) in &self.primitives {
+            let missing =
+                || GltfFlaw::new(format!("meshes[{mesh}].primitives[{primitive}]"), "nothing", "a primitive");
+            let primitives = Members::of(meshes.get(mesh).ok_or_else(missing)?)?;
+            let primitives = items_of(primitives.get("primitives").ok_or_else(missing)?)?;
+            let old = primitives.get(primitive).copied().ok_or_else(missing)?;
+            let members = Members::of(old)?;
+            let named = |(name, accessor): &(String, usize)| format!("{}:{}", quoted(name), first + accessor);
+            let attributes: Vec<String> = new.attributes.iter().map(named).collect();
+            let mut changes = vec![
+                ("attributes", Some(format!("{{{}}}", attributes.join(",")))),
+                ("indices", Some((first + new.indices).to_string())),
+                ("targets", None),
+            ];
+            // Triangles are what a primitive without a mode has.
+            if members.get("mode").is_some_and(|mode| mode != "4") {
+                changes.push(("mode", Some("4".to_owned())));
+            }
+            if let Some(extensions) = members.get("extensions") {
+                let own = Members::of(extensions)?;
+                if own.get(DRACO).is_some() {
+                    let left = (own.0.len() > 1).then(|| own.with(&[(DRACO, None)]));
+                    changes.push(("extensions", left));
+                }
+            }
+            edits.replace(old, members.with(&changes));
+        }
+        Ok(())
+    }
+
+    /// Takes the name of Draco's extension from the lists where no primitive is left that has it.
+    fn without_idle_extension(&self, source: &Source, text: String) -> Result<String> {
+        let is_compressed = |primitive: &At<'_>| primitive.path(&["extensions", DRACO]).is_some();
+        let (mut taken, mut left) = (false, false);
+        for (i, mesh) in source.root().list("meshes")?.into_iter().enumerate() {
+            for (j, primitive) in mesh.list("primitives")?.into_iter().enumerate() {
+                let is_replaced = self.primitives.contains_key(&(i, j));
+                taken |= is_replaced && is_compressed(&primitive);
+                left |= !is_replaced && is_compressed(&primitive);
+            }
+        }
+        if left || !taken {
+            return Ok(text);
+        }
+        let top = Members::of(&text)?;
+        let mut changes = Vec::new();
+        for key in ["extensionsUsed", "extensionsRequired"] {
+            let Some(list) = top.get(key) else { continue };
+            let draco = quoted(DRACO);
+            let kept: Vec<&str> = items_of(list)?.into_iter().filter(|name| *name != draco).collect();
+            // An empty list is not allowed.
+            changes.push((key, (!kept.is_empty()).then(|| format!("[{}]", kept.join(",")))));
+        }
+        Ok(top.with(&changes))
+    }
+}
+
+/// Adds items to one of the document's arrays, which is made if there is none.
+fn append<'a>(
+    edits: &mut Edits<'a>,
+    text: &'a str,
+    top: &Members<'a>,
+    key: &str,
+    items: Vec<String>,
+) -> Result<()> {
+    match top.get(key) {
+        _ if items.is_empty() => Ok(()),
+        Some(array) => edits.append(array, &items),
+        None => edits.insert(text.trim_ascii_end(), key, &format!("[{}]", items.join(","))),
+    }
+}
+
+impl Source {
+    /// Whether the first buffer is a GLB's binary chunk.
+    pub(super) fn is_in_chunk(&self) -> bool {
+        let first = self.json.get("buffers").and_then(|buffers| buffers.get(0));
+        self.container.bin.is_some() && first.is_some_and(|first| first.get("uri").is_none())
+    }
+
+    /// The bytes of the first buffer.
+    fn first_buffer(&self) -> Result<&[u8]> {
+        let zero = Value::from(0);
+        self.buffer(&At::root(&zero))
+    }
+
+    /// Files below the folder that a `uri` anywhere in the document names, but for that of the first buffer if it `is_taken`.
+    pub(super) fn files(&self, is_taken: bool) -> BTreeSet<PathBuf> {
+        let mut found = BTreeSet::new();
+        let first = self.json.get("buffers").and_then(|buffers| buffers.get(0)).filter(|_| is_taken);
+        let mut waiting = vec![&self.json];
+        while let Some(value) = waiting.pop() {
+            match value {
+                Value::Array(items) => waiting.extend(items),
+                Value::Object(members) if !first.is_some_and(|first| std::ptr::eq(first, value)) => {
+                    if let Some(Value::String(uri)) = members.get("uri")
+                        && let Ok(Uri::File(file)) = uri::parse(uri)
+                    {
+                        found.insert(file);
+                    }
+                    waiting.extend(members.values());
+                }
+                _ => {}
+            }
+        }
+        found
+    }
+}

@@ -1,0 +1,108 @@
+//! New geometry for a primitive, as bytes and accessors that are appended to the document.
+//!
+//! Positions and normals are 32-bit floats; bounds are those of the rounded positions, which the specification asks to be
+//! exact. Indices have 16 bits where 65,535 vertices or fewer are named: the highest number of each size is reserved.
+
+use super::flaw::{GltfFlaw, Result};
+use serde_json::json;
+
+const FLOAT: u32 = 5126;
+const SHORT: u32 = 5123;
+const INT: u32 = 5125;
+
+/// What a buffer view is for.
+const OF_VERTICES: u32 = 34962;
+const OF_INDICES: u32 = 34963;
+
+/// Triangles that take the place of a primitive's.
+#[derive(Clone, Copy, Debug)]
+pub struct Geometry<'a> {
+    /// Positions of the vertices in the mesh's own coordinates.
+    pub positions: &'a [[f64; 3]],
+    /// A unit normal for each vertex, or zero where there is none: another takes its place in the file.
+    pub normals: Option<&'a [[f64; 3]]>,
+    /// Vertex indices of each triangle, counter-clockwise seen from outside.
+    pub triangles: &'a [[u32; 3]],
+}
+
+/// What is appended to a document: bytes, and views and accessors that name them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Appended {
+    pub(super) bytes: Vec<u8>,
+    /// Start and length in the bytes, and what for.
+    pub(super) views: Vec<(usize, usize, u32)>,
+    /// By accessor all but its view, which has the accessor's number among these.
+    pub(super) accessors: Vec<serde_json::Value>,
+}
+
+/// The numbers among the appended ones of a primitive's new accessors.
+#[derive(Clone, Debug)]
+pub(super) struct NewPrimitive {
+    pub(super) attributes: Vec<(String, usize)>,
+    pub(super) indices: usize,
+}
+
+impl Appended {
+    /// Appends a primitive's geometry; `place` names it.
+    pub(super) fn add(&mut self, geometry: &Geometry<'_>, place: &str) -> Result<NewPrimitive> {
+        let Geometry { positions, normals, triangles } = *geometry;
+        let normal_count = normals.map_or(positions.len(), <[_]>::len);
+        if positions.is_empty() || triangles.is_empty() || normal_count != positions.len() {
+            let (points, faces) = (positions.len(), triangles.len());
+            let met = format!("{points} positions, {normal_count} normals, {faces} triangles");
+            return Err(GltfFlaw::new(place, met, "at least one triangle, and a normal for each position"));
+        }
+        if let Some(v) = triangles.as_flattened().iter().find(|&&v| v as usize >= positions.len()) {
+            let expected = format!("vertices below {}", positions.len());
+            return Err(GltfFlaw::new(place, format!("a triangle with vertex {v}"), expected));
+        }
+        let rounded: Vec<[f32; 3]> = positions.iter().map(|p| p.map(|x| x as f32)).collect();
+        if let Some(v) = rounded.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
+            let met = format!("vertex {v} at {:?}", positions[v]);
+            return Err(GltfFlaw::new(place, met, "coordinates that 32-bit floats can hold"));
+        }
+        let (mut low, mut high) = (rounded[0], rounded[0]);
+        for p in &rounded {
+            (0..3).for_each(|i| (low[i], high[i]) = (low[i].min(p[i]), high[i].max(p[i])));
+        }
+        let wide = |p: [f32; 3]| p.map(f64::from);
+        let bounds = json!({"componentType": FLOAT, "count": rounded.len(), "type": "VEC3",
+            "min": wide(low), "max": wide(high)});
+        let position = self.push(floats(&rounded), OF_VERTICES, bounds);
+        let mut attributes = vec![("POSITION".to_owned(), position)];
+        if let Some(normals) = normals {
+            let directions: Vec<[f32; 3]> = normals.iter().map(|&n| unit(n)).collect();
+            let plain = json!({"componentType": FLOAT, "count": directions.len(), "type": "VEC3"});
+            attributes.push(("NORMAL".to_owned(), self.push(floats(&directions), OF_VERTICES, plain)));
+        }
+        let corners = triangles.as_flattened();
+        let is_short = positions.len() <= usize::from(u16::MAX);
+        let bytes = match is_short {
+            true => corners.iter().flat_map(|&v| (v as u16).to_le_bytes()).collect(),
+            false => corners.iter().flat_map(|&v| v.to_le_bytes()).collect(),
+        };
+        let component = if is_short { SHORT } else { INT };
+        let of_indices = json!({"componentType": component, "count": corners.len(), "type": "SCALAR"});
+        let indices = self.push(bytes, OF_INDICES, of_indices);
+        Ok(NewPrimitive { attributes, indices })
+    }
+
+    fn push(&mut self, bytes: Vec<u8>, target: u32, accessor: serde_json::Value) -> usize {
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        self.views.push((self.bytes.len(), bytes.len(), target));
+        self.bytes.extend(bytes);
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+}
+
+fn floats(rows: &[[f32; 3]]) -> Vec<u8> {
+    rows.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect()
+}
+
+/// Of length 1 after rounding, as near as can be; upwards where there is no direction.
+fn unit(n: [f64; 3]) -> [f32; 3] {
+    let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let has_direction = length > 0.0 && length.is_finite();
+    if has_direction { n.map(|x| (x / length) as f32) } else { [0.0, 0.0, 1.0] }
+}

@@ -1,0 +1,249 @@
+//! A mesh's primitives as one soup: vertices that are one are one, and those that move apart stay apart.
+//!
+//! Files split vertices at seams of texture coordinates and normals. Within a primitive vertices are one if position,
+//! displacements of all morph targets, and joints with weights above 0 are the same. Two primitives are joined along
+//! edges that are open in both and run oppositely, which a solid of several materials has; where they merely touch they
+//! are not.
+
+use super::primitive::Primitive;
+use limitmesh::PolygonSoup;
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Which vertices of a mesh become one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Joining {
+    /// Those that stand and move together, as said above.
+    #[default]
+    Together,
+    /// None: the indices alone connect triangles.
+    Never,
+}
+
+/// The triangles of a primitive in a mesh's soup.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Part {
+    /// The primitive's number among the mesh's.
+    pub primitive: usize,
+    /// Its faces in the soup.
+    pub faces: Range<usize>,
+    /// The names of its attributes, in the document's order or another.
+    pub attributes: Vec<String>,
+}
+
+/// Vertices at one place that were not made one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct KeptApart {
+    /// Because morph targets or joints move them differently.
+    pub moving: usize,
+    /// Because they belong to primitives with no edge in common there.
+    pub touching: usize,
+}
+
+/// The triangles of a mesh.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct MeshSoup {
+    /// Positions in the mesh's own coordinates and triangles; connected by its indices alone.
+    pub soup: PolygonSoup,
+    /// Which faces are which primitive's.
+    pub parts: Vec<Part>,
+    /// What stayed apart at one place.
+    pub kept_apart: KeptApart,
+    /// By vertex, the joints that move it with their weights; empty without a skin.
+    pub(super) influences: Vec<Vec<(u32, f64)>>,
+    /// Whether morph targets or joints move the vertices.
+    pub is_deformed: bool,
+}
+
+/// A vertex before primitives are joined: the primitive, and its number there among those that differ.
+type Local = (usize, u32);
+
+pub(super) fn join(primitives: Vec<Primitive>, joining: Joining) -> MeshSoup {
+    let names: Vec<Names> = primitives.iter().map(|primitive| Names::of(primitive, joining)).collect();
+    let mut first = Vec::with_capacity(names.len());
+    let mut count = 0;
+    for names in &names {
+        first.push(count);
+        count += names.vertices.len();
+    }
+    let number = |(part, v): Local| first[part] + v as usize;
+    let mut roots: Vec<usize> = (0..count).collect();
+    if joining == Joining::Together && names.len() > 1 {
+        let keys = Keys::of(&primitives, &names);
+        for (a, b) in shared_edges(&primitives, &names, &keys) {
+            unite(&mut roots, number(a), number(b));
+        }
+    }
+    let mut result = MeshSoup::default();
+    let mut numbers = vec![u32::MAX; count];
+    let is_skinned = primitives.iter().any(|primitive| !primitive.influences.is_empty());
+    for (part, (primitive, names)) in primitives.iter().zip(&names).enumerate() {
+        for (v, &vertex) in names.vertices.iter().enumerate() {
+            let root = root(&mut roots, number((part, v as u32)));
+            if numbers[root] == u32::MAX {
+                numbers[root] = result.soup.positions.len() as u32;
+                result.soup.positions.push(primitive.positions[vertex as usize]);
+                if is_skinned {
+                    let list = primitive.influences.get(vertex as usize);
+                    result.influences.push(list.cloned().unwrap_or_default());
+                }
+            }
+        }
+        let start = result.soup.faces.len();
+        for triangle in &primitive.triangles {
+            let corners = triangle.map(|v| {
+                let local = (part, names.of_vertex[v as usize]);
+                numbers[root(&mut roots, number(local))]
+            });
+            result.soup.faces.push(&corners);
+        }
+        result.parts.push(Part {
+            primitive: primitive.index,
+            faces: start..result.soup.faces.len(),
+            attributes: primitive.names.clone(),
+        });
+    }
+    result.is_deformed = is_skinned || primitives.iter().any(|primitive| !primitive.displacements.is_empty());
+    if joining == Joining::Together {
+        result.kept_apart = kept_apart(&primitives, &names, result.soup.positions.len());
+    }
+    result
+}
+
+/// The vertices of a primitive that differ.
+struct Names {
+    /// A vertex of the primitive for each.
+    vertices: Vec<u32>,
+    /// The number of each vertex that a triangle uses; `u32::MAX` for others.
+    of_vertex: Vec<u32>,
+}
+
+impl Names {
+    fn of(primitive: &Primitive, joining: Joining) -> Self {
+        let mut of_vertex = vec![u32::MAX; primitive.positions.len()];
+        let mut vertices: Vec<u32> = Vec::new();
+        let mut known = HashMap::new();
+        for &v in primitive.triangles.as_flattened() {
+            if of_vertex[v as usize] != u32::MAX {
+                continue;
+            }
+            let next = vertices.len() as u32;
+            let name = match joining {
+                Joining::Never => next,
+                Joining::Together => *known.entry(key(primitive, v)).or_insert(next),
+            };
+            if name == next {
+                vertices.push(v);
+            }
+            of_vertex[v as usize] = name;
+        }
+        Self { vertices, of_vertex }
+    }
+}
+
+/// What has to be the same in vertices that are one: position, displacements, joints and weights, in bits.
+fn key(primitive: &Primitive, vertex: u32) -> Box<[u64]> {
+    let v = vertex as usize;
+    // −0.0 is 0.0.
+    let bits = |x: f64| (x + 0.0).to_bits();
+    let place = primitive.positions[v].map(bits);
+    let moved =
+        primitive.displacements.iter().flat_map(|all| all.get(v).copied().unwrap_or_default().map(bits));
+    let influences = primitive.influences.get(v).into_iter().flatten();
+    let skin = influences.flat_map(|&(joint, weight)| [u64::from(joint), bits(weight)]);
+    place.into_iter().chain(moved).chain(skin).collect()
+}
+
+/// Numbers of the keys, the same in all primitives.
+struct Keys {
+    of_part: Vec<Vec<u32>>,
+}
+
+impl Keys {
+    fn of(primitives: &[Primitive], names: &[Names]) -> Self {
+        let mut known = HashMap::new();
+        let of_part = primitives.iter().zip(names).map(|(primitive, names)| {
+            let number = |&v: &u32| {
+                let next = known.len() as u32;
+                *known.entry(key(primitive, v)).or_insert(next)
+            };
+            names.vertices.iter().map(number).collect()
+        });
+        Self { of_part: of_part.collect() }
+    }
+}
+
+/// Pairs of vertices at both ends of edges that are open in two primitives, run oppositely, and in no third.
+fn shared_edges(primitives: &[Primitive], names: &[Names], keys: &Keys) -> Vec<(Local, Local)> {
+    // By the keys of its ends from the lower to the higher: the primitives on each side.
+    let mut sides: HashMap<[u32; 2], [Vec<(Local, Local)>; 2]> = HashMap::new();
+    let mut order = Vec::new();
+    for (part, (primitive, names)) in primitives.iter().zip(names).enumerate() {
+        for [a, b] in open_edges(primitive, names) {
+            let [from, to] = [a, b].map(|v| keys.of_part[part][v as usize]);
+            let edge = [from.min(to), from.max(to)];
+            let entry = sides.entry(edge).or_insert_with(|| {
+                order.push(edge);
+                Default::default()
+            });
+            let ends = if from < to { (a, b) } else { (b, a) };
+            entry[usize::from(from > to)].push(((part, ends.0), (part, ends.1)));
+        }
+    }
+    let mut pairs = Vec::new();
+    for edge in order {
+        let Some([forward, backward]) = sides.get(&edge) else { continue };
+        if let ([one], [other]) = (&forward[..], &backward[..]) {
+            pairs.extend([(one.0, other.0), (one.1, other.1)]);
+        }
+    }
+    pairs
+}
+
+/// Edges of one triangle alone, the way it runs along them.
+fn open_edges(primitive: &Primitive, names: &Names) -> Vec<[u32; 2]> {
+    let mut uses: HashMap<[u32; 2], u32> = HashMap::new();
+    let mut all = Vec::with_capacity(3 * primitive.triangles.len());
+    for triangle in &primitive.triangles {
+        let [a, b, c] = triangle.map(|v| names.of_vertex[v as usize]);
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            *uses.entry([from.min(to), from.max(to)]).or_default() += 1;
+            all.push([from, to]);
+        }
+    }
+    all.retain(|&[a, b]| a != b && uses.get(&[a.min(b), a.max(b)]) == Some(&1));
+    all
+}
+
+fn kept_apart(primitives: &[Primitive], names: &[Names], vertices: usize) -> KeptApart {
+    let place = |p: [f64; 3]| p.map(|x| (x + 0.0).to_bits());
+    let mut everywhere = std::collections::HashSet::new();
+    let (mut moving, mut distinct) = (0, 0);
+    for (primitive, names) in primitives.iter().zip(names) {
+        let places = names.vertices.iter().map(|&v| place(primitive.positions[v as usize]));
+        let own: std::collections::HashSet<_> = places.collect();
+        moving += names.vertices.len() - own.len();
+        distinct += own.len();
+        everywhere.extend(own);
+    }
+    let joined = distinct + moving - vertices;
+    KeptApart { moving, touching: (distinct - everywhere.len()).saturating_sub(joined) }
+}
+
+fn root(roots: &mut [usize], mut v: usize) -> usize {
+    while roots[v] != v {
+        roots[v] = roots[roots[v]];
+        v = roots[v];
+    }
+    v
+}
+
+/// The lower of two roots stands for both.
+fn unite(roots: &mut [usize], a: usize, b: usize) {
+    let (a, b) = (root(roots, a), root(roots, b));
+    roots[a.max(b)] = a.min(b);
+}

@@ -1,0 +1,140 @@
+//! Which vertices of a mesh are one: those that stand and move together, and across primitives along open edges alone.
+
+use super::support::{floats, glb};
+use limitmesh_io::Asset;
+use limitmesh_io::gltf::{Joining, MeshSoup};
+
+/// A mesh of primitives, each with positions (three numbers a vertex) and further members that may name accessors of its
+/// own bytes.
+struct Builder {
+    bin: Vec<u8>,
+    views: Vec<String>,
+    accessors: Vec<String>,
+    primitives: Vec<String>,
+}
+
+impl Builder {
+    fn new() -> Self {
+        Self { bin: Vec::new(), views: Vec::new(), accessors: Vec::new(), primitives: Vec::new() }
+    }
+
+    fn accessor(&mut self, bytes: Vec<u8>, count: usize, kind: &str, component: u32) -> usize {
+        self.bin.resize(self.bin.len().next_multiple_of(4), 0);
+        let (start, length) = (self.bin.len(), bytes.len());
+        self.bin.extend(bytes);
+        self.views.push(format!(r#"{{"buffer":0,"byteOffset":{start},"byteLength":{length}}}"#));
+        let view = self.views.len() - 1;
+        self.accessors.push(format!(
+            r#"{{"bufferView":{view},"count":{count},"type":"{kind}","componentType":{component}}}"#
+        ));
+        self.accessors.len() - 1
+    }
+
+    fn points(&mut self, points: &[[f32; 3]]) -> usize {
+        self.accessor(floats(points.as_flattened()), points.len(), "VEC3", 5126)
+    }
+
+    fn read(&self, joining: Joining) -> MeshSoup {
+        let json = format!(
+            r#"{{"asset":{{"version":"2.0"}},"meshes":[{{"primitives":[{}]}}],"buffers":[{{"byteLength":{}}}],
+                "bufferViews":[{}],"accessors":[{}]}}"#,
+            self.primitives.join(","),
+            self.bin.len(),
+            self.views.join(","),
+            self.accessors.join(",")
+        );
+        Asset::from_bytes(&glb(&json, &self.bin), None).unwrap().mesh(0, joining).unwrap()
+    }
+}
+
+/// Two triangles over a common edge from (0, 0, 0) to (1, 0, 0), each with vertices of its own.
+const APART: [[f32; 3]; 6] =
+    [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [-0.0, 0.0, 0.0], [0.0, -1.0, 0.0]];
+
+#[test]
+fn what_stands_together_is_one() {
+    let mut builder = Builder::new();
+    let points = builder.points(&APART);
+    builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+    assert_eq!(builder.read(Joining::Together).soup.positions.len(), 4);
+    assert_eq!(builder.read(Joining::Never).soup.positions.len(), 6);
+}
+
+#[test]
+fn what_morphs_apart_stays_apart() {
+    let mut builder = Builder::new();
+    let points = builder.points(&APART);
+    // Of the edge's two ends one moves on one side only.
+    let mut moved = [[0.0; 3]; 6];
+    moved[1] = [0.0, 0.0, 1.0];
+    let target = builder.points(&moved);
+    builder.primitives.push(format!(
+        r#"{{"attributes":{{"POSITION":{points}}},"targets":[{{"POSITION":{target}}},{{}}]}}"#
+    ));
+    let found = builder.read(Joining::Together);
+    assert!(found.is_deformed);
+    assert_eq!((found.soup.positions.len(), found.kept_apart.moving, found.kept_apart.touching), (5, 1, 0));
+}
+
+#[test]
+fn what_joints_move_apart_stays_apart() {
+    let mut builder = Builder::new();
+    let points = builder.points(&APART);
+    // The same joints in another order and with weights of 0 between are the same; another weight is another.
+    let joints = [[1u8, 2, 0, 0], [1, 2, 0, 0], [1, 0, 0, 0], [2, 7, 1, 0], [1, 2, 0, 0], [1, 0, 0, 0]];
+    let weights = [
+        [0.75f32, 0.25, 0.0, 0.0],
+        [0.5, 0.5, 0.0, 0.0],
+        [1.0, 0.0, 0.0, 0.0],
+        [0.5, 0.0, 0.5, 0.0],
+        [0.5, 0.5, 0.0, 0.0],
+        [1.0, 0.0, 0.0, 0.0],
+    ];
+    let joints = builder.accessor(joints.as_flattened().to_vec(), 6, "VEC4", 5121);
+    let weights = builder.accessor(floats(weights.as_flattened()), 6, "VEC4", 5126);
+    builder.primitives.push(format!(
+        r#"{{"attributes":{{"POSITION":{points},"JOINTS_0":{joints},"WEIGHTS_0":{weights}}}}}"#
+    ));
+    let found = builder.read(Joining::Together);
+    assert_eq!((found.soup.positions.len(), found.kept_apart.moving), (5, 1));
+}
+
+#[test]
+fn primitives_are_joined_along_edges_that_match() {
+    let mut builder = Builder::new();
+    for half in [0..3, 3..6] {
+        let points = builder.points(&APART[half]);
+        builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+    }
+    let found = builder.read(Joining::Together);
+    assert_eq!((found.soup.positions.len(), found.kept_apart.touching), (4, 0));
+    let faces: Vec<_> = found.parts.iter().map(|part| (part.primitive, part.faces.clone())).collect();
+    assert_eq!(faces, [(0, 0..1), (1, 1..2)]);
+}
+
+#[test]
+fn primitives_that_touch_are_not_joined() {
+    // The same edge the same way: two sheets on top of each other, with the third corners apart. And one corner alone.
+    let same_way = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0f32]];
+    let corner = [[0.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [-1.0, -1.0, 0.0f32]];
+    for (other, touching) in [(same_way, 2), (corner, 1)] {
+        let mut builder = Builder::new();
+        for points in [[APART[0], APART[1], APART[2]], other] {
+            let points = builder.points(&points);
+            builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+        }
+        let found = builder.read(Joining::Together);
+        assert_eq!((found.soup.positions.len(), found.kept_apart.touching), (6, touching));
+    }
+    // An edge that three primitives share is nobody's.
+    let mut builder = Builder::new();
+    for third in [[0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0f32]] {
+        let points = builder.points(&if third[1] > 0.0 {
+            [APART[0], APART[1], third]
+        } else {
+            [APART[1], APART[0], third]
+        });
+        builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+    }
+    assert_eq!(builder.read(Joining::Together).soup.positions.len(), 9);
+}

@@ -1,0 +1,12 @@
+//! glTF: numbers by hand, flaws by name, edits that touch nothing else.
+
+#![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
+
+mod accessors;
+mod assets;
+mod editing;
+mod flaws;
+mod joining;
+mod mutations;
+mod scenes;
+mod support;

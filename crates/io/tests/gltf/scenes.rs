@@ -1,0 +1,82 @@
+//! World matrices, instances and skins, against numbers worked out by hand.
+
+use super::support::{document, floats, glb};
+use limitmesh_io::{Asset, Format, read_bytes};
+
+const TRIANGLE: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+
+/// A triangle, further floats behind it, and members of the document.
+fn asset(nodes: &str, accessors: &str, more: &[f32]) -> Vec<u8> {
+    let bin = floats(&[&TRIANGLE[..], more].concat());
+    let length = bin.len();
+    let top = format!(
+        r#""buffers":[{{"byteLength":{length}}}],"bufferViews":[{{"buffer":0,"byteLength":36}},
+            {{"buffer":0,"byteOffset":36,"byteLength":{}}}],
+           "accessors":[{{"count":3,"type":"VEC3","componentType":5126,"bufferView":0}}{accessors}],{nodes}"#,
+        length - 36
+    );
+    glb(&document(&top, r#""attributes":{"POSITION":0}"#), &bin)
+}
+
+fn opened(bytes: &[u8]) -> Asset {
+    Asset::from_bytes(bytes, None).unwrap()
+}
+
+#[track_caller]
+fn same(found: &[[f64; 3]], expected: &[[f64; 3]]) {
+    assert_eq!(found.len(), expected.len());
+    for (p, q) in found.iter().zip(expected) {
+        assert!((0..3).all(|i| (p[i] - q[i]).abs() < 1e-12), "{found:?}, expected {expected:?}");
+    }
+}
+
+#[test]
+fn matrices_multiply_down_the_tree() {
+    // A quarter turn about z after a scale of 2, below a move by (10, 0, 0) and another scale of 3.
+    let half = 0.5f64.sqrt();
+    let nodes = format!(
+        r#""nodes":[{{"translation":[10,0,0],"scale":[3,3,3],"children":[1]}},
+            {{"mesh":0,"rotation":[0,0,{half},{half}],"scale":[2,2,2]}}]"#
+    );
+    let bytes = asset(&nodes, "", &[]);
+    let soup = read_bytes(&bytes, Format::Glb).unwrap();
+    same(&soup.positions, &[[10.0, 0.0, 0.0], [10.0, 6.0, 0.0], [4.0, 0.0, 0.0]]);
+    assert!((opened(&bytes).stretch(0) - 6.0).abs() < 1e-12);
+    assert_eq!(
+        opened(&bytes).bounding_box().unwrap().map(|[low, high]| [low[0].round(), high[1].round()]),
+        Some([4.0, 6.0])
+    );
+}
+
+#[test]
+fn matrices_are_by_column_and_mirrors_turn_faces() {
+    let nodes = r#""nodes":[{"mesh":0,"matrix":[0,2,0,0, 1,0,0,0, 0,0,1,0, 5,6,7,1]}]"#;
+    let soup = read_bytes(&asset(nodes, "", &[]), Format::Glb).unwrap();
+    same(&soup.positions, &[[5.0, 6.0, 7.0], [5.0, 8.0, 7.0], [6.0, 6.0, 7.0]]);
+    assert_eq!(soup.faces.get(0), [2, 1, 0]);
+}
+
+#[test]
+fn instances_count_and_only_the_scene_is_shown() {
+    let nodes = r#""scene":1,"scenes":[{"nodes":[0]},{"nodes":[1]}],"nodes":[
+        {"mesh":0,"scale":[1,-9,1]},
+        {"mesh":0,"scale":[0.5,0.5,0.5],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1,"SCALE":1}}}}]"#;
+    let accessors = r#",{"count":2,"type":"VEC3","componentType":5126,"bufferView":1}"#;
+    let bytes = asset(nodes, accessors, &[1.0, 2.0, 4.0, 8.0, 8.0, 8.0]);
+    let soup = read_bytes(&bytes, Format::Glb).unwrap();
+    let scaled = |t: [f64; 3], s: [f64; 3]| {
+        [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+            .map(|p: [f64; 3]| [0, 1, 2].map(|i| 0.5 * (t[i] + s[i] * p[i])))
+    };
+    let expected = [scaled([1.0, 2.0, 4.0], [1.0, 2.0, 4.0]), scaled([8.0; 3], [8.0; 3])].concat();
+    same(&soup.positions, &expected);
+    // The node of another scene counts for the scale all the same.
+    assert!((opened(&bytes).stretch(0) - 9.0).abs() < 1e-12);
+}
+
+#[test]
+fn meshes_without_nodes_are_as_they_are() {
+    let bytes = asset(r#""extras":1"#, "", &[]);
+    assert_eq!(opened(&bytes).stretch(0), 1.0);
+    assert_eq!(read_bytes(&bytes, Format::Glb).unwrap().faces.len(), 1);
+}
