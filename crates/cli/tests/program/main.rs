@@ -1,5 +1,6 @@
 //! The program as its users meet it: commands, files, exit codes, the JSON contract.
 
+mod asset;
 mod common;
 mod compare;
 mod concave;

@@ -1,0 +1,183 @@
+//! glTF assets: lengths are the scene's, borders between materials stay, and what cannot be carried along is told.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::common::{counts, file, folder, run, soup};
+
+/// A text document with its buffer in it: positions of eight corners of a cube, and indices of its sides but the top,
+/// of the top, and of a line.
+fn cube(folder: &TempDir, name: &str, nodes: &str, more: &str) -> PathBuf {
+    let mut bytes: Vec<u8> = Vec::new();
+    for corner in 0..8u32 {
+        let side = |bit: u32| if corner >> bit & 1 == 0 { -1f32 } else { 1.0 };
+        (0..3).for_each(|bit| bytes.extend(side(bit).to_le_bytes()));
+    }
+    let sides = [[0u8, 2, 3, 1], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5], [4, 5, 7, 6]];
+    bytes.extend(sides.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]));
+    bytes.extend([0, 7]);
+    let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    let data = base64(&hex);
+    let text = format!(
+        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{},"uri":"data:application/octet-stream;base64,{data}"}}],
+        "bufferViews":[{{"buffer":0,"byteLength":96}},{{"buffer":0,"byteOffset":96,"byteLength":38}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":8,"type":"VEC3","min":[-1,-1,-1],"max":[1,1,1]}},
+            {{"bufferView":1,"componentType":5121,"count":30,"type":"SCALAR"}},
+            {{"bufferView":1,"byteOffset":30,"componentType":5121,"count":6,"type":"SCALAR"}},
+            {{"bufferView":1,"byteOffset":36,"componentType":5121,"count":2,"type":"SCALAR"}}],
+        "materials":[{{"name":"body"}},{{"name":"lid","extras":{{"k":1.50}}}}],
+        "meshes":[{{"name":"Box","primitives":[{{"attributes":{{"POSITION":0{more}}},"indices":1,"material":0}},
+            {{"attributes":{{"POSITION":0}},"indices":2,"material":1}},
+            {{"attributes":{{"POSITION":0}},"indices":3,"mode":1}}]}}],
+        "nodes":[{nodes}]}}"#,
+        bytes.len()
+    );
+    file(folder, name, &text)
+}
+
+/// Base 64 of bytes in hexadecimal digits, three at a time.
+fn base64(hex: &str) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for six in hex.as_bytes().chunks(6) {
+        let digits = std::str::from_utf8(six).expect("digits");
+        let word = u32::from_str_radix(&format!("{digits:0<6}"), 16).expect("a number");
+        for letter in 0..4 {
+            let digit = (word >> (18 - 6 * letter) & 63) as usize;
+            text.push(if letter * 3 < digits.len() * 2 { char::from(LETTERS[digit]) } else { '=' });
+        }
+    }
+    text
+}
+
+#[test]
+fn tolerances_are_the_scenes() {
+    let folder = folder();
+    let output = folder.path().join("out.glb");
+    let mut triangles = Vec::new();
+    for nodes in [
+        r#"{"mesh":0}"#,
+        r#"{"mesh":0,"scale":[0.001,0.001,0.001]}"#,
+        r#"{"scale":[1000,1000,1000],"children":[1]},{"mesh":0,"translation":[3,4,5]}"#,
+    ] {
+        let input = cube(&folder, "in.gltf", nodes, "");
+        // Per cent of the scene: the same mesh at every scale.
+        let report = run("refine {} -o {} --tolerance 1% --report -", &[&input, &output]).expect(0).json();
+        let mesh = &report["meshes"][0];
+        triangles.push(mesh["output"]["triangles"].as_u64().expect("a number"));
+        let upper = mesh["error"]["upper"].as_f64().expect("a number");
+        // The file's scene as another command reads it.
+        let measured =
+            run("measure {} --limit-of {} --certified --json", &[&output, &input]).expect(0).json();
+        let found = measured["hausdorff"]["lower"].as_f64().expect("a number");
+        let most = measured["hausdorff"]["upper"].as_f64().expect("a number");
+        assert!(found <= upper && most >= 0.5 * upper, "{found} to {most}, told {upper}");
+        let size = mesh["error"]["diagonal"].as_f64().expect("a number");
+        assert!(upper <= 0.01 * size * (1.0 + 1e-9), "{upper} of {size}");
+    }
+    assert!(triangles[0] == triangles[1] && triangles[1] == triangles[2], "{triangles:?}");
+    // A length holds in the scene, too: 1000 times larger needs more triangles for the same.
+    let small = cube(&folder, "small.gltf", r#"{"mesh":0}"#, "");
+    let large = cube(&folder, "large.gltf", r#"{"mesh":0},{"mesh":0,"scale":[1,30,1]}"#, "");
+    let [few, many] = [small, large].map(|input: PathBuf| {
+        run("refine {} -o {} --tolerance 0.05", &[&input, &output]).expect(0);
+        let soup = soup(&output);
+        soup.faces.len()
+    });
+    assert!(many > 4 * few, "{many} and {few}");
+}
+
+#[test]
+fn materials_keep_their_border_and_stay_joined() {
+    let folder = folder();
+    let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, "");
+    for (output, options) in [("out.glb", ""), ("sharp.gltf", "--crease-angle 30")] {
+        let output = folder.path().join(output);
+        run(&format!("refine {{}} -o {{}} --tolerance 2% {options}"), &[&input, &output]).expect(0);
+        // Read back, joined again along the border: closed.
+        let whole = run("info {} --json", &[&output]).expect(0).json();
+        assert_eq!(whole["mesh"]["watertight"], true);
+        let primitives = &whole["asset"]["meshes"][0]["primitives"];
+        assert_eq!((&primitives[0]["material"], &primitives[1]["material"]), (&"body".into(), &"lid".into()));
+        assert_eq!((&primitives[2]["mode"], &primitives[2]["indices"]), (&"lines".into(), &2.into()));
+        if options.is_empty() {
+            continue;
+        }
+        // With sharp edges the cube is itself, and the lid is what is on top.
+        let asset = limitmesh_io::Asset::open(&output).expect("an asset");
+        let mesh = asset.mesh(0, limitmesh_io::gltf::Joining::Never).expect("a mesh");
+        let height = |face: usize| {
+            let corners = mesh.soup.faces.get(face).iter();
+            corners.map(|&v| mesh.soup.positions[v as usize][2]).fold(f64::INFINITY, f64::min)
+        };
+        assert!(mesh.parts[1].faces.clone().all(|face| (height(face) - 1.0).abs() < 1e-6));
+        assert!(mesh.parts[0].faces.clone().all(|face| height(face) < 0.999));
+    }
+}
+
+#[test]
+fn what_is_not_carried_along_is_told() {
+    let folder = folder();
+    let output = folder.path().join("out.glb");
+    let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, r#","_HEAT":0,"NORMAL":0"#);
+    let report =
+        run("refine {} -o {} --report -", &[&input, &output]).expect(0).saying("left out: _HEAT").json();
+    assert_eq!(report["left_out"], serde_json::json!(["_HEAT"]));
+    // A skin would lose its weights: the mesh stays.
+    let more = r#","JOINTS_0":0,"WEIGHTS_0":0"#;
+    let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, more);
+    run("refine {} -o {}", &[&input, &output]).expect(0).saying("meshes[0] 'Box': kept as it is");
+    let found = run("info {} --json", &[&output]).expect(0).json();
+    assert_eq!(found["asset"]["meshes"][0]["primitives"][0]["indices"], 30);
+}
+
+#[test]
+fn what_has_no_meaning_for_a_scene_is_refused() {
+    let folder = folder();
+    let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, "");
+    let output = folder.path().join("out.glb");
+    let refused = |options: &str, words: &str| {
+        run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(2).saying(words);
+    };
+    refused("--camera 0,0,5,0,0,0,0,1,0,45,100x100", "stand in a scene");
+    refused("--angle 5 --view 0,0,1", "stand in a scene");
+    refused("--weld 0.1", "--weld can be 0 or none");
+    refused("--method uniform", "several primitives");
+    refused("--provenance", "PLY");
+    assert!(!output.exists());
+    let broken = file(&folder, "broken.gltf", r#"{"asset":{"version":"2.0"},"nodes":[{"children":[0]}]}"#);
+    run("refine {} -o {}", &[&broken, &output]).expect(1).saying("nodes[0]: met a circle of children");
+    let empty = file(&folder, "empty.gltf", r#"{"asset":{"version":"2.0"}}"#);
+    run("refine {} -o {}", &[&empty, &output]).expect(1).saying("shows no triangles");
+}
+
+#[test]
+fn assets_are_predicted_drawn_and_stand_for_meshes() {
+    let folder = folder();
+    let input = cube(&folder, "in.gltf", r#"{"mesh":0,"translation":[10,0,0]}"#, "");
+    let run_dry = run("refine {} --tolerance 1% --dry-run", &[&input]).expect(0);
+    assert!(run_dry.stdout.contains("meshes[0] 'Box': ") && run_dry.stdout.contains("nothing was written"));
+    let (output, picture) = (folder.path().join("out.gltf"), folder.path().join("out.png"));
+    run("refine {} -o {} --picture {}", &[&input, &output, &picture]).expect(0);
+    assert!(std::fs::read(&picture).expect("a picture").starts_with(b"\x89PNG"));
+    // To a format without scenes: what is shown, in the scene's coordinates.
+    let plain = folder.path().join("out.ply");
+    run("refine {} -o {}", &[&input, &plain]).expect(0);
+    assert!(soup(&plain).positions.iter().all(|p| p[0] > 8.0));
+    // And from one.
+    let from = folder.path().join("from.glb");
+    run("refine builtin:cube -o {} --tolerance 1%", &[&from]).expect(0);
+    let read = soup(&from);
+    assert_eq!((counts(&read).boundary_edges, counts(&read).euler_characteristic), (0, 2));
+    measured_within(&from, "builtin:cube", 0.01);
+}
+
+/// The certified distance of a file to a limit surface is that share of its diagonal at most.
+fn measured_within(path: &Path, control: &str, share: f64) {
+    let command = format!("measure {{}} --limit-of {control} --certified --json");
+    let report: Value = run(&command, &[path]).expect(0).json();
+    let percent = report["hausdorff"]["upper_percent"].as_f64().expect("a number");
+    assert!(percent <= 100.0 * share * 1.02, "{percent} %");
+}
