@@ -100,14 +100,14 @@ impl Changes {
             let start = bytes.len();
             bytes.extend(new);
             let members = Members::of(first)?;
-            let length = Some(bytes.len().to_string());
+            let length = bytes.len().to_string();
             let uri = uri(&bytes);
             if members.get("uri").is_none() && uri.is_none() {
                 if let Some(old) = members.get("byteLength") {
-                    edits.replace(old, length.unwrap_or_default());
+                    edits.replace(old, length);
                 }
             } else {
-                edits.replace(first, members.with(&[("uri", uri), ("byteLength", length)]));
+                edits.replace(first, members.with(&[("uri", uri), ("byteLength", Some(length))]));
             }
             return Ok((0, start, bytes));
         }

@@ -160,7 +160,7 @@ fn containers() {
     );
     assert_eq!(
         changed(12, 4_000_000_000),
-        "glTF chunk 0 of the GLB, at byte 12: met a length of 4000000000 with 40 left, expected a chunk within the file"
+        "glTF chunk 0 of the GLB, at byte 12: met a length of 4000000000 bytes with 40 left, expected a chunk within the file"
     );
     assert_eq!(
         changed(16, 7),
