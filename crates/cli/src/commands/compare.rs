@@ -121,8 +121,8 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    fn limit(&self) -> LimitReport {
-        LimitReport {
+    fn limit(&self) -> anyhow::Result<LimitReport> {
+        Ok(LimitReport {
             scheme: self.arguments.scheme,
             levels: self.reference.levels,
             chosen: true,
@@ -132,10 +132,9 @@ impl Judge<'_> {
             interpolate_within: self
                 .arguments
                 .interpolation
-                .within(self.diagonal, self.arguments.build.unit)
-                .unwrap_or_default(),
+                .within(self.diagonal, self.arguments.build.unit)?,
             concave_corners: self.arguments.features.concave_corners(),
-        }
+        })
     }
 
     /// Measures what a method with its angle gave: a mesh after some steps or levels, perhaps with proven bounds.
@@ -170,7 +169,7 @@ impl Judge<'_> {
             min_angle_degrees: quality.min_angle_degrees,
             mean_min_angle_degrees: quality.mean_min_angle_degrees,
             seconds: took.as_secs_f64(),
-            reference: self.limit(),
+            reference: self.limit()?,
             reference_triangles: self.reference.mesh.face_count(),
         })
     }

@@ -21,15 +21,12 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
     let shading = if arguments.flat { Shading::Flat } else { Shading::Smooth };
     let style = Style::default().shading(shading).wireframe(arguments.wireframe);
     let view = picture::view_direction(arguments.view);
-    let split = SplitSurface::by_faces(&mesh);
-    picture::draw(
-        &arguments.output,
-        split.as_triangles(),
-        Some(&split.normals),
-        view,
-        &style,
-        arguments.size,
-    )?;
+    let split = (!arguments.flat).then(|| SplitSurface::by_faces(&mesh));
+    let (surface, normals) = match &split {
+        Some(split) => (split.as_triangles(), Some(&split.normals[..])),
+        None => (mesh.as_triangles(), None),
+    };
+    picture::draw(&arguments.output, surface, normals, view, &style, arguments.size)?;
     let drawn = counted(mesh.face_count(), "triangle", "triangles");
     progress.note(format!("{}: {drawn} drawn", arguments.output.display()));
     Ok(Outcome::Done)

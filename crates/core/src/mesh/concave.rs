@@ -63,9 +63,9 @@ impl Mesh {
     /// The mesh gets more elements than can be numbered.
     pub fn with_divided_concave_corners(self) -> Result<(Self, ConcaveCorners), MeshError> {
         let sharpness = Sharpness::of(&self);
-        let mut ribs = ribs(&self, &sharpness.lasting());
+        let mut ribs = ribs_of(&self, &sharpness.lasting());
         if sharpness.fades() {
-            for (edge, rib) in self::ribs(&self, &sharpness) {
+            for (edge, rib) in ribs_of(&self, &sharpness) {
                 ribs.entry(edge).or_insert(rib);
             }
         }
@@ -120,7 +120,7 @@ struct Rib {
 }
 
 /// The edges that divide the sectors of all corners, by the half-edges that leave these.
-fn ribs(mesh: &Mesh, sharpness: &Sharpness<'_>) -> BTreeMap<HalfEdgeId, Rib> {
+fn ribs_of(mesh: &Mesh, sharpness: &Sharpness<'_>) -> BTreeMap<HalfEdgeId, Rib> {
     let mut ribs = BTreeMap::new();
     for corner in sharpness.tagged_vertices() {
         let ring = sharpness.ring(corner);

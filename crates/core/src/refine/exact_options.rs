@@ -40,8 +40,8 @@ pub struct ExactOptions {
     /// Default: yes.
     pub origins: bool,
     /// Regions of control faces whose limit surface lies in a plane are triangulated from their rims alone, with no vertices
-    /// inside but those of the control mesh; the set of points is the same, and so is its distance. Else their triangles follow the
-    /// hierarchy like all others. Not with [`Self::balance`]. Default: yes.
+    /// inside but those of the control mesh. That is the same set of points, unless the surface folds there
+    /// ([`Exact::unfolded`](super::Exact::unfolded)). Else their triangles follow the hierarchy like all others. Not with [`Self::balance`]. Default: yes.
     pub flat_regions: bool,
     /// Levels at most below the control faces: up to 30. Default: 24.
     pub max_levels: usize,

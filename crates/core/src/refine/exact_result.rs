@@ -65,6 +65,12 @@ pub struct Exact {
     pub sides: Vec<(u32, [f64; 3])>,
     /// Where each vertex came from; empty unless [`ExactOptions::origins`](super::ExactOptions::origins) asks for it.
     pub origins: Vec<Origin>,
+    /// How far the limit surface, and the triangles that stand for it, can be off the planes of the regions that were triangulated
+    /// from their rims ([`ExactOptions::flat_regions`](super::ExactOptions::flat_regions)); 0 where there are none.
+    pub off_planes: f64,
+    /// Flat regions that the scheme's rules fold over, inside or beyond their rims, as they do where a fan of slivers meets
+    /// a hole: what the rim encloses stands in their place, and is the surface that [`Self::error`] is about.
+    pub unfolded: usize,
     /// The control face of each triangle; empty after optimisation, whose triangles reach over several.
     pub parents: Vec<u32>,
     /// How far mesh and limit surface can be from each other.

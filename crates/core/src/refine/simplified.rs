@@ -93,6 +93,8 @@ pub(super) fn simplified(
             origins => collapsed.vertices.iter().map(|&v| origins[v as usize]).collect(),
         },
         sides: Vec::new(),
+        off_planes: fine.off_planes,
+        unfolded: fine.unfolded,
         parents: Vec::new(),
         error,
         pixels: None,

@@ -4,7 +4,7 @@ use limitmesh::Mesh;
 
 use super::exact::Before;
 use super::interpolation;
-use crate::arguments::{Featured, RefineArguments};
+use crate::arguments::{Featured, Method, RefineArguments};
 use crate::bulk::Bulk;
 use crate::format::counted;
 use crate::progress::Progress;
@@ -35,8 +35,8 @@ impl Control {
         progress: &Progress,
     ) -> anyhow::Result<Self> {
         let bulk = Bulk::of(&mesh);
-        let before =
-            Before { positions: mesh.positions().to_vec(), triangles: mesh.triangles().to_vec(), faces };
+        let is_compared = arguments.method == Method::Exact && !arguments.exact.no_input_distance;
+        let surface = is_compared.then(|| (mesh.positions().to_vec(), mesh.triangles().to_vec()));
         let featured = arguments.features.apply(mesh)?;
         if let Some(note) = divided_corners(&featured) {
             progress.note(note);
@@ -51,6 +51,7 @@ impl Control {
             progress,
         )?;
         let featured = Featured { mesh, concave };
+        let before = Before { surface, faces, residual: interpolation.as_ref().map(|report| report.residual) };
         Ok(Self { featured, diagnosis, before, bulk, interpolation, diagonal })
     }
 }

@@ -238,10 +238,12 @@ const STAND_IN: f64 = 5e-4;
 
 /// The mesh that was read, before corners were divided and control points moved.
 pub(super) struct Before {
-    pub(super) positions: Vec<[f64; 3]>,
-    pub(super) triangles: Vec<[u32; 3]>,
+    /// Positions and triangles, where somebody asks how far the result is from them.
+    pub(super) surface: Option<(Vec<[f64; 3]>, Vec<[u32; 3]>)>,
     /// The input's face of each face.
     pub(super) faces: Vec<u32>,
+    /// How far the limits of the control points are from its vertices at most, where they were moved for that.
+    pub(super) residual: Option<f64>,
 }
 
 /// How far the result is from the mesh that was read.
@@ -252,16 +254,15 @@ fn moved(
     arguments: &RefineArguments,
     progress: &Progress,
 ) -> anyhow::Result<Option<InputDistance>> {
-    if arguments.exact.no_input_distance {
-        return Ok(None);
-    }
-    let input = Triangles { positions: &before.positions, triangles: &before.triangles };
+    let Some((positions, triangles)) = &before.surface else { return Ok(None) };
+    let input = Triangles { positions, triangles };
+    let residual = before.residual.unwrap_or(0.0);
     let on_whole = |found: &Exact| -> Vec<Origin> {
         let origins = found.origins.iter().map(|origin| parts.on_whole(origin.face, origin.barycentric));
         origins.map(|(face, barycentric)| Origin { face, barycentric }).collect()
     };
     let origins = on_whole(found);
-    if let Some(moved) = InputDistance::new(input, (found, &origins))? {
+    if let Some(moved) = InputDistance::new(input, (found, &origins), residual)? {
         return Ok(Some(moved));
     }
     if !found.error.certified {
@@ -272,7 +273,7 @@ fn moved(
         ExactOptions::default().tolerance(STAND_IN * goals.diagonal).max_triangles(Some(MOST_EXACT));
     let between = exact_observed(control, arguments.scheme.scheme(), &options, &mut progress.observer())?;
     let apart = between.error.upper + found.error.upper;
-    let moved = InputDistance::new(input, (&between, &on_whole(&between)))?;
+    let moved = InputDistance::new(input, (&between, &on_whole(&between)), residual)?;
     Ok(moved.map(|moved| moved.of_other(input, (found, &origins), apart)).transpose()?)
 }
 
@@ -296,6 +297,13 @@ fn moved_in_words(
         let edges = counted(sharp_edges, "edge that looks", "edges that look");
         lines.push(format!("(--crease-angle {} would keep {edges} sharp)", number(angle)));
     }
+    if arguments
+        .interpolation
+        .within(goals.diagonal, arguments.build.unit)
+        .is_ok_and(|within| within.is_none())
+    {
+        lines.push("(--interpolate would lead the surface through the vertices)".to_owned());
+    }
     lines
 }
 
@@ -312,6 +320,10 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, arguments: &Refin
         true => format!("at most {} pixels as the cameras see it", upper_bound(pixels)),
         false => "not bounded as the cameras see it".to_owned(),
     }));
+    if found.unfolded > 0 {
+        let regions = counted(found.unfolded, "flat region folds", "flat regions fold");
+        lines.push(format!("{regions} by the scheme's rules: what its rim encloses stands there instead"));
+    }
     if found.refused > 0 {
         let vertices = counted(found.refused, "vertex", "vertices");
         lines.push(format!("{vertices} kept where a collapse was not proven"));

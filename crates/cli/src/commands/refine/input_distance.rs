@@ -7,7 +7,7 @@
 //!
 //! Regions that lie in a plane are triangulated from their rims alone, which have partners as all edges have. A point of one region that
 //! is not in the other lies on a segment between partners of the rims: moved along these, the one rim must pass it to become the
-//! other. So the rims bound the distance, but for what control points may be off the plane.
+//! other. So the rims bound the distance, but for what both are off the plane.
 //!
 //! Below stand true distances of the points that were moved most along
 //! normals: along the surface, vertices drift where triangles are of different sizes, and the interval is wide there.
@@ -24,10 +24,6 @@ const MEASURED: usize = 4;
 /// What rounding may do to a computed point or distance, as a share of the greatest coordinate: some hundred units in the last place.
 const ROUNDING: f64 = 2e-14;
 
-/// How far control points and triangles of a region that lies in a plane may be off it together, as a share of the greatest coordinate:
-/// twice what exact refinement takes for flat.
-const FLAT: f64 = 4e-7;
-
 /// The distance between the mesh that was read and the refined one lies between these.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct InputDistance {
@@ -39,11 +35,14 @@ impl InputDistance {
     /// Of a refined mesh whose triangles each come from one control face, and where on the input its vertices came from; `None` where
     /// triangles reach over several.
     ///
+    /// Where the surface lies in a plane, the input's vertices are within `residual` of it.
+    ///
     /// # Errors
     /// Coordinates too large to be measured.
     pub(super) fn new(
         input: Triangles<'_>,
         (found, origins): (&Exact, &[Origin]),
+        residual: f64,
     ) -> Result<Option<Self>, MeasureError> {
         let is_known = origins.len() == found.mesh.vertex_count();
         if !is_known || found.parents.len() != found.mesh.face_count() {
@@ -51,9 +50,10 @@ impl InputDistance {
         }
         let moved = moves(input, found, origins);
         let upper = moved.iter().copied().fold(0.0, f64::max);
-        let greatest = greatest(input);
-        let lower = lower(input, (found, origins), &moved)? - ROUNDING * greatest;
-        Ok(Some(Self { lower: lower.max(0.0), upper: upper + FLAT * greatest }))
+        let rounding = ROUNDING * greatest(input);
+        let lower = lower(input, (found, origins), &moved)? - rounding;
+        let off_planes = if found.off_planes > 0.0 { 2.0 * found.off_planes + residual } else { 0.0 };
+        Ok(Some(Self { lower: lower.max(0.0), upper: upper + off_planes + rounding }))
     }
 
     /// Of another mesh that stands for the same limit surface, where these are within `apart` of each other.

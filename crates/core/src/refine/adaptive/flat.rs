@@ -1,9 +1,13 @@
 //! Regions of control faces whose limit surface is a part of a plane, such as the ends of a cylinder with creased rims.
 //!
 //! There the quadtrees only follow the rim: what they put inside adds nothing. Once everything is emitted, a region's triangles
-//! give way to the constrained Delaunay triangulation of its rim and its control vertices ([`merge`], [`planar`]). Distances do not
-//! change: a planar triangulation whose triangles all turn the same way and whose border is simple covers what is inside that
-//! border, so before and after it is the same set of points, and what is proven of the one holds for the other.
+//! give way to the constrained Delaunay triangulation of its rim and its control vertices ([`merge`], [`planar`]). Where its triangles
+//! all turn the same way and its rim is simple, they cover what is inside of the rim: before and after it is the same set of points, and
+//! what is proven of the one holds for the other. Where some are turned over, as where slivers of a fan meet a hole, the surface
+//! folds, perhaps over its rim; there the part of the plane inside of the rim *is* the surface, by definition. It is as near as before:
+//! a point inside of the rim's curves and not of its chords, or the other way round, is between a curve and its chord, in
+//! the convex hull of the curve, so no farther from the chord than that curve's points are; and any point between them has
+//! points of the curve as near.
 //!
 //! A face is flat where the control points whose hull holds its piece of the surface lie in the plane. A triangulation of
 //! a region with the same control vertices and K vertices inside its rim's control edges has K triangles more than there are
@@ -24,10 +28,14 @@ use crate::refine::exact_options::ExactOptions;
 use crate::vector::{DVec3, vector};
 
 /// How far control points may be off a plane, as a part of the greatest coordinate: files in single precision round to half of this.
+/// How far they are is measured, and counted with every distance.
 const IN_PLANE: f64 = 2e-7;
 
 /// The same as a part of the tolerance.
 const OF_TOLERANCE: f64 = 1e-3;
+
+/// Heights over a plane are known to this part of the greatest coordinate.
+const HEIGHT_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Faces whose unit normals differ by more than this are not looked at any closer.
 const ALIKE: f64 = 1e-3;
@@ -59,8 +67,8 @@ pub(super) struct FlatRegions {
     of_face: Vec<u32>,
     /// By region, its faces, ascending, and its plane.
     regions: Vec<(Vec<u32>, Plane)>,
-    /// How far the surface, and so what stands for it, may be off the planes.
-    apart: f64,
+    /// How far the surface, and so what stands for it, is off the planes at most.
+    off_planes: f64,
     /// So many leaves of a flat face count as one while faces are divided.
     weight: usize,
 }
@@ -76,7 +84,7 @@ impl FlatRegions {
         let mesh = control.mesh;
         let size = mesh.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
         let share = options.tolerance.map_or(f64::INFINITY, |tolerance| OF_TOLERANCE * tolerance);
-        let apart = share.min(IN_PLANE * size);
+        let most = share.min(IN_PLANE * size);
         let found = watch.pieces(mesh.face_count(), BLOCK, |block| {
             let flat = block.map(|face| face as u32).filter(|&face| may_be_flat(control, edges, face));
             flat.collect::<Vec<u32>>()
@@ -91,7 +99,7 @@ impl FlatRegions {
         let mut of_face = vec![NONE; mesh.face_count()];
         let mut is_left = vec![false; mesh.face_count()];
         flat.iter().for_each(|&face| is_left[face as usize] = true);
-        let mut regions = Vec::new();
+        let (mut regions, mut off_planes) = (Vec::new(), 0.0f64);
         for seed in flat {
             watch.poll()?;
             if !is_left[seed as usize] {
@@ -100,9 +108,9 @@ impl FlatRegions {
             let point = vector(mesh.positions()[mesh.triangles()[seed as usize][0] as usize]);
             let plane = Plane { point, normal: mesh.unit_face_normal(seed as usize) };
             is_left[seed as usize] = false;
-            if !is_in(control, seed, &plane, apart) {
+            let Some(mut height) = height_over(control, seed, &plane).filter(|&height| height <= most) else {
                 continue;
-            }
+            };
             let mut faces = vec![seed];
             let mut next = 0;
             while let Some(&face) = faces.get(next) {
@@ -110,8 +118,12 @@ impl FlatRegions {
                 let open = control.open(face);
                 for edge in (0..3u32).filter(|&edge| !open[edge as usize]) {
                     let Some(beside) = edges.twin(3 * face + edge).map(|twin| twin / 3) else { continue };
-                    if is_left[beside as usize] && is_in(control, beside, &plane, apart) {
+                    if !is_left[beside as usize] {
+                        continue;
+                    }
+                    if let Some(found) = height_over(control, beside, &plane).filter(|&found| found <= most) {
                         is_left[beside as usize] = false;
+                        height = height.max(found);
                         faces.push(beside);
                     }
                 }
@@ -119,14 +131,15 @@ impl FlatRegions {
             faces.sort_unstable();
             faces.iter().for_each(|&face| of_face[face as usize] = regions.len() as u32);
             regions.push((faces, plane));
+            off_planes = off_planes.max(height + HEIGHT_ROUNDING * size);
         }
         let weight = if options.max_memory.is_some() { 1 } else { WEIGHT };
-        Ok(Self { of_face, regions, apart, weight })
+        Ok(Self { of_face, regions, off_planes, weight })
     }
 
-    /// How much farther apart mesh and surface may be for what stands in the planes.
-    pub(super) fn rounding(&self) -> f64 {
-        if self.regions.is_empty() { 0.0 } else { 2.0 * self.apart }
+    /// How far the surface, and what stands for it, is off the planes at most.
+    pub(super) fn off_planes(&self) -> f64 {
+        self.off_planes
     }
 
     /// How many leaves of a face count as one triangle while faces are divided: of those of flat faces most are not going to stay.
@@ -173,12 +186,12 @@ fn may_be_flat(control: &Control<'_>, edges: &Edges<'_>, face: u32) -> bool {
     normal != DVec3::ZERO && normals.all(|other| other.distance_squared(normal) <= ALIKE * ALIKE)
 }
 
-/// Whether the surface over a face lies in a plane.
-fn is_in(control: &Control<'_>, face: u32, plane: &Plane, apart: f64) -> bool {
+/// How far the surface over a face is off a plane at most; `None` where it faces the other way.
+fn height_over(control: &Control<'_>, face: u32, plane: &Plane) -> Option<f64> {
     if control.mesh.unit_face_normal(face as usize).dot(plane.normal) <= 0.0 {
-        return false;
+        return None;
     }
-    let mut is_in = true;
-    control.patch(face).for_each_hull_point(|point| is_in &= plane.height(point).abs() <= apart);
-    is_in
+    let mut most = 0.0f64;
+    control.patch(face).for_each_hull_point(|point| most = most.max(plane.height(point).abs()));
+    Some(most)
 }

@@ -16,7 +16,8 @@
 //! 8. `settle`, or `measure` for goals beside distances: the triangles among their neighbours; what fails is split, and
 //!    4 to 7 are done again;
 //! 9. `budget`: for a number of triangles, the least distance whose plan fits: 2 to 8 for each that is tried;
-//! 10. `probe`: the certified interval.
+//! 10. `probe`: the certified interval;
+//! 11. `flat`: regions whose surface lies in a plane, triangulated from their rims.
 
 mod among;
 mod balance;
@@ -165,7 +166,7 @@ fn with_engine<T>(
     if options.flat_regions && !options.balance {
         control.flat = FlatRegions::of(&control, &edges, options, &watch)?;
     }
-    let rounding = probe::rounding(mesh, options.max_levels, &watch)? + control.flat.rounding();
+    let rounding = probe::rounding(mesh, options.max_levels, &watch)? + 2.0 * control.flat.off_planes();
     control.criteria = criteria(mesh, options, rounding)?;
     let engine = Engine {
         control: &control,

@@ -92,7 +92,7 @@ impl Outcome {
         let whole =
             Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions };
         let corners = control.mesh.vertex_count();
-        let whole = control.flat.merge(whole, (&starts, &sharp), corners, watch)?;
+        let (whole, unfolded) = control.flat.merge(whole, (&starts, &sharp), corners, watch)?;
         let Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions } =
             whole;
         let outgoing =
@@ -103,6 +103,8 @@ impl Outcome {
             normals,
             sides,
             origins,
+            off_planes: control.flat.off_planes(),
+            unfolded,
             parents,
             error,
             pixels,

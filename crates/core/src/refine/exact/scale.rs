@@ -59,5 +59,6 @@ pub(super) fn result(result: Exact, factor: f64) -> Result<Exact, RefineError> {
     let ErrorBounds { lower, upper, at, certified } = result.error;
     let error =
         ErrorBounds { lower: lower / factor, upper: upper / factor, at: at.map(|x| x / factor), certified };
-    Ok(Exact { mesh: mesh(&result.mesh, 1.0 / factor)?, error, ..result })
+    let off_planes = result.off_planes / factor;
+    Ok(Exact { mesh: mesh(&result.mesh, 1.0 / factor)?, error, off_planes, ..result })
 }

@@ -33,11 +33,16 @@ pub(in super::super) struct Assembled {
     pub(in super::super) junctions: Junctions,
 }
 
-/// A region's triangles with their control faces, by control face.
-type Covering = Vec<([u32; 3], u32)>;
+/// What a region's rim encloses.
+struct Covering {
+    /// Triangles with their control faces, by control face.
+    triangles: Vec<([u32; 3], u32)>,
+    /// Whether some of the triangles in whose place these come are turned over.
+    was_folded: bool,
+}
 
 impl FlatRegions {
-    /// Triangulates the regions anew. `starts` has the first triangle of each control face and one more, `sharp` the half-edges
+    /// Triangulates the regions anew; gives how many of them were folded, too. `starts` has the first triangle of each control face and one more, `sharp` the half-edges
     /// along sharp edges, and `corners` is the number of control vertices, which all stay.
     pub(in super::super) fn merge(
         &self,
@@ -45,19 +50,20 @@ impl FlatRegions {
         (starts, sharp): (&[u32], &HashSet<u32>),
         corners: usize,
         watch: &SharedWatch<'_>,
-    ) -> Result<Assembled, Cancelled> {
+    ) -> Result<(Assembled, usize), Cancelled> {
         if self.regions.is_empty() {
-            return Ok(whole);
+            return Ok((whole, 0));
         }
         let coverings = watch.long_pieces(self.regions.len(), BLOCK, |block, is_stopped| {
             block.map(|region| self.covering(region, &whole, (starts, sharp, corners), is_stopped)).collect()
         })?;
         let coverings: Vec<Option<Covering>> = coverings.into_iter().flat_map(|list: Vec<_>| list).collect();
-        let coverings = self.apart(coverings, &whole, watch)?;
+        let coverings = self.without_shared_edges(coverings, &whole, watch)?;
         if coverings.iter().all(Option::is_none) {
-            return Ok(whole);
+            return Ok((whole, 0));
         }
-        self.replaced(whole, starts, &coverings, corners, watch)
+        let folded = coverings.iter().flatten().filter(|covering| covering.was_folded).count();
+        Ok((self.replaced(whole, starts, &coverings, corners, watch)?, folded))
     }
 
     /// The triangles of a region, if they can be fewer than those that were emitted.
@@ -74,11 +80,14 @@ impl FlatRegions {
         if before.len() == faces.len() {
             return None;
         }
-        let mut flat = Flattened::new(plane, self.apart, &whole.positions);
-        let (mut rim, mut along, mut area) = (Vec::new(), HashMap::new(), 0.0);
+        let mut flat = Flattened::new(plane, self.off_planes, &whole.positions);
+        let (mut rim, mut along) = (Vec::new(), HashMap::new());
+        let (mut area, mut was_folded) = (0.0, false);
         for &triangle in &before {
             let vertices = whole.triangles[triangle as usize];
-            area += flat.area(vertices)?;
+            let own = flat.area(vertices)?;
+            area += own;
+            was_folded |= !flat.is_positive(own);
             for (edge, &vertex) in vertices.iter().enumerate() {
                 let h = 3 * triangle + edge as u32;
                 let beyond = whole.twins[h as usize];
@@ -95,29 +104,39 @@ impl FlatRegions {
             }
         }
         let points = flat.points()?;
-        let triangles = planar::triangulated(&points, &rim, &|| is_stopped())?;
+        let triangles = planar::triangulated(&points, &rim, is_stopped)?;
         let triangles: Vec<[u32; 3]> =
             triangles.iter().map(|triangle| triangle.map(|point| flat.vertices[point as usize])).collect();
-        let mut after = 0.0;
+        let (mut after, mut is_used) = (0.0, vec![false; points.len()]);
         for &triangle in &triangles {
-            after += flat.area(triangle)?;
+            let own = flat.area(triangle).filter(|&own| flat.is_positive(own))?;
+            after += own;
+            triangle.iter().for_each(|&vertex| is_used[flat.numbers[&vertex] as usize] = true);
         }
+        // A control vertex beyond the rim would be left over.
+        let is_whole = is_used.iter().all(|&is_used| is_used);
         let is_same = triangles.len() < before.len() && (after - area).abs() <= SAME_AREA * area;
-        is_same.then(|| by_face(triangles, &along))
+        if !is_whole || !is_same {
+            return None;
+        }
+        Some(Covering { triangles: by_face(triangles, &along)?, was_folded })
     }
 
     /// The coverings whose new edges are none that the mesh has elsewhere: two flat sheets may share their rims, and an edge has two
     /// faces.
-    fn apart(
+    fn without_shared_edges(
         &self,
         mut coverings: Vec<Option<Covering>>,
         whole: &Assembled,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<Option<Covering>>, Cancelled> {
         let mut is_covered = vec![false; whole.positions.len()];
-        watch.each(coverings.iter().flatten().flatten(), |(triangle, _)| {
-            triangle.iter().for_each(|&vertex| is_covered[vertex as usize] = true);
-        })?;
+        watch.each(
+            coverings.iter().flatten().flat_map(|covering| &covering.triangles),
+            |(triangle, _)| {
+                triangle.iter().for_each(|&vertex| is_covered[vertex as usize] = true);
+            },
+        )?;
         // By its ends, the region that an edge is inside of; none where it is on rims, or elsewhere.
         let mut owners = HashMap::new();
         watch.each(whole.triangles.iter().zip(&whole.parents), |(&triangle, &parent)| {
@@ -130,7 +149,7 @@ impl FlatRegions {
             }
         })?;
         watch.each((0u32..).zip(&mut coverings), |(region, covering)| {
-            let Some(triangles) = covering else { return };
+            let Some(Covering { triangles, .. }) = covering else { return };
             let all = || triangles.iter().flat_map(|&(triangle, _)| edges(triangle));
             let directed: HashSet<[u32; 2]> = all().collect();
             let inner = all().filter(|&[from, to]| from < to && directed.contains(&[to, from]));
@@ -168,8 +187,10 @@ impl FlatRegions {
                 }
                 return;
             };
-            let first = covering.partition_point(|&(_, parent)| parent < face);
-            for &(triangle, _) in covering[first..].iter().take_while(|&&(_, parent)| parent == face) {
+            let first = covering.triangles.partition_point(|&(_, parent)| parent < face);
+            for &(triangle, _) in
+                covering.triangles[first..].iter().take_while(|&&(_, parent)| parent == face)
+            {
                 for edge in 0..3 {
                     let ends = [triangle[edge], triangle[(edge + 1) % 3]];
                     let h = 3 * triangles.len() as u32 + edge as u32;
@@ -199,6 +220,7 @@ impl FlatRegions {
             }
         })?;
         let sides = self.sides(&whole, (&triangles, &parents), coverings, &first_new, watch)?;
+        let normals = self.unfolded_normals(&whole, coverings);
         let mut renamed = vec![NONE; whole.positions.len()];
         renamed[..corners].fill(0);
         watch.each(triangles.as_flattened(), |&vertex| renamed[vertex as usize] = 0)?;
@@ -215,7 +237,7 @@ impl FlatRegions {
         let origins = if whole.origins.is_empty() { &[][..] } else { &kept[..] };
         Ok(Assembled {
             positions: kept.iter().map(|&vertex| whole.positions[vertex]).collect(),
-            normals: kept.iter().map(|&vertex| whole.normals[vertex]).collect(),
+            normals: kept.iter().map(|&vertex| normals[vertex]).collect(),
             origins: origins.iter().map(|&vertex| whole.origins[vertex]).collect(),
             triangles,
             twins,
@@ -224,6 +246,29 @@ impl FlatRegions {
             sides,
             junctions,
         })
+    }
+
+    /// The normals of vertices; where a region was folded those that are not on sharp edges have its plane's: limit normals
+    /// are turned over where the surface is.
+    fn unfolded_normals(&self, whole: &Assembled, coverings: &[Option<Covering>]) -> Vec<[f64; 3]> {
+        let mut normals = whole.normals.clone();
+        let folded = self.regions.iter().zip(coverings).filter_map(|((_, plane), covering)| {
+            covering.as_ref().filter(|covering| covering.was_folded).map(|covering| (plane, covering))
+        });
+        let mut folded = folded.peekable();
+        if folded.peek().is_none() {
+            return normals;
+        }
+        let corner = |h: u32| whole.triangles[h as usize / 3][h as usize % 3];
+        let is_sided: HashSet<u32> = whole.sides.iter().map(|&(h, _)| corner(h)).collect();
+        for (plane, covering) in folded {
+            for &vertex in covering.triangles.iter().flat_map(|(triangle, _)| triangle) {
+                if !is_sided.contains(&vertex) {
+                    normals[vertex as usize] = plane.normal.to_array();
+                }
+            }
+        }
+        normals
     }
 
     /// The normals of corners at sharp edges: a region has one for each of its vertices that is on one.
@@ -236,6 +281,8 @@ impl FlatRegions {
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<(u32, [f64; 3])>, Cancelled> {
         let region = |face: u32| self.region(face).filter(|&region| coverings[region as usize].is_some());
+        let was_folded =
+            |region: u32| coverings[region as usize].as_ref().is_some_and(|covering| covering.was_folded);
         let (mut sides, mut at_rims) = (Vec::with_capacity(whole.sides.len()), HashMap::new());
         watch.each(&whole.sides, |&(h, normal)| match first_new[h as usize / 3] {
             NONE => {
@@ -250,8 +297,12 @@ impl FlatRegions {
         watch.each((0u32..).zip(triangles.iter().zip(parents)), |(triangle, (vertices, &parent))| {
             if let Some(region) = region(parent) {
                 for (corner, &vertex) in (0u32..).zip(vertices) {
-                    let normal = at_rims.get(&(Some(region), vertex));
-                    sides.extend(normal.map(|&normal| (3 * triangle + corner, normal)));
+                    let normal =
+                        at_rims.get(&(Some(region), vertex)).map(|&normal| match was_folded(region) {
+                            true => self.regions[region as usize].1.normal.to_array(),
+                            false => normal,
+                        });
+                    sides.extend(normal.map(|normal| (3 * triangle + corner, normal)));
                 }
             }
         })?;
@@ -264,8 +315,9 @@ fn edges(triangle: [u32; 3]) -> [[u32; 2]; 3] {
     [0, 1, 2].map(|edge| [triangle[edge], triangle[(edge + 1) % 3]])
 }
 
-/// Gives each triangle a control face: that of a rim edge of its own, else that of a triangle beside it.
-fn by_face(triangles: Vec<[u32; 3]>, along: &HashMap<[u32; 2], u32>) -> Covering {
+/// Gives each triangle a control face: that of a rim edge of its own, else that of a triangle beside it. `None` where one is
+/// reached from no rim.
+fn by_face(triangles: Vec<[u32; 3]>, along: &HashMap<[u32; 2], u32>) -> Option<Vec<([u32; 3], u32)>> {
     let mut by_edge = HashMap::new();
     for (at, &triangle) in triangles.iter().enumerate() {
         edges(triangle).into_iter().for_each(|ends| {
@@ -291,17 +343,17 @@ fn by_face(triangles: Vec<[u32; 3]>, along: &HashMap<[u32; 2], u32>) -> Covering
             }
         }
     }
-    let faces = faces.into_iter().map(|face| face.unwrap_or(0));
-    let mut covering: Covering = triangles.into_iter().zip(faces).collect();
+    let faces: Vec<u32> = faces.into_iter().collect::<Option<_>>()?;
+    let mut covering: Vec<([u32; 3], u32)> = triangles.into_iter().zip(faces).collect();
     covering.sort_by_key(|&(_, face)| face);
-    covering
+    Some(covering)
 }
 
 /// The vertices of a region in its plane.
 struct Flattened<'a> {
     plane: &'a Plane,
     axes: [DVec3; 2],
-    apart: f64,
+    off_plane: f64,
     positions: &'a [[f64; 3]],
     numbers: HashMap<u32, u32>,
     vertices: Vec<u32>,
@@ -310,10 +362,10 @@ struct Flattened<'a> {
 }
 
 impl<'a> Flattened<'a> {
-    fn new(plane: &'a Plane, apart: f64, positions: &'a [[f64; 3]]) -> Self {
+    fn new(plane: &'a Plane, off_plane: f64, positions: &'a [[f64; 3]]) -> Self {
         let along = plane.normal.any_orthonormal_vector();
         let axes = [along, plane.normal.cross(along)];
-        Self { plane, axes, apart, positions, numbers: HashMap::new(), vertices: Vec::new(), size: 0.0 }
+        Self { plane, axes, off_plane, positions, numbers: HashMap::new(), vertices: Vec::new(), size: 0.0 }
     }
 
     fn offset(&self, vertex: u32) -> DVec3 {
@@ -325,16 +377,21 @@ impl<'a> Flattened<'a> {
         self.axes.map(|axis| axis.dot(offset))
     }
 
-    /// Twice the area of a triangle; `None` where it is not in the plane, or turned over.
+    /// Twice the area of a triangle, below zero where it is turned over; `None` where it is not in the plane.
     fn area(&mut self, triangle: [u32; 3]) -> Option<f64> {
-        let is_apart = |vertex: &u32| self.plane.normal.dot(self.offset(*vertex)).abs() > 1.5 * self.apart;
+        let is_apart =
+            |vertex: &u32| self.plane.normal.dot(self.offset(*vertex)).abs() > 1.5 * self.off_plane;
         if triangle.iter().any(is_apart) {
             return None;
         }
         let [[ax, ay], [bx, by], [cx, cy]] = triangle.map(|vertex| self.at(vertex));
         self.size = [ax, ay, bx, by, cx, cy].into_iter().fold(self.size, |size, x| size.max(x.abs()));
-        let area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-        (area >= -AREA_ROUNDING * self.size * self.size).then_some(area)
+        Some((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
+    }
+
+    /// Whether such an area is above zero, but for rounding.
+    fn is_positive(&self, area: f64) -> bool {
+        area >= -AREA_ROUNDING * self.size * self.size
     }
 
     /// The number of a vertex among those of the region.
