@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
-use limitmesh::mesh::{BuildOptions, Diagnosis, MeshError, Weld};
+use limitmesh::mesh::{BuildOptions, Channel, Diagnosis, MeshError, Weld};
 use limitmesh::{Mesh, PolygonSoup};
 use limitmesh_io::gltf::Contents;
 use limitmesh_io::{Asset, Format};
@@ -49,6 +49,10 @@ pub(crate) struct Input {
     pub(crate) diagnosis: Diagnosis,
     /// The input's face that each face of the mesh is from.
     pub(crate) face_inputs: Vec<u32>,
+    /// What corners and faces of the mesh carry.
+    pub(crate) channels: Vec<Channel>,
+    /// Files that describe the materials that channels name.
+    pub(crate) material_libraries: Vec<String>,
     /// Time taken to read or generate it.
     pub(crate) reading: Duration,
     /// Time taken to repair and connect it.
@@ -161,8 +165,11 @@ pub(crate) fn load_keeping(
     let Soup { name, format, mut soup, reading, .. } = read(path, build, progress)?;
     progress.stage(format!("connecting {}", counted(soup.faces.len(), "face", "faces")));
     let start = Instant::now();
-    let (mesh, diagnosis, face_inputs) =
+    let (mesh, diagnosis, trace) =
         Mesh::from_soup_traced(&soup, options).map_err(|error| describe(&name, error))?;
+    let channels = soup.channels.iter().map(|channel| channel.on_mesh(&soup, &mesh, &trace));
+    let channels: Vec<Channel> = channels.collect::<Result<_, _>>().with_context(|| name.clone())?;
+    let material_libraries = std::mem::take(&mut soup.material_libraries);
     let near = nearly_closed(&soup, &mesh, options);
     let left_out = std::mem::take(&mut soup.left_out);
     // Large soups are given back before refinement needs the memory.
@@ -178,7 +185,19 @@ pub(crate) fn load_keeping(
     if let Some(near) = near {
         progress.note(format!("{name}: {near}"));
     }
-    Ok(Input { name, format, left_out, mesh, diagnosis, face_inputs, reading, building })
+    let face_inputs = trace.faces;
+    Ok(Input {
+        name,
+        format,
+        left_out,
+        mesh,
+        diagnosis,
+        face_inputs,
+        channels,
+        material_libraries,
+        reading,
+        building,
+    })
 }
 
 /// Vertices nearer to each other than this share of the diagonal are usually one, written with too few digits: about

@@ -45,6 +45,7 @@
 //! | [`progress`] | what long functions tell while they work, and how they are cancelled |
 //! | [`measure`] | distances, sampled and certified, watertightness, triangle quality |
 
+pub mod carry;
 mod certificate;
 pub mod closure;
 pub mod criterion;
@@ -52,6 +53,7 @@ mod geometry;
 pub mod index;
 pub mod interpolate;
 pub mod limit;
+mod limit_surface;
 mod masks;
 pub mod measure;
 pub mod mesh;
@@ -68,6 +70,7 @@ pub mod simplify;
 mod vector;
 
 pub use index::{FaceId, HalfEdgeId, VertexId};
+pub use limit_surface::{LimitSurface, SurfacePoint};
 pub use mesh::{Mesh, PolygonSoup, Triangles};
 
 #[cfg(doctest)]

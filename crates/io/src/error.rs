@@ -174,6 +174,9 @@ pub enum WriteError {
         /// Number of vertices.
         vertices: usize,
     },
+    /// A channel does not fit the triangles.
+    #[error(transparent)]
+    Channel(#[from] limitmesh::mesh::ChannelError),
     /// There are not three corner normals for each triangle.
     #[error("corner normals of {count} triangles for {triangles}, expected three for each")]
     CornerNormals {

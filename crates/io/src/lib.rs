@@ -7,7 +7,7 @@
 //!
 //! | | read | written |
 //! |---|---|---|
-//! | OBJ | polygons, relative indices, `t crease` and `t corner` tags | `f64` digits, normals, colours, tags |
+//! | OBJ | polygons, relative indices, texture coordinates, colours, objects, groups, materials, smoothing groups, `t crease` and `t corner` tags | `f64` digits, normals, and all of these |
 //! | PLY | ASCII and binary of both byte orders, triangle strips | `f64`, binary (or ASCII), normals, colours, quality, named properties |
 //! | STL | ASCII and binary, several solids; three vertices a facet, not merged | `f32` binary (or ASCII with `f64` digits) |
 //! | OFF | polygons; extra columns are skipped | `f64` digits, normals, colours |
@@ -28,6 +28,7 @@
 //!
 //! [`PolygonSoup`]: limitmesh::mesh::PolygonSoup
 
+mod channels;
 mod error;
 mod format;
 pub mod gltf;
@@ -35,6 +36,7 @@ mod read;
 mod scan;
 mod write;
 
+pub use channels::holds;
 pub use error::{Flaw, Place, ReadError, WriteError};
 pub use format::{Format, UnknownFormat};
 pub use gltf::Asset;

@@ -1,6 +1,7 @@
 //! The command line: one file a command, help texts that say each option's unit, default and effect.
 
 mod camera;
+mod channels;
 mod compare;
 mod exact;
 mod features;
@@ -16,6 +17,7 @@ mod shared;
 mod values;
 
 pub(crate) use camera::cameras_in;
+pub(crate) use channels::ChannelArguments;
 pub(crate) use compare::CompareArguments;
 pub(crate) use exact::ExactArguments;
 pub(crate) use features::{Boundary, ConcaveCorners, FeatureArguments, Featured};

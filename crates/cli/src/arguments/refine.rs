@@ -8,7 +8,8 @@ use serde::Serialize;
 
 use super::values;
 use super::{
-    BuildArguments, ExactArguments, FeatureArguments, FileFormat, InterpolationArguments, SchemeName, Seam,
+    BuildArguments, ChannelArguments, ExactArguments, FeatureArguments, FileFormat, InterpolationArguments,
+    SchemeName, Seam,
 };
 use crate::failure::{UsageError, usage};
 use crate::output::is_standard_output;
@@ -126,6 +127,9 @@ pub(crate) struct RefineArguments {
 
     #[command(flatten)]
     pub(crate) interpolation: InterpolationArguments,
+
+    #[command(flatten)]
+    pub(crate) channels: ChannelArguments,
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,

@@ -9,7 +9,7 @@ use limitmesh::measure::{Bvh, CertifiedHausdorff, CertifiedOptions, certified_ha
 use limitmesh::refine::{ExactOptions, ExactStop, exact_observed, is_certified};
 use limitmesh::{Mesh, Triangles};
 
-use crate::arguments::MeasureArguments;
+use crate::arguments::{ConcaveCorners, MeasureArguments};
 use crate::failure::usage;
 use crate::format::{counted, number};
 use crate::progress::Progress;
@@ -65,7 +65,9 @@ pub(super) fn measure(
     let mut tolerance = asked.map_or(FIRST_ERROR * diagonal, |gap| (0.25 * gap).max(f64::MIN_POSITIVE));
     loop {
         progress.stage(format!("refining to within {} of the limit surface", number(tolerance)));
-        let goals = ExactOptions::default().tolerance(tolerance).max_triangles(Some(MOST_TRIANGLES));
+        let unfolds = arguments.features.concave_corners() == ConcaveCorners::Divided;
+        let goals =
+            ExactOptions::default().tolerance(tolerance).max_triangles(Some(MOST_TRIANGLES)).unfold(unfolds);
         let stands = exact_observed(control, scheme, &goals, &mut progress.observer())?;
         let triangles = stands.mesh.face_count();
         progress.stage(format!("measuring against {}", counted(triangles, "triangle", "triangles")));

@@ -11,7 +11,7 @@ use limitmesh::refine::{
 use limitmesh_paper::{match_angle, nearest_level};
 
 use super::interpolation;
-use crate::arguments::CompareArguments;
+use crate::arguments::{CompareArguments, ConcaveCorners};
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds, table, thousands, upper_bound};
 use crate::input;
@@ -75,7 +75,8 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
         let took = start.elapsed();
         methods.push(judge.judge((name, None), (&refinement.mesh, level), None, took)?);
     }
-    let plain = ExactOptions::default().triangles(count);
+    let unfolds = arguments.features.concave_corners() == ConcaveCorners::Divided;
+    let plain = ExactOptions::default().triangles(count).unfold(unfolds);
     let mut kinds = vec![("exact", plain.clone()), ("exact-balance", plain.clone().balance(true))];
     if count <= MOST_OPTIMISED {
         kinds.push(("exact-optimize", plain.optimize(true)));

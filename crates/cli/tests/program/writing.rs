@@ -61,7 +61,7 @@ fn quiet_says_nothing_and_otherwise_only_results_go_to_standard_output() {
     let told = run("refine builtin:head -o {} --tolerance 1%", &[&output]).expect(0);
     assert_eq!(told.stdout, "");
     // The head folds over in places, and that is said.
-    assert_eq!(told.stderr.lines().count(), 5, "summary and a warning, no progress: {}", told.stderr);
+    assert_eq!(told.stderr.lines().count(), 6, "summary and a warning, no progress: {}", told.stderr);
     for command in ["info builtin:cup", "measure builtin:cup builtin:cup", "models"] {
         let run = run(&format!("{command} -q"), &[]).expect(0);
         assert_eq!(run.stderr, "", "{command}");

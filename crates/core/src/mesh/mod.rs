@@ -4,6 +4,7 @@
 //! Takes a [`PolygonSoup`], gives a [`Mesh`] and a [`Diagnosis`] of what was found and repaired on the way.
 
 mod build;
+mod channel;
 mod concave;
 mod diagnosis;
 mod face_parts;
@@ -19,6 +20,7 @@ mod topology;
 pub(crate) use crate::geometry::NONE;
 pub use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule};
 pub use build::{BuildOptions, Weld};
+pub use channel::{Channel, ChannelError, Domain, Interpolation, SeamRule, Semantic, Trace};
 pub use concave::ConcaveCorners;
 pub use diagnosis::{Diagnosis, Finding};
 pub use face_parts::FaceParts;
@@ -199,14 +201,14 @@ impl Mesh {
         build::build(soup, options).map(|(mesh, diagnosis, _)| (mesh, diagnosis))
     }
 
-    /// [`Self::from_soup`], with the face of the soup that each face of the mesh is from.
+    /// [`Self::from_soup`], with the faces and corners of the soup that those of the mesh are from.
     ///
     /// # Errors
     /// The same.
     pub fn from_soup_traced(
         soup: &PolygonSoup,
         options: &BuildOptions,
-    ) -> Result<(Self, Diagnosis, Vec<u32>), MeshError> {
+    ) -> Result<(Self, Diagnosis, Trace), MeshError> {
         build::build(soup, options)
     }
 

@@ -1,6 +1,6 @@
 //! A polygon soup: what a file held, before anything is checked or repaired.
 
-use super::{CornerTag, CreaseTag};
+use super::{Channel, CornerTag, CreaseTag};
 
 /// Polygons of any number of corners, stored one after another.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +45,16 @@ impl PolygonFaces {
         self.corners.len()
     }
 
+    /// The vertex index of a corner, counted over all polygons.
+    pub(crate) fn corner(&self, corner: usize) -> u32 {
+        self.corners[corner]
+    }
+
+    /// The first corner of polygon `face`, counted over all.
+    pub(crate) fn first_corner(&self, face: usize) -> u32 {
+        self.starts[face]
+    }
+
     /// The vertex indices of polygon `face`.
     pub fn get(&self, face: usize) -> &[u32] {
         &self.corners[self.starts[face] as usize..self.starts[face + 1] as usize]
@@ -75,6 +85,10 @@ pub struct PolygonSoup {
     pub creases: Vec<CreaseTag>,
     /// Sharp vertices.
     pub corners: Vec<CornerTag>,
+    /// What vertices, corners and faces carry.
+    pub channels: Vec<Channel>,
+    /// Files that describe the materials that channels name.
+    pub material_libraries: Vec<String>,
     /// What the file held beside these and was left out, in words such as "texture coordinates".
     pub left_out: Vec<String>,
 }

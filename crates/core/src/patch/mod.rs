@@ -137,6 +137,17 @@ impl Patch {
     }
 }
 
+/// The corners of a part, given those of the whole and the middles of its edges.
+pub(crate) fn child_corners<T: Copy>(corners: [T; 3], middles: [T; 3], child: usize) -> [T; 3] {
+    let mut own = [middles[1], middles[2], middles[0]];
+    if child < 3 {
+        own[child] = corners[child];
+        own[(child + 1) % 3] = middles[child];
+        own[(child + 2) % 3] = middles[(child + 2) % 3];
+    }
+    own
+}
+
 impl RefinedPatch<'_> {
     /// Whether a part is regular.
     pub(crate) fn is_regular(&self, part: usize) -> bool {

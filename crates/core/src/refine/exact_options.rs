@@ -40,9 +40,12 @@ pub struct ExactOptions {
     /// Default: yes.
     pub origins: bool,
     /// Regions of control faces whose limit surface lies in a plane are triangulated from their rims alone, with no vertices
-    /// inside but those of the control mesh. That is the same set of points, unless the surface folds there
-    /// ([`Exact::unfolded`](super::Exact::unfolded)). Else their triangles follow the hierarchy like all others. Not with [`Self::balance`]. Default: yes.
+    /// inside but those of the control mesh; the set of points is the same, and so is its distance. Else their triangles follow the hierarchy like all others. Not with [`Self::balance`]. Default: yes.
     pub flat_regions: bool,
+    /// Where the scheme's rules fold the surface over in a flat region, as they do where slivers of a fan meet a hole, what the
+    /// region's rim encloses is taken for the surface: what people mean, and what [`Exact::unfolded`](super::Exact::unfolded)
+    /// counts. Else it is the scheme's. Default: no.
+    pub unfold: bool,
     /// Levels at most below the control faces: up to 30. Default: 24.
     pub max_levels: usize,
     /// Triangles at most, as a cap rather than a goal: reaching it is a failure to meet the others. Default: 50
@@ -77,6 +80,7 @@ impl Default for ExactOptions {
             optimize: false,
             origins: true,
             flat_regions: true,
+            unfold: false,
             max_levels: USUAL_LEVELS,
             max_triangles: Some(USUAL_TRIANGLES),
             max_memory: None,
@@ -130,6 +134,12 @@ impl ExactOptions {
     /// Sets [`Self::origins`].
     pub fn origins(mut self, origins: bool) -> Self {
         self.origins = origins;
+        self
+    }
+
+    /// Sets [`Self::unfold`].
+    pub fn unfold(mut self, unfold: bool) -> Self {
+        self.unfold = unfold;
         self
     }
 

@@ -1,13 +1,17 @@
 //! Wavefront OBJ: `v` and `f` statements, and the `t crease` and `t corner` tags of OpenSubdiv.
 //!
 //! Indices of faces count from 1, negative ones back from the latest vertex; a face may stand before its
-//! vertices. Indices of tags count from 0, as in OpenSubdiv's shapes. Texture coordinates, normals, weights,
-//! colours, groups, materials and all other statements are passed over, and what there was of them is told.
+//! vertices. Indices of tags count from 0, as in OpenSubdiv's shapes. Texture coordinates, colours after the coordinates,
+//! objects, groups, materials and smoothing groups become channels; normals, weights and all other statements are passed over, and
+//! what there was of them is told.
+
+mod attributes;
 
 use super::left_out::{Kind, LeftOut};
 use super::push_face;
 use crate::error::Flaw;
 use crate::scan::{Scanner, Syntax, integer, number, quoted};
+use attributes::{Attributes, LabelKind};
 use limitmesh::mesh::{CornerTag, CreaseTag, PolygonFaces, PolygonSoup};
 
 pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
@@ -22,7 +26,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
         scanner,
         soup,
         polygon: Vec::new(),
+        attributes: Attributes::default(),
         highest_corner: Latest::default(),
+        highest_texture: Latest::default(),
         highest_tag: Latest::default(),
         left_out: LeftOut::default(),
     }
@@ -67,7 +73,9 @@ struct Reader<'a> {
     soup: PolygonSoup,
     /// The corners of the face that is being read.
     polygon: Vec<u32>,
+    attributes: Attributes,
     highest_corner: Latest,
+    highest_texture: Latest,
     highest_tag: Latest,
     left_out: LeftOut,
 }
@@ -79,12 +87,26 @@ impl Reader<'_> {
                 b"v" => self.vertex()?,
                 b"f" | b"fo" => self.face()?,
                 b"t" => self.tag()?,
+                b"vt" => self.texture()?,
+                b"usemtl" => self.label(LabelKind::Material),
+                b"o" => self.label(LabelKind::Object),
+                b"g" => self.label(LabelKind::Group),
+                b"s" => self.label(LabelKind::SmoothingGroup),
+                b"mtllib" => {
+                    let library = self.rest();
+                    self.soup.material_libraries.push(library);
+                }
                 other => self.pass_over(other),
             }
             self.scanner.next_line();
         }
         self.check_indices()?;
         self.soup.positions.shrink_to_fit();
+        if self.attributes.has_unused_textures() {
+            self.left_out.note(Kind::TextureCoordinates);
+        }
+        let (vertices, faces) = (self.soup.positions.len(), &self.soup.faces);
+        self.soup.channels = self.attributes.channels(vertices, faces.len(), faces.corner_count());
         self.soup.left_out = self.left_out.in_words();
         Ok(self.soup)
     }
@@ -92,24 +114,10 @@ impl Reader<'_> {
     /// Notes a statement that has no place in a soup, unless it says nothing.
     fn pass_over(&mut self, keyword: &[u8]) {
         let kind = match keyword {
-            b"vt" => Kind::TextureCoordinates,
             b"vn" => Kind::Normals,
             b"vp" => Kind::Parameters,
             b"l" => Kind::Lines,
             b"p" => Kind::Points,
-            b"usemtl" | b"mtllib" => Kind::Materials,
-            b"g" | b"o" => {
-                if self.scanner.word().is_some() {
-                    self.left_out.note(if keyword == b"g" { Kind::Groups } else { Kind::Objects });
-                }
-                return;
-            }
-            b"s" => {
-                if !matches!(self.scanner.word(), None | Some(b"off" | b"0")) {
-                    self.left_out.note(Kind::SmoothingGroups);
-                }
-                return;
-            }
             other => return self.left_out.other(format!("statements {}", quoted(other))),
         };
         self.left_out.note(kind);
@@ -120,27 +128,81 @@ impl Reader<'_> {
         super::check_count(index as u64 + 1, "vertices", self.scanner.place())?;
         let point = self.scanner.point().map_err(|flaw| flaw.element("vertex", index))?;
         self.soup.positions.push(point);
-        if !self.left_out.has(Kind::Colours) {
-            self.note_more_numbers();
-        }
-        Ok(())
+        self.more_numbers(index)
     }
 
     /// After x, y and z: a weight, or red, green and blue, as some programs write them.
     #[inline]
-    fn note_more_numbers(&mut self) {
-        let Some(first) = self.scanner.word() else { return };
-        if self.scanner.word().is_some() {
-            self.left_out.note(Kind::Colours);
-        } else if number(first) != Some(1.0) {
-            self.left_out.note(Kind::Weights);
+    fn more_numbers(&mut self, vertex: usize) -> Result<(), Flaw> {
+        let Some(red) = self.scanner.word() else { return Ok(()) };
+        let Some(green) = self.scanner.word() else {
+            if number(red) != Some(1.0) {
+                self.left_out.note(Kind::Weights);
+            }
+            return Ok(());
+        };
+        let words = [Some(red), Some(green), self.scanner.word()];
+        let mut colour = [0.0; 3];
+        for (part, word) in colour.iter_mut().zip(words) {
+            let found = word.and_then(number).filter(|x: &f64| x.is_finite());
+            *part = found.ok_or_else(|| {
+                self.scanner.unexpected(word, "red, green and blue as numbers").element("vertex", vertex)
+            })?;
         }
+        self.attributes.colour(vertex, colour);
+        Ok(())
+    }
+
+    /// `vt U [V [W]]`.
+    fn texture(&mut self) -> Result<(), Flaw> {
+        let mut place = [0.0; 3];
+        let mut count = 0;
+        while let Some(word) = self.scanner.word().filter(|_| count < place.len()) {
+            let found = number(word).filter(|x: &f64| x.is_finite());
+            place[count] = found.ok_or_else(|| {
+                let index = self.attributes.texture_count();
+                self.scanner.unexpected(Some(word), "a finite number").element("texture coordinate", index)
+            })?;
+            count += 1;
+        }
+        if count == 0 {
+            return Err(self.scanner.unexpected(None, "one to three numbers after vt"));
+        }
+        super::check_count(
+            self.attributes.texture_count() as u64 + 1,
+            "texture coordinates",
+            self.scanner.place(),
+        )?;
+        self.attributes.texture(place, count);
+        Ok(())
+    }
+
+    /// What faces from here on belong to.
+    fn label(&mut self, kind: LabelKind) {
+        let name = self.rest();
+        self.attributes.label(kind, name, self.soup.faces.len());
+    }
+
+    /// The words that are left of a line, one blank between them.
+    fn rest(&mut self) -> String {
+        let mut words = Vec::new();
+        while let Some(word) = self.scanner.word() {
+            words.push(String::from_utf8_lossy(word));
+        }
+        words.join(" ")
     }
 
     fn face(&mut self) -> Result<(), Flaw> {
         self.polygon.clear();
         while let Some(word) = self.scanner.word() {
             let index = self.corner(word)?;
+            if let Some(texture) = self.texture_of(word)? {
+                if texture as usize >= self.attributes.texture_count() {
+                    self.highest_texture.note(texture, self.scanner.line());
+                }
+                let corner = self.soup.faces.corner_count() + self.polygon.len();
+                self.attributes.texture_of_corner(corner, texture);
+            }
             if index as usize >= self.soup.positions.len() {
                 self.highest_corner.note(index, self.scanner.line());
             }
@@ -170,6 +232,27 @@ impl Reader<'_> {
                 ),
             )
             .element("face", face)
+        })
+    }
+
+    /// The texture coordinate, counted from 0, that a corner names, if it does.
+    #[inline]
+    fn texture_of(&self, word: &[u8]) -> Result<Option<u32>, Flaw> {
+        let Some(texture) = word.split(|&b| b == b'/').nth(1).filter(|part| !part.is_empty()) else {
+            return Ok(None);
+        };
+        let latest = self.attributes.texture_count() as i64;
+        let index = match integer(texture) {
+            Some(index) if index > 0 => Some(index - 1),
+            Some(index) if index < 0 => Some(latest + index),
+            _ => None,
+        };
+        let index = index.and_then(|i| u32::try_from(i).ok()).filter(|&i| i < u32::MAX);
+        index.map(Some).ok_or_else(|| {
+            let expected = format!(
+                "after the first / the index of a texture coordinate from 1, or one from -{latest} to -1"
+            );
+            Flaw::new(self.scanner.place(), quoted(word), expected).element("face", self.soup.faces.len())
         })
     }
 
@@ -251,6 +334,12 @@ impl Reader<'_> {
             let met = format!("vertex index {} in a face", self.highest_corner.count_needed);
             let expected = format!("at most {count}, the number of vertices");
             return Err(Flaw::new(crate::Place::Line(self.highest_corner.line), met, expected));
+        }
+        let textures = self.attributes.texture_count();
+        if self.highest_texture.count_needed > textures {
+            let met = format!("texture coordinate {} in a face", self.highest_texture.count_needed);
+            let expected = format!("at most {textures}, the number of texture coordinates");
+            return Err(Flaw::new(crate::Place::Line(self.highest_texture.line), met, expected));
         }
         if self.highest_tag.count_needed > count {
             let met = format!("vertex index {} in a tag", self.highest_tag.count_needed - 1);

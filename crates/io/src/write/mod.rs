@@ -15,7 +15,7 @@ pub use whole::{check_writable, write_whole};
 use crate::error::WriteError;
 use crate::format::Format;
 use crate::gltf;
-use limitmesh::mesh::{CornerTag, CreaseTag, Triangles};
+use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Triangles};
 use std::io::Write;
 use std::path::Path;
 
@@ -37,6 +37,10 @@ pub struct Output<'a> {
     pub vertex_properties: &'a [Property<'a>],
     /// Further properties of the triangles. PLY holds them.
     pub face_properties: &'a [Property<'a>],
+    /// What corners and faces carry: see [`holds`](crate::holds).
+    pub channels: &'a [Channel],
+    /// Files that describe materials. OBJ names them.
+    pub material_libraries: &'a [String],
     /// Sharp edges. OBJ holds them.
     pub creases: &'a [CreaseTag],
     /// Sharp vertices. OBJ holds them.
@@ -54,6 +58,8 @@ impl<'a> Output<'a> {
             quality: None,
             vertex_properties: &[],
             face_properties: &[],
+            channels: &[],
+            material_libraries: &[],
             creases: &[],
             corners: &[],
         }
@@ -92,6 +98,18 @@ impl<'a> Output<'a> {
     /// Sets [`Self::face_properties`].
     pub fn face_properties(mut self, properties: &'a [Property<'a>]) -> Self {
         self.face_properties = properties;
+        self
+    }
+
+    /// Sets [`Self::channels`].
+    pub fn channels(mut self, channels: &'a [Channel]) -> Self {
+        self.channels = channels;
+        self
+    }
+
+    /// Sets [`Self::material_libraries`].
+    pub fn material_libraries(mut self, libraries: &'a [String]) -> Self {
+        self.material_libraries = libraries;
         self
     }
 
@@ -262,6 +280,9 @@ fn check(output: &Output<'_>, format: Format, options: &WriteOptions) -> Result<
     }
     if let Some(quality) = output.quality.filter(|_| format == Format::Ply) {
         check_finite("quality", quality, 1, format, false)?;
+    }
+    for channel in output.channels.iter().filter(|channel| crate::holds(format, channel)) {
+        channel.check(vertices, 3 * triangles.len(), triangles.len())?;
     }
     if format == Format::Ply { property::check(output) } else { Ok(()) }
 }

@@ -1,20 +1,32 @@
-//! Wavefront OBJ: `v` (with colours after the coordinates), `vn`, `f`, and OpenSubdiv's tags.
+//! Wavefront OBJ: `v` (with colours after the coordinates), `vt`, `vn`, `f`, `o`, `g`, `usemtl`, `s`, `mtllib` and OpenSubdiv's tags.
 
 use super::Output;
 use super::numbers::Pieces;
+use crate::channels;
+use limitmesh::mesh::{Channel, Domain, Semantic};
 use std::io::{self, Write};
+
+/// Statements that name what the faces after them belong to, with the channels that have these names.
+const STATEMENTS: [(&str, &[u8]); 4] = [
+    (channels::OBJECT, b"o"),
+    (channels::GROUP, b"g"),
+    (channels::MATERIAL, b"usemtl"),
+    (channels::SMOOTHING_GROUP, b"s"),
+];
 
 pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<()> {
     let mut out = Pieces::new(writer);
-    for (vertex, position) in output.surface.positions.iter().enumerate() {
-        out.bytes(b"v");
-        position.iter().for_each(|&x| out.number(x));
-        if let Some(colours) = output.colours {
-            // Three decimals tell the 256 steps apart.
-            colours[vertex]
-                .iter()
-                .for_each(|&c| out.number((f64::from(c) / 255.0 * 1000.0).round() / 1000.0));
-        }
+    for library in output.material_libraries {
+        out.bytes(b"mtllib ");
+        out.bytes(library.as_bytes());
+        out.end_line()?;
+    }
+    vertices(&mut out, output)?;
+    let of = |semantic| output.channels.iter().find(move |channel: &&Channel| channel.semantic == semantic);
+    let textures = of(Semantic::TextureCoordinates);
+    for place in textures.iter().flat_map(|channel| channel.values.chunks_exact(channel.arity.max(1))) {
+        out.bytes(b"vt");
+        place.iter().take(3).for_each(|&x| out.number(x));
         out.end_line()?;
     }
     for normal in output.normals.unwrap_or_default() {
@@ -22,14 +34,24 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
         normal.iter().for_each(|&x| out.number(x));
         out.end_line()?;
     }
+    let named = |name: &str| output.channels.iter().find(|channel| channel.name == name);
+    let labels = STATEMENTS.map(|(name, statement)| (named(name).filter(|c| is_label(c)), statement));
     for (at, triangle) in output.surface.triangles.iter().enumerate() {
+        for (channel, statement) in &labels {
+            change_of_label(&mut out, *channel, statement, at)?;
+        }
         out.bytes(b"f");
         let normals = output.corner_normals.map_or(triangle, |corners| &corners[at]);
-        for (&vertex, &normal) in triangle.iter().zip(normals) {
+        for (corner, (&vertex, &normal)) in triangle.iter().zip(normals).enumerate() {
             // There may be 2³² − 1 vertices, so that the last one's number fits.
             out.integer(vertex + 1);
+            let texture = textures.map(|channel| texture(channel, vertex, 3 * at + corner));
+            if let Some(texture) = texture {
+                out.bytes(b"/");
+                out.bare_integer(texture + 1);
+            }
             if output.normals.is_some() {
-                out.bytes(b"//");
+                out.bytes(if texture.is_some() { b"/" } else { b"//" });
                 out.bare_integer(normal + 1);
             }
         }
@@ -48,4 +70,77 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
         out.end_line()?;
     }
     out.finish()
+}
+
+/// Vertices, with their colours.
+fn vertices(out: &mut Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
+    let colours = output
+        .channels
+        .iter()
+        .find(|channel| channel.semantic == Semantic::Colour && crate::holds(crate::Format::Obj, channel));
+    let colours = colours.map(|channel| (channel, of_vertices(channel, output)));
+    for (vertex, position) in output.surface.positions.iter().enumerate() {
+        out.bytes(b"v");
+        position.iter().for_each(|&x| out.number(x));
+        if let Some(colours) = output.colours {
+            // Three decimals tell the 256 steps apart.
+            colours[vertex]
+                .iter()
+                .for_each(|&c| out.number((f64::from(c) / 255.0 * 1000.0).round() / 1000.0));
+        } else if let Some((channel, elements)) = &colours {
+            channel.value(elements[vertex]).iter().for_each(|&c| out.number(c));
+        }
+        out.end_line()?;
+    }
+    Ok(())
+}
+
+/// By vertex, the element of a channel that has its value; of several corners the first.
+fn of_vertices(channel: &Channel, output: &Output<'_>) -> Vec<usize> {
+    let vertices = output.surface.positions.len();
+    if channel.domain == Domain::Vertex {
+        return (0..vertices).collect();
+    }
+    let mut elements = vec![usize::MAX; vertices];
+    for (corner, &vertex) in output.surface.triangles.as_flattened().iter().enumerate() {
+        let first = &mut elements[vertex as usize];
+        *first = (*first).min(corner);
+    }
+    elements
+}
+
+fn texture(channel: &Channel, vertex: u32, corner: usize) -> u32 {
+    let element = match channel.domain {
+        Domain::Vertex => vertex as usize,
+        Domain::Corner => corner,
+        Domain::Face => corner / 3,
+    };
+    channel.indices[element]
+}
+
+fn is_label(channel: &Channel) -> bool {
+    channel.semantic == Semantic::Label && channel.domain == Domain::Face
+}
+
+/// Says what a triangle belongs to, where the one before it belonged to something else.
+fn change_of_label(
+    out: &mut Pieces<'_>,
+    channel: Option<&Channel>,
+    statement: &[u8],
+    triangle: usize,
+) -> io::Result<()> {
+    let Some(channel) = channel else { return Ok(()) };
+    let number = channel.indices[triangle];
+    if triangle.checked_sub(1).is_some_and(|before| channel.indices[before] == number) {
+        return Ok(());
+    }
+    let name = channel.labels.get(number as usize).map_or("", String::as_str);
+    // What comes before the first name has none.
+    if triangle == 0 && name.is_empty() {
+        return Ok(());
+    }
+    out.bytes(statement);
+    out.bytes(b" ");
+    out.bytes(name.as_bytes());
+    out.end_line()
 }

@@ -7,11 +7,12 @@ use limitmesh::refine::{Exact, ExactOptions, ExactStop, Origin, exact_observed};
 use limitmesh::{Mesh, Triangles};
 use limitmesh_io::{Format, WriteOptions};
 
+use super::channels::Channels;
 use super::input_distance::InputDistance;
 use super::normals::Normals;
 use super::provenance::Provenance;
 use super::{Refined, cameras, view, view_report};
-use crate::arguments::{Extent, Featured, Length, MOST_EXACT, RefineArguments, Unit};
+use crate::arguments::{ConcaveCorners, Extent, Featured, Length, MOST_EXACT, RefineArguments, Unit};
 use crate::dihedral::Dihedrals;
 use crate::failure::Outcome;
 use crate::format::{bytes, counted, number, thousands, upper_bound};
@@ -45,9 +46,16 @@ pub(super) struct Goals {
     triangles: Option<usize>,
     pixels: Option<f64>,
     cameras: Vec<Camera>,
+    /// Whether triangles must not reach over several control faces.
+    tells_faces_apart: bool,
 }
 
 impl Goals {
+    /// The same where what faces carry is to be told apart.
+    pub(super) fn telling_faces_apart(self, tells_faces_apart: bool) -> Self {
+        Self { tells_faces_apart, ..self }
+    }
+
     /// `diagonal` is what lengths are given in per cent of.
     ///
     /// # Errors
@@ -71,6 +79,7 @@ impl Goals {
             triangles: exact.triangles,
             pixels: (!cameras.is_empty()).then(|| exact.pixels.unwrap_or(USUAL_PIXELS)),
             cameras,
+            tells_faces_apart: false,
         })
     }
 
@@ -80,8 +89,11 @@ impl Goals {
             .max_memory(arguments.exact.max_memory)
             .balance(arguments.exact.balance)
             .optimize(arguments.exact.optimize)
-            .flat_regions(!arguments.exact.divide_flat)
-            .origins(arguments.exact.provenance || !arguments.exact.no_input_distance);
+            .flat_regions(!arguments.exact.divide_flat && !self.tells_faces_apart)
+            .unfold(arguments.features.concave_corners() == ConcaveCorners::Divided)
+            .origins(
+                arguments.exact.provenance || !arguments.exact.no_input_distance || self.tells_faces_apart,
+            );
         if let Some(pixels) = self.pixels {
             options = options.pixels(pixels, self.cameras.clone());
         }
@@ -134,7 +146,7 @@ fn as_typed(x: f64) -> String {
 ///
 /// `before` is the mesh that was read.
 pub(super) fn run(
-    (Featured { mesh: control, concave }, before): (&Featured, &Before),
+    (Featured { mesh: control, concave }, before, channels): (&Featured, &Before, &Channels),
     goals: &Goals,
     arguments: &RefineArguments,
     progress: &Progress,
@@ -170,6 +182,7 @@ pub(super) fn run(
     }
     let outcome = outcome(&found, control, goals, &achieved, arguments);
     let inverted = found.inverted_triangles();
+    let channels = channels.refined(control, &found, arguments)?;
     let wanted = written(arguments).is_some_and(|(format, _)| Normals::are_held(format))
         || arguments.picture.is_some();
     let normals = wanted.then(|| Normals::of_exact(&mut found));
@@ -180,6 +193,7 @@ pub(super) fn run(
         mesh,
         normals,
         inputs,
+        channels,
         provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents, places)),
         achieved,
         inverted: Some(inverted),

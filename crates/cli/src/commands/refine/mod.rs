@@ -2,6 +2,7 @@
 
 mod asset;
 mod cameras;
+mod channels;
 mod check;
 mod control;
 mod estimate;
@@ -34,6 +35,7 @@ use crate::report::{
     InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport, SizeReport,
     VERSION, ViewReport,
 };
+use channels::Channels;
 use control::Control;
 use exact::Goals;
 use normals::Normals;
@@ -46,6 +48,7 @@ const USUAL_DILATATION: f64 = 1.0;
 struct Refined {
     mesh: Mesh,
     normals: Option<Normals>,
+    channels: Channels,
     provenance: Option<Provenance>,
     /// The input's face of each triangle; empty where that is not known.
     inputs: Vec<u32>,
@@ -92,6 +95,8 @@ fn refine(
         faces: input.diagnosis.input_faces,
         left_out: input.left_out,
     };
+    let mut channels =
+        Channels::of_input(input.channels, input.material_libraries, (format, arguments), progress);
     let Input { mesh, diagnosis, face_inputs, reading, building, .. } = input;
     if let Some(note) = format.and_then(|format| lost_tags(mesh.tags(), format)) {
         progress.note(note);
@@ -99,8 +104,12 @@ fn refine(
     let control = Control::new((mesh, diagnosis, face_inputs), None, arguments, progress)?;
     let Control { featured: control, diagnosis, before: read, bulk: before, interpolation, diagonal } =
         control;
+    channels.on_parts(&control.concave.parts, &control.mesh);
     let goals = match arguments.method {
-        Method::Exact => Some(Goals::new(arguments, &control.mesh, diagonal)?),
+        Method::Exact => {
+            let goals = Goals::new(arguments, &control.mesh, diagonal)?;
+            Some(goals.telling_faces_apart(channels.tell_faces_apart()))
+        }
         _ => None,
     };
     let parameters = ParametersReport {
@@ -119,7 +128,7 @@ fn refine(
     };
     let start = Instant::now();
     let mut refined = match &goals {
-        Some(goals) => exact::run((&control, &read), goals, arguments, progress)?,
+        Some(goals) => exact::run((&control, &read, &channels), goals, arguments, progress)?,
         None => stepwise::run(control.mesh, arguments, Some(format), progress)?,
     };
     let refining = start.elapsed();
@@ -196,8 +205,8 @@ fn turned_over(inverted: usize) -> Option<String> {
 }
 
 fn write(path: &Path, format: Format, arguments: &RefineArguments, refined: &Refined) -> anyhow::Result<()> {
-    let Refined { mesh, normals, provenance, .. } = refined;
-    let mut output = Output::new(mesh.as_triangles());
+    let Refined { mesh, normals, channels, provenance, .. } = refined;
+    let mut output = channels.add_to(Output::new(mesh.as_triangles()));
     if let Some(normals) = normals {
         output = normals.add_to(output, format, arguments.split_normals);
     }

@@ -43,6 +43,7 @@ pub(super) fn run(
     let early = if stop == Stop::Satisfied { ", no face is divisible any more" } else { "" };
     Ok(Refined {
         normals,
+        channels: super::channels::Channels::default(),
         provenance: None,
         inputs: Vec::new(),
         achieved: Vec::new(),

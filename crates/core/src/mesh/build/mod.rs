@@ -11,11 +11,12 @@ mod repeated;
 mod retag;
 #[cfg(test)]
 mod tests;
+mod trace;
 mod triangulate;
 mod weld;
 mod zero_area;
 
-use super::{Diagnosis, Mesh, MeshError, PolygonSoup, check_finite};
+use super::{Diagnosis, Mesh, MeshError, PolygonSoup, Trace, check_finite};
 use crate::geometry::NONE;
 use crate::options::options;
 use crate::vector::vector;
@@ -49,11 +50,11 @@ options! {
     }
 }
 
-/// The mesh, what was found, and which input face each face is from.
+/// The mesh, what was found, and from which faces and corners of the input those of the mesh are.
 pub(super) fn build(
     soup: &PolygonSoup,
     options: &BuildOptions,
-) -> Result<(Mesh, Diagnosis, Vec<u32>), MeshError> {
+) -> Result<(Mesh, Diagnosis, Trace), MeshError> {
     let mut diagnosis = Diagnosis {
         input_vertices: soup.positions.len(),
         input_faces: soup.faces.len(),
@@ -70,12 +71,12 @@ pub(super) fn build(
     }
     drop(used);
     let faces = repair_faces(soup, &kept, &mut diagnosis)?;
-    let (mesh, inputs) = assemble(soup, faces, kept, &mut diagnosis);
+    let (mesh, trace) = assemble(soup, faces, kept, &mut diagnosis);
     if options.strict && !diagnosis.is_clean() {
         return Err(MeshError::NeedsRepair { summary: diagnosis.defects() });
     }
     debug_assert_eq!(mesh.validate(), Ok(()));
-    Ok((mesh, diagnosis, inputs))
+    Ok((mesh, diagnosis, trace))
 }
 
 /// Refuses coordinates and indices that mean nothing; tells which vertices have a face.
@@ -124,14 +125,14 @@ fn repair_faces(soup: &PolygonSoup, kept: &[u32], diagnosis: &mut Diagnosis) -> 
     Err(MeshError::NoFaces { reason })
 }
 
-/// Connects the faces, turns and cuts them where they need it, and puts the mesh together; gives also which input face each
-/// face is from.
+/// Connects the faces, turns and cuts them where they need it, and puts the mesh together; gives also from which
+/// faces and corners of the input those of the mesh are.
 fn assemble(
     soup: &PolygonSoup,
     mut faces: Faces,
     mut kept: Vec<u32>,
     diagnosis: &mut Diagnosis,
-) -> (Mesh, Vec<u32>) {
+) -> (Mesh, Trace) {
     let names = renumber(&mut faces.triangles, &mut kept);
     let name = |v: u32| names[v as usize];
     let vertex_count = names.len();
@@ -152,7 +153,8 @@ fn assemble(
     }
     let maps = VertexMaps { from_input: &kept, vertex_count, copied: &copied, middles: &middles };
     let tags = retag::retag(soup, &topology, &maps, &corners, diagnosis).joined(&topology, &junctions);
-    (Mesh::from_parts(topology, positions, tags, junctions), inputs)
+    let corners = trace::corners(soup, topology.triangles(), &inputs, &maps);
+    (Mesh::from_parts(topology, positions, tags, junctions), Trace { faces: inputs, corners })
 }
 
 /// Numbers the vertices that the triangles use from 0, in ascending order; `kept` then leads from the input's

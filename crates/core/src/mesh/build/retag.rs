@@ -18,11 +18,11 @@ pub(super) struct VertexMaps<'a> {
 }
 
 impl VertexMaps<'_> {
-    fn vertex(&self, input: u32) -> Option<u32> {
+    pub(super) fn vertex(&self, input: u32) -> Option<u32> {
         self.from_input.get(input as usize).copied().filter(|&v| v != NONE)
     }
 
-    fn original(&self, v: VertexId) -> u32 {
+    pub(super) fn original(&self, v: VertexId) -> u32 {
         v.index().checked_sub(self.vertex_count).map_or(v.0, |copy| self.copied[copy])
     }
 }

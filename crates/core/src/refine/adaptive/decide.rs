@@ -12,7 +12,7 @@ use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
 use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, Piece, Place, Trees, UNJUDGED};
-use super::surface::{Ground, Spot, SurfacePiece, child_corners};
+use super::surface::{Ground, Spot, SurfacePiece};
 use crate::certificate::{CellRows, Marks, Pieces, SubTriangle};
 use crate::criterion::Criteria;
 use crate::index::{FaceId, HalfEdgeId};
@@ -21,7 +21,7 @@ use crate::mesh::{Mesh, Sharpness};
 use crate::parallel::IsStopped;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::large_rings::LargeRings;
-use crate::patch::{LimitPoint, Patch, RefinedPatch, Rules, root_patch};
+use crate::patch::{LimitPoint, Patch, RefinedPatch, Rules, child_corners, root_patch};
 use crate::progress::SharedWatch;
 use crate::refine::RefineError;
 use crate::vector::{DVec3, vector};

@@ -4,7 +4,8 @@
 //! give way to the constrained Delaunay triangulation of its rim and its control vertices ([`merge`], [`planar`]). Where its triangles
 //! all turn the same way and its rim is simple, they cover what is inside of the rim: before and after it is the same set of points, and
 //! what is proven of the one holds for the other. Where some are turned over, as where slivers of a fan meet a hole, the surface
-//! folds, perhaps over its rim; there the part of the plane inside of the rim *is* the surface, by definition. It is as near as before:
+//! folds, perhaps over its rim; there they stay, unless the part of the plane inside of the rim is asked for
+//! ([`ExactOptions::unfold`]). Then that *is* the surface, and as near as before:
 //! a point inside of the rim's curves and not of its chords, or the other way round, is between a curve and its chord, in
 //! the convex hull of the curve, so no farther from the chord than that curve's points are; and any point between them has
 //! points of the curve as near.
@@ -69,6 +70,8 @@ pub(super) struct FlatRegions {
     regions: Vec<(Vec<u32>, Plane)>,
     /// How far the surface, and so what stands for it, is off the planes at most.
     off_planes: f64,
+    /// Whether regions are what their rims enclose, also where the surface folds.
+    unfolds: bool,
     /// So many leaves of a flat face count as one while faces are divided.
     weight: usize,
 }
@@ -134,7 +137,7 @@ impl FlatRegions {
             off_planes = off_planes.max(height + HEIGHT_ROUNDING * size);
         }
         let weight = if options.max_memory.is_some() { 1 } else { WEIGHT };
-        Ok(Self { of_face, regions, off_planes, weight })
+        Ok(Self { of_face, regions, off_planes, unfolds: options.unfold, weight })
     }
 
     /// How far the surface, and what stands for it, is off the planes at most.

@@ -6,7 +6,7 @@ use core::cell::OnceCell;
 
 use crate::certificate::{Cell, NetPart, QuarticJet, SubTriangle};
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{LimitPoint, Patch, Quartic, Rules};
+use crate::patch::{LimitPoint, Patch, Quartic, Rules, child_corners};
 use crate::vector::DVec3;
 
 /// Points that are evaluated together.
@@ -192,17 +192,6 @@ pub(super) enum Surface<'a> {
     Regular(&'a RegularPiece, Spot),
     /// Any other piece.
     General(&'a GeneralPiece, &'a Rules<'a>),
-}
-
-/// The corners of a node's child.
-pub(super) fn child_corners<T: Copy>(corners: [T; 3], middles: [T; 3], child: usize) -> [T; 3] {
-    let mut own = [middles[1], middles[2], middles[0]];
-    if child < 3 {
-        own[child] = corners[child];
-        own[(child + 1) % 3] = middles[child];
-        own[(child + 2) % 3] = middles[(child + 2) % 3];
-    }
-    own
 }
 
 impl<'a> Surface<'a> {

@@ -306,7 +306,7 @@ fn faces_know_which_of_the_input_they_are_from() {
     // A line, a square, a face that is turned round, one that repeats it.
     let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0]];
     let faces: [&[u32]; 4] = [&[0, 0, 1], &[0, 1, 2, 3], &[1, 2, 4], &[4, 2, 1]];
-    assert_eq!(trace(&soup(&positions, &faces)).2, [1, 1, 2]);
+    assert_eq!(trace(&soup(&positions, &faces)).2.faces, [1, 1, 2]);
     // Three sheets along an edge, closed so that the edge lies inside each: cut, and split in its middle.
     let mut positions = vec![[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];
     let mut faces: Vec<Vec<u32>> = Vec::new();
@@ -319,7 +319,8 @@ fn faces_know_which_of_the_input_they_are_from() {
         faces.extend([vec![0, a, b], vec![1, b, a]]);
     }
     let slices: Vec<&[u32]> = faces.iter().map(Vec::as_slice).collect();
-    let (mesh, _, inputs) = trace(&soup(&positions, &slices));
+    let (mesh, _, trace) = trace(&soup(&positions, &slices));
+    let inputs = trace.faces;
     assert_eq!(inputs.len(), mesh.face_count());
     for (face, &input) in inputs.iter().enumerate() {
         // Each corner, or for the middle of an edge its ends, are corners of the input's face.

@@ -116,7 +116,7 @@ impl FlatRegions {
         // A control vertex beyond the rim would be left over.
         let is_whole = is_used.iter().all(|&is_used| is_used);
         let is_same = triangles.len() < before.len() && (after - area).abs() <= SAME_AREA * area;
-        if !is_whole || !is_same {
+        if !is_whole || !is_same || was_folded && !self.unfolds {
             return None;
         }
         Some(Covering { triangles: by_face(triangles, &along)?, was_folded })

@@ -6,11 +6,12 @@
 use super::super::emit::Emission;
 use super::super::emitted::{Beholder, Emitted, Over};
 use super::super::quadtree::Place;
-use super::super::surface::{Surface, child_corners};
+use super::super::surface::Surface;
 use super::super::{Engine, Plan};
 use crate::certificate::TriangleFrame;
 use crate::geometry::closest_to_origin;
 use crate::patch::Rules;
+use crate::patch::child_corners;
 use crate::progress::Cancelled;
 use crate::vector::{DVec3, vector};
 

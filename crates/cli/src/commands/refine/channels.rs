@@ -1,0 +1,82 @@
+//! What the input carries beside its shape, on its way to the output: texture coordinates, colours, materials, groups.
+
+use limitmesh::Mesh;
+use limitmesh::carry::carried;
+use limitmesh::mesh::{Channel, Domain, FaceParts};
+use limitmesh::refine::Exact;
+use limitmesh_io::{Format, Output, holds};
+
+use crate::arguments::{Method, RefineArguments};
+use crate::progress::Progress;
+
+/// The channels of a mesh, and the files that describe the materials they name.
+#[derive(Default)]
+pub(super) struct Channels {
+    channels: Vec<Channel>,
+    material_libraries: Vec<String>,
+}
+
+impl Channels {
+    /// Those that reach the output; tells which do not, and why.
+    pub(super) fn of_input(
+        channels: Vec<Channel>,
+        material_libraries: Vec<String>,
+        (format, arguments): (Option<Format>, &RefineArguments),
+        progress: &Progress,
+    ) -> Self {
+        let Some(format) = format else { return Self::default() };
+        let is_followed = arguments.method == Method::Exact && !arguments.exact.optimize;
+        let reaches = |channel: &Channel| is_followed && holds(format, channel);
+        let (kept, lost): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(reaches);
+        if !lost.is_empty() {
+            let names: Vec<&str> = lost.iter().map(|channel| channel.name.as_str()).collect();
+            let why = match (arguments.exact.optimize, arguments.method) {
+                (true, _) => "--optimize does not keep them",
+                (_, Method::Exact) => "the output's format has no place for them",
+                _ => "the stepwise methods do not keep them",
+            };
+            progress.note(format!("left out: {} ({why})", names.join("; ")));
+        }
+        let channels: Vec<Channel> =
+            kept.into_iter().map(|channel| arguments.channels.applied(channel)).collect();
+        let material_libraries = if channels.is_empty() { Vec::new() } else { material_libraries };
+        Self { channels, material_libraries }
+    }
+
+    /// Those of a mesh some of whose faces were divided.
+    pub(super) fn on_parts(&mut self, parts: &FaceParts, mesh: &Mesh) {
+        if !parts.is_empty() {
+            self.channels.iter_mut().for_each(|channel| *channel = channel.on_parts(parts, mesh));
+        }
+    }
+
+    /// Whether triangles must not reach over several faces: something differs between these.
+    pub(super) fn tell_faces_apart(&self) -> bool {
+        let is_one = |channel: &Channel| {
+            channel.domain == Domain::Face && channel.indices.iter().all(|&index| index == channel.indices[0])
+        };
+        !self.channels.iter().all(is_one)
+    }
+
+    /// Those of the refined mesh.
+    ///
+    /// # Errors
+    /// A channel has no limit.
+    pub(super) fn refined(
+        &self,
+        control: &Mesh,
+        found: &Exact,
+        arguments: &RefineArguments,
+    ) -> anyhow::Result<Self> {
+        if self.channels.is_empty() {
+            return Ok(Self::default());
+        }
+        let channels = carried(&self.channels, control, arguments.scheme.scheme(), found)?;
+        Ok(Self { channels, material_libraries: self.material_libraries.clone() })
+    }
+
+    /// Adds them to what is written.
+    pub(super) fn add_to<'a>(&'a self, output: Output<'a>) -> Output<'a> {
+        output.channels(&self.channels).material_libraries(&self.material_libraries)
+    }
+}

@@ -1,0 +1,205 @@
+//! Channels carried from a control mesh to what was refined from it.
+//!
+//! Takes channels of the control mesh, and a refined mesh whose triangles each come from one control face and whose vertices know where
+//! on the control mesh they came from; gives the channels of the refined mesh. Linear ones are linear over each control face, so exact on
+//! every triangle; smooth ones take their values from the limit surface of a mesh of values with the same faces ([`seams`]), at the
+//! same places as the vertices: a channel whose values are positions gives the vertices' positions. Where control faces meet, corners
+//! of the refined mesh have one value if the channel has one there, so seams run where they ran, and there alone.
+
+mod places;
+mod seams;
+
+use std::collections::HashMap;
+
+use crate::limit_surface::LimitSurface;
+use crate::mesh::{Channel, ChannelError, Domain, Interpolation, Mesh, SeamRule};
+use crate::refine::{Exact, Origin};
+use crate::scheme::Scheme;
+use places::Places;
+use seams::value_mesh;
+
+/// Numbers that are evaluated together: a value mesh has as many coordinates.
+const TOGETHER: usize = 3;
+
+/// The channels of a refined mesh: of its corners, or of its faces, in the order of the control mesh's.
+///
+/// `result` must have origins ([`ExactOptions::origins`](crate::refine::ExactOptions::origins)) and parents, and each of its triangles
+/// must lie in one control face, unless all channels are of faces: neither be optimised nor have flat regions triangulated from their rims
+/// ([`ExactOptions::flat_regions`](crate::refine::ExactOptions::flat_regions)).
+///
+/// ```
+/// use limitmesh::carry::carried;
+/// use limitmesh::mesh::{Channel, Domain, Semantic};
+/// use limitmesh::refine::{ExactOptions, exact};
+/// use limitmesh::{Mesh, scheme::Loop};
+///
+/// // A square of two triangles, and a texture that covers it.
+/// let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+/// let square = Mesh::from_triangles(corners.map(|[x, y]| [x, y, 0.0]).to_vec(), vec![[0, 1, 2], [0, 2, 3]])?;
+/// let texture = Channel::new("uv", Semantic::TextureCoordinates, Domain::Corner, 2)
+///     .with(corners.concat(), vec![0, 1, 2, 0, 2, 3]);
+///
+/// let options = ExactOptions::default().tolerance(1e-3).flat_regions(false);
+/// let fine = exact(&square, &Loop, &options)?;
+/// let textures = carried(&[texture], &square, &Loop, &fine)?;
+/// assert_eq!(textures[0].indices.len(), 3 * fine.mesh.face_count());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// A channel does not fit the control mesh, the result does not know where its triangles are from, or the scheme has no limit for a
+/// smooth channel.
+pub fn carried(
+    channels: &[Channel],
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    result: &Exact,
+) -> Result<Vec<Channel>, ChannelError> {
+    let is_by_face = channels.iter().all(|channel| channel.domain == Domain::Face);
+    let places = Places::of(control, result, is_by_face)?;
+    channels.iter().map(|channel| one(channel, control, scheme, &places)).collect()
+}
+
+fn one(
+    channel: &Channel,
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    places: &Places<'_>,
+) -> Result<Channel, ChannelError> {
+    let corners = control.topology().half_edge_count();
+    channel.check(control.vertex_count(), corners, control.face_count())?;
+    if channel.domain == Domain::Face {
+        let indices = places.parents.iter().map(|&face| channel.indices[face as usize]).collect();
+        return Ok(Channel { indices, ..channel.clone() });
+    }
+    let by_corner = match channel.domain {
+        Domain::Vertex => {
+            let vertices = control.triangles().as_flattened();
+            let indices = vertices.iter().map(|&vertex| channel.indices[vertex as usize]).collect();
+            Channel { indices, domain: Domain::Corner, ..channel.clone() }
+        }
+        _ => channel.clone(),
+    };
+    match by_corner.interpolation {
+        Interpolation::Nearest => Ok(nearest(by_corner, places)),
+        Interpolation::Linear => {
+            let (indices, wanted) = wanted(&by_corner, places);
+            let values = linear(&by_corner, &wanted);
+            Ok(Channel { indices, values, ..by_corner })
+        }
+        Interpolation::Smooth(rule) => {
+            let (indices, wanted) = wanted(&by_corner, places);
+            let values = smooth(&by_corner, rule, control, scheme, &wanted)?;
+            Ok(Channel { indices, values, ..by_corner })
+        }
+    }
+}
+
+/// Each corner has the value of the nearest corner of its control face, the first of those that are as near.
+fn nearest(channel: Channel, places: &Places<'_>) -> Channel {
+    let mut indices = Vec::with_capacity(3 * places.parents.len());
+    places.for_each_corner(|_, Origin { face, barycentric }| {
+        let mut first = 0;
+        for corner in 1..3 {
+            if barycentric[corner] > barycentric[first] {
+                first = corner;
+            }
+        }
+        indices.push(channel.indices[3 * face as usize + first]);
+    });
+    Channel { indices, ..channel }
+}
+
+/// A value's number by corner, and where each value is to be found: in a face in which a corner has it.
+fn wanted(channel: &Channel, places: &Places<'_>) -> (Vec<u32>, Vec<Origin>) {
+    /// Of a vertex, the value that was met first.
+    #[derive(Clone, Copy)]
+    struct First {
+        key: Key,
+        value: u32,
+    }
+    let mut first: Vec<Option<First>> = vec![None; places.vertex_count];
+    let mut others: HashMap<(u32, Key), u32> = HashMap::new();
+    let mut indices = Vec::with_capacity(3 * places.parents.len());
+    let mut wanted: Vec<Origin> = Vec::with_capacity(places.vertex_count);
+    places.for_each_corner(|vertex, origin| {
+        let key = places.key(channel, origin);
+        let mut add = || {
+            wanted.push(origin);
+            wanted.len() as u32 - 1
+        };
+        let value = match &mut first[vertex as usize] {
+            Some(first) if first.key == key => first.value,
+            Some(_) => *others.entry((vertex, key)).or_insert_with(add),
+            none => none.insert(First { key, value: add() }).value,
+        };
+        indices.push(value);
+    });
+    (indices, wanted)
+}
+
+/// The numbers of the values at the control vertices of the face, edge or vertex that a place is in: what it depends on where
+/// channels are linear, and on which side of seams it is.
+type Key = [u32; 3];
+
+fn linear(channel: &Channel, wanted: &[Origin]) -> Vec<f64> {
+    let mut values = Vec::with_capacity(channel.arity * wanted.len());
+    for Origin { face, barycentric } in wanted {
+        let corners = [0, 1, 2].map(|corner| channel.value(3 * *face as usize + corner));
+        for i in 0..channel.arity {
+            // What is at a corner, or the same at all, is that to the bit.
+            let [a, b, c] = corners.map(|value| value[i]);
+            let is_one = a == b && b == c;
+            let sum = barycentric[0] * a + barycentric[1] * b + barycentric[2] * c;
+            values.push(if is_one { a } else { sum });
+        }
+    }
+    values
+}
+
+/// Values of the limit surface of the mesh of values.
+fn smooth(
+    channel: &Channel,
+    rule: SeamRule,
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    wanted: &[Origin],
+) -> Result<Vec<f64>, ChannelError> {
+    let limit = |why: String| ChannelError::Limit { name: channel.name.clone(), why };
+    let seams::ValueMesh { mut mesh, values } =
+        value_mesh(control, channel, rule).map_err(|error| limit(error.to_string()))?;
+    // Faces with the places wanted there, which stand together.
+    let (mut faces, mut starts, mut at) = (Vec::new(), Vec::new(), Vec::with_capacity(wanted.len()));
+    for origin in wanted {
+        if faces.last() != Some(&origin.face) {
+            faces.push(origin.face);
+            starts.push(at.len());
+        }
+        at.push(origin.barycentric);
+    }
+    starts.push(at.len());
+    let mut found = vec![0.0; channel.arity * wanted.len()];
+    for first in (0..channel.arity).step_by(TOGETHER) {
+        let own = first..channel.arity.min(first + TOGETHER);
+        let coordinates = |&value: &u32| {
+            let mut position = [0.0; TOGETHER];
+            let start = value as usize * channel.arity;
+            position
+                .iter_mut()
+                .zip(&channel.values[start + own.start..start + own.end])
+                .for_each(|(x, &value)| *x = value);
+            position
+        };
+        let positions = values.iter().map(coordinates).collect();
+        mesh = mesh.with_positions(positions).map_err(|error| limit(error.to_string()))?;
+        let surface = LimitSurface::new(&mesh, scheme).map_err(|error| limit(error.to_string()))?;
+        let points = surface.over_all(&faces, |at_face| &at[starts[at_face]..starts[at_face + 1]]);
+        if let Some(error) = surface.failure() {
+            return Err(limit(error.to_string()));
+        }
+        for (point, value) in points.iter().zip(found.chunks_exact_mut(channel.arity)) {
+            value[own.clone()].copy_from_slice(&point.position[..own.len()]);
+        }
+    }
+    Ok(found)
+}

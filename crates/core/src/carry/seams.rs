@@ -1,0 +1,118 @@
+//! A corner channel as a mesh of its own: its vertices are the fans of faces around a vertex that share its value, its faces those of
+//! the control mesh, and its boundary the seams and the control mesh's own boundary.
+//!
+//! So a scheme's masks, limits and sharp edges apply to values as they do to positions; where a [`SeamRule`] keeps a value, its
+//! vertex is a corner, as if tagged.
+
+use crate::geometry::DisjointSets;
+use crate::index::{HalfEdgeId, VertexId};
+use crate::mesh::{Channel, CornerTag, CreaseTag, Mesh, MeshError, SeamRule, Sharpness, Tags};
+
+/// The mesh of a channel, and the number of each of its vertices' values.
+pub(super) struct ValueMesh {
+    /// Without values: all vertices stand at zero.
+    pub(super) mesh: Mesh,
+    /// By vertex, the channel's value.
+    pub(super) values: Vec<u32>,
+}
+
+/// A fan of faces at a control vertex.
+struct Fan {
+    value: u32,
+    faces: usize,
+    /// Whether a seam or the control mesh's boundary ends it.
+    is_open: bool,
+    /// Whether a sharp edge runs inside.
+    is_creased: bool,
+}
+
+/// The mesh of a channel of corners. Values are kept by `rule`, and wherever one value belongs to two fans.
+///
+/// # Errors
+/// There are more fans than can be numbered.
+pub(super) fn value_mesh(control: &Mesh, channel: &Channel, rule: SeamRule) -> Result<ValueMesh, MeshError> {
+    let topology = control.topology();
+    let continuous = |h: HalfEdgeId| topology.twin(h).filter(|&twin| channel.is_continuous(h, twin));
+    let mut sets = DisjointSets::new(topology.half_edge_count());
+    for h in topology.half_edges() {
+        if let Some(twin) = continuous(h).filter(|&twin| h < twin) {
+            sets.unite(h.0, twin.next().0);
+            sets.unite(h.next().0, twin.0);
+        }
+    }
+    // Fans are numbered vertex by vertex.
+    let mut of_corner = vec![u32::MAX; topology.half_edge_count()];
+    let (mut fans, mut starts) = (Vec::new(), Vec::with_capacity(control.vertex_count() + 1));
+    let sharpness = Sharpness::of(control);
+    for vertex in topology.vertices() {
+        starts.push(fans.len());
+        for corner in topology.outgoing_ring(vertex) {
+            let root = sets.root(corner.0) as usize;
+            if of_corner[root] == u32::MAX {
+                of_corner[root] = fans.len() as u32;
+                let value = channel.indices[corner.index()];
+                fans.push(Fan { value, faces: 0, is_open: false, is_creased: false });
+            }
+            let number = of_corner[root];
+            of_corner[corner.index()] = number;
+            let fan = &mut fans[number as usize];
+            fan.faces += 1;
+            match continuous(corner) {
+                Some(_) => fan.is_creased |= sharpness.edge(corner) > 0.0,
+                None => fan.is_open = true,
+            }
+            fan.is_open |= continuous(corner.previous()).is_none();
+        }
+    }
+    starts.push(fans.len());
+    let fan = |corner: HalfEdgeId| of_corner[corner.index()];
+    let mut tags = Tags::default();
+    for h in topology.half_edges() {
+        let is_first = continuous(h).is_some_and(|twin| h < twin);
+        if is_first && sharpness.edge(h) > 0.0 {
+            tags.creases.push(CreaseTag { vertices: [fan(h), fan(h.next())], sharpness: sharpness.edge(h) });
+        }
+    }
+    for (vertex, own) in starts.windows(2).enumerate() {
+        let tagged = sharpness.vertex(VertexId(vertex as u32));
+        for number in own[0]..own[1] {
+            let is_rim = topology.is_boundary(VertexId(vertex as u32));
+            let is_kept = is_kept((&fans[own[0]..own[1]], is_rim), number - own[0], rule);
+            let sharpness = if is_kept { f64::INFINITY } else { tagged };
+            if sharpness > 0.0 {
+                tags.corners.push(CornerTag { vertex: number as u32, sharpness });
+            }
+        }
+    }
+    let triangles = of_corner.as_chunks::<3>().0.to_vec();
+    let mesh = Mesh::from_triangles(vec![[0.0; 3]; fans.len()], triangles)?.with_tags(tags)?;
+    Ok(ValueMesh { mesh, values: fans.iter().map(|fan| fan.value).collect() })
+}
+
+/// Whether a fan's value stays what it is, given all fans of its vertex and whether that is on the control mesh's boundary.
+fn is_kept((fans, is_rim): (&[Fan], bool), own: usize, rule: SeamRule) -> bool {
+    let fan = &fans[own];
+    if (0..fans.len()).any(|other| other != own && fans[other].value == fan.value) {
+        return true;
+    }
+    // No value has two fans but those that are kept anyway.
+    let mut values: Vec<u32> = fans.iter().map(|fan| fan.value).collect();
+    values.sort_unstable();
+    values.dedup();
+    let corners_only = fan.is_open && fan.faces == 1;
+    let plus1 = values.len() > 2 || values.len() == 2 && fans.iter().any(|fan| fan.is_creased);
+    match rule {
+        SeamRule::None => false,
+        SeamRule::CornersOnly => corners_only,
+        SeamRule::CornersPlus1 => corners_only || plus1,
+        SeamRule::CornersPlus2 => {
+            let has_one_face = |&value: &u32| {
+                fans.iter().filter(|fan| fan.value == value).map(|fan| fan.faces).sum::<usize>() == 1
+            };
+            let beside_corner = values.len() == 2 && values.iter().any(has_one_face);
+            let is_dart = fans.len() == 1 && fan.is_open && !is_rim;
+            corners_only || plus1 || beside_corner || is_dart
+        }
+        SeamRule::Boundaries => fan.is_open,
+    }
+}

@@ -1,0 +1,207 @@
+//! Points and normals of the limit surface at any place of its control faces.
+//!
+//! A piece is refined towards the place until its part there is a polynomial (Stam, "Evaluation of Loop Subdivision Surfaces",
+//! 1998: around an irregular vertex the regular parts shrink by half with each level), which is evaluated; at corners the scheme's
+//! limit stencils are. Places that share a piece share its refinement.
+
+use crate::index::{FaceId, HalfEdgeId};
+use crate::limit::{LimitError, SidedNormals};
+use crate::mesh::{Mesh, Sharpness};
+use crate::parallel;
+use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::large_rings::LargeRings;
+use crate::patch::{LimitPoint, Patch, Quartic, Rules, child_corners, root_patch};
+use crate::scheme::Scheme;
+use crate::vector::vector;
+
+/// Levels after which a place counts as the nearest corner of its part, which is 2⁻⁴⁰ as large as the face.
+const DEEPEST: u32 = 40;
+
+/// Faces that are evaluated together.
+const BLOCK: usize = 64;
+
+/// A point of a limit surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SurfacePoint {
+    /// Where it is, in the control mesh's units.
+    pub position: [f64; 3],
+    /// The unit normal, on the side of the face that was asked; zero where there is none.
+    pub normal: [f64; 3],
+}
+
+/// The limit surface of a control mesh.
+///
+/// ```
+/// use limitmesh::{FaceId, LimitSurface, Mesh, scheme::Loop};
+///
+/// let mesh = Mesh::from_triangles(
+///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],
+///     vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]],
+/// )?;
+/// let surface = LimitSurface::new(&mesh, &Loop)?;
+/// let middle = surface.at(FaceId(0), [1.0 / 3.0; 3]);
+/// // The face looks along (1, 1, −1), and so does the surface over its middle.
+/// assert!((middle.normal[0] - 3f64.sqrt().recip()).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct LimitSurface<'a> {
+    mesh: &'a Mesh,
+    sharpness: Sharpness<'a>,
+    large: LargeRings,
+    rules: Rules<'a>,
+    positions: Vec<[f64; 3]>,
+    normals: SidedNormals,
+}
+
+impl<'a> LimitSurface<'a> {
+    /// Prepares the evaluation.
+    ///
+    /// # Errors
+    /// The scheme has no limit at the shape of some ring.
+    pub fn new(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Result<Self, LimitError> {
+        let rules = Rules::of(scheme);
+        let positions = rules.table().positions(mesh)?;
+        let normals = rules.table().sided_normals(mesh)?;
+        Ok(Self {
+            mesh,
+            sharpness: Sharpness::of(mesh),
+            large: LargeRings::of(mesh),
+            rules,
+            positions,
+            normals,
+        })
+    }
+
+    /// The point over a place of a control face, given by barycentric coordinates, which are not negative and whose sum is one; others
+    /// are taken for the nearest such place along each, and what is not a number for a corner. A face that there is not has its points
+    /// at zero.
+    pub fn at(&self, face: FaceId, barycentric: [f64; 3]) -> SurfacePoint {
+        self.over(face, &[barycentric]).pop().unwrap_or(NOWHERE)
+    }
+
+    /// The points over several places of a face, as [`Self::at`] gives them.
+    pub fn over(&self, face: FaceId, places: &[[f64; 3]]) -> Vec<SurfacePoint> {
+        let mut found = vec![NOWHERE; places.len()];
+        if face.index() >= self.mesh.face_count() {
+            return found;
+        }
+        let topology = self.mesh.topology();
+        let corners = [0, 1, 2].map(|corner| {
+            let h = HalfEdgeId::of(face, corner);
+            let position = vector(self.positions[topology.origin(h).index()]);
+            LimitPoint { position, normal: vector(self.normals.at(topology, h)) }
+        });
+        let mut left: Vec<Place> = places
+            .iter()
+            .enumerate()
+            .map(|(at, &weights)| Place { at, weights: on_triangle(weights) })
+            .collect();
+        take_corners(corners, &mut left, &mut found);
+        if !left.is_empty() {
+            let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
+            self.descend(&patch, corners, left, DEEPEST, &mut found);
+        }
+        found
+    }
+
+    /// The points over places of many faces, in order, on all threads: `places(i)` are those of face `faces[i]`.
+    pub(crate) fn over_all<'p>(
+        &self,
+        faces: &[u32],
+        places: impl Fn(usize) -> &'p [[f64; 3]] + Sync + Send,
+    ) -> Vec<SurfacePoint> {
+        let blocks = parallel::pieces_of(faces.len(), BLOCK, |block| {
+            block.flat_map(|at| self.over(FaceId(faces[at]), places(at))).collect::<Vec<_>>()
+        });
+        blocks.concat()
+    }
+
+    /// Why what was computed means nothing, if a stencil failed on the way.
+    pub(crate) fn failure(&self) -> Option<&LimitError> {
+        self.rules.failure()
+    }
+
+    fn descend(
+        &self,
+        patch: &Patch,
+        corners: [LimitPoint; 3],
+        mut left: Vec<Place>,
+        levels: u32,
+        found: &mut [SurfacePoint],
+    ) {
+        if let Patch::Regular(points) = patch {
+            let piece = Quartic::of(&BezierTriangle::of(points), 0);
+            for Place { at, weights: [_, u, v] } in left {
+                let (position, normal) = (piece.point(u, v), piece.normal(u, v));
+                found[at] = LimitPoint { position, normal }.into();
+            }
+            return;
+        }
+        if levels == 0 {
+            for Place { at, weights } in left {
+                let nearest = (0..3).max_by(|&a, &b| weights[a].total_cmp(&weights[b])).unwrap_or(0);
+                found[at] = corners[nearest].into();
+            }
+            return;
+        }
+        let refined = patch.refined(&self.rules);
+        let middles = [0, 1, 2].map(|edge| refined.middle(edge));
+        for child in 0..4 {
+            let own = left.extract_if(.., |place| place.child() == child);
+            let mut own: Vec<Place> = own.map(|place| place.in_child(child)).collect();
+            let corners = child_corners(corners, middles, child);
+            take_corners(corners, &mut own, found);
+            if !own.is_empty() {
+                self.descend(&refined.part(child), corners, own, levels - 1, found);
+            }
+        }
+    }
+}
+
+const NOWHERE: SurfacePoint = SurfacePoint { position: [0.0; 3], normal: [0.0; 3] };
+
+impl From<LimitPoint> for SurfacePoint {
+    fn from(LimitPoint { position, normal }: LimitPoint) -> Self {
+        Self { position: position.to_array(), normal: normal.to_array() }
+    }
+}
+
+/// A place in a part, and the number of its point.
+struct Place {
+    at: usize,
+    weights: [f64; 3],
+}
+
+impl Place {
+    /// The part of four that it is in: those at the corners, and the middle one.
+    fn child(&self) -> usize {
+        self.weights.iter().position(|&weight| weight >= 0.5).unwrap_or(3)
+    }
+
+    fn in_child(self, child: usize) -> Self {
+        let weights = match child {
+            3 => self.weights.map(|weight| 1.0 - 2.0 * weight),
+            _ => core::array::from_fn(|i| 2.0 * self.weights[i] - if i == child { 1.0 } else { 0.0 }),
+        };
+        Self { weights, ..self }
+    }
+}
+
+/// Barycentric coordinates that are in order.
+fn on_triangle(weights: [f64; 3]) -> [f64; 3] {
+    let [_, u, v] = weights.map(|weight| if weight > 0.0 { weight.min(1.0) } else { 0.0 });
+    let v = v.min(1.0 - u);
+    [1.0 - u - v, u, v]
+}
+
+/// Answers for the places that are corners.
+fn take_corners(corners: [LimitPoint; 3], places: &mut Vec<Place>, found: &mut [SurfacePoint]) {
+    places.retain(|place| match place.weights.iter().position(|&weight| weight == 1.0) {
+        Some(corner) => {
+            found[place.at] = corners[corner].into();
+            false
+        }
+        None => true,
+    });
+}

@@ -1,0 +1,67 @@
+//! Which corner of the soup each corner of the mesh is from: the one of its face's polygon at the same vertex.
+
+use super::retag::VertexMaps;
+use crate::geometry::NONE;
+use crate::index::VertexId;
+use crate::mesh::PolygonSoup;
+
+/// The soup's corners of the mesh's corners, three a face. Where faces were repaired a polygon may lack a vertex of its triangle; then
+/// it is a corner of another polygon there.
+pub(super) fn corners(
+    soup: &PolygonSoup,
+    triangles: &[[u32; 3]],
+    inputs: &[u32],
+    maps: &VertexMaps<'_>,
+) -> Vec<u32> {
+    let mut elsewhere: Option<Vec<u32>> = None;
+    let mut corners = Vec::with_capacity(3 * triangles.len());
+    for (triangle, &input) in triangles.iter().zip(inputs) {
+        let polygon = soup.faces.get(input as usize);
+        let first = soup.faces.first_corner(input as usize);
+        let vertices = triangle.map(|v| before_cutting(maps, v));
+        for (corner, &vertex) in vertices.iter().enumerate() {
+            let beside = [1, 2].map(|step| vertices[(corner + step) % 3]);
+            let own = place(polygon, vertex, beside, maps).map(|place| first + place as u32);
+            corners.push(own.unwrap_or_else(|| {
+                let all = elsewhere.get_or_insert_with(|| first_corners(soup, maps));
+                all.get(vertex as usize).copied().filter(|&corner| corner != NONE).unwrap_or(first)
+            }));
+        }
+    }
+    corners
+}
+
+/// The vertex before cutting; for one in the middle of an edge an end of that edge.
+fn before_cutting(maps: &VertexMaps<'_>, v: u32) -> u32 {
+    let vertex = maps.original(VertexId(v));
+    let middle = || maps.middles.iter().find(|middle| middle.vertex == vertex);
+    if (vertex as usize) < maps.vertex_count {
+        vertex
+    } else {
+        middle().map_or(vertex, |found| found.ends[0])
+    }
+}
+
+/// Where a polygon comes to a vertex; where it does several times, between these two if it can be told.
+fn place(polygon: &[u32], vertex: u32, [next, previous]: [u32; 2], maps: &VertexMaps<'_>) -> Option<usize> {
+    let at = |place: usize| maps.vertex(polygon[place % polygon.len()]);
+    let mut places = (0..polygon.len()).filter(|&place| at(place) == Some(vertex));
+    let first = places.next()?;
+    let beside = |place: &usize| {
+        let around = [at(place + 1), at(place + polygon.len() - 1)];
+        around.contains(&Some(next)) || around.contains(&Some(previous))
+    };
+    if beside(&first) { Some(first) } else { places.find(beside).or(Some(first)) }
+}
+
+/// By vertex before cutting, the first corner there.
+fn first_corners(soup: &PolygonSoup, maps: &VertexMaps<'_>) -> Vec<u32> {
+    let mut corners = vec![NONE; maps.vertex_count];
+    for corner in 0..soup.faces.corner_count() {
+        if let Some(vertex) = maps.vertex(soup.faces.corner(corner)) {
+            let first = &mut corners[vertex as usize];
+            *first = (*first).min(corner as u32);
+        }
+    }
+    corners
+}
