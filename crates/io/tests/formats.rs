@@ -3,7 +3,7 @@
 #![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
 
 use limitmesh::Triangles;
-use limitmesh::mesh::{CornerTag, CreaseTag, PolygonSoup};
+use limitmesh::mesh::{Channel, CornerTag, CreaseTag, PolygonSoup};
 use limitmesh_io::{Format, Output, WriteOptions, read_bytes, write_to};
 
 fn obj(text: &str) -> PolygonSoup {
@@ -291,15 +291,13 @@ const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 #[test]
 fn what_an_obj_file_held_and_a_soup_cannot_is_named() {
-    let cases: [(&str, &[&str]); 14] = [
-        ("vt 0 0\nvn 0 0 1\nusemtl red\n", &["texture coordinates", "normals", "materials"]),
+    let cases: [(&str, &[&str]); 11] = [
+        // No corner names the texture coordinate, and no face stands under a material.
+        ("vt 0 0\nvn 0 0 1\n", &["texture coordinates", "normals"]),
         ("mtllib a.mtl\n", &["materials"]),
-        ("g wheel\n", &["groups"]),
-        ("o car\n", &["names of objects"]),
-        ("s 1\n", &["smoothing groups"]),
         ("l 1 2\np 3\nvp 0.5\n", &["lines", "points", "points in parameter space"]),
-        ("v 0 0 1 0.5 0.5 0.5\n", &["colours"]),
-        ("v 0 0 1 1 0.5 0.5 0.5\n", &["colours"]),
+        ("v 0 0 1 0.5 0.5\n", &["colours"]),
+        ("v 0 0 1 1 0.5 red 0.5\n", &["colours"]),
         ("v 0 0 1 0.5\n", &["weights of vertices"]),
         ("curv 0 1 1 2\ncurv 0 1 1 2\nbevel on\n", &["statements 'curv'", "statements 'bevel'"]),
         ("t hole 1/0/0 0\n", &["tags 'hole'"]),
@@ -313,6 +311,64 @@ fn what_an_obj_file_held_and_a_soup_cannot_is_named() {
             // Vertices before the triangle's move its indices, which is all the same here.
             assert_eq!(left_out(text.as_bytes(), Format::Obj), expected, "{text}");
         }
+    }
+}
+
+/// Texture coordinates, colours, and the names under which faces stand, as they are written by hand here.
+#[test]
+fn obj_files_hold_channels() {
+    let text = "mtllib a.mtl b.mtl\no car\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0.5 0\nv 1 1 0\nv 0 1 0 0 0 1\n\
+        vt 0 0\nvt 1 0\nvt 1 1\nvt 0.5 0.25 0.125\nf 1/1 2/2 3/3\nusemtl red\ng wheel left\nf 1/-1 3/3 4\n";
+    let soup = obj(text);
+    assert!(soup.left_out.is_empty(), "{:?}", soup.left_out);
+    assert_eq!(soup.material_libraries, ["a.mtl b.mtl"]);
+    let [texture, colour, object, group, material] = &soup.channels[..] else {
+        panic!("{:?}", soup.channels)
+    };
+    let values = |channel: &Channel| -> Vec<Vec<f64>> {
+        (0..channel.indices.len()).map(|element| channel.value(element).to_vec()).collect()
+    };
+    let places =
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.5, 0.25, 0.125], [1.0, 1.0, 0.0], [0.0; 3]];
+    assert_eq!(values(texture), places);
+    assert_eq!(values(colour), [[1.0, 0.0, 0.0], [0.0, 0.5, 0.0], [1.0; 3], [0.0, 0.0, 1.0]]);
+    let names = |channel: &Channel| -> Vec<String> {
+        channel.indices.iter().map(|&number| channel.labels[number as usize].clone()).collect()
+    };
+    assert_eq!(names(object), ["car", "car"]);
+    assert_eq!(names(group), ["", "wheel left"]);
+    assert_eq!(names(material), ["", "red"]);
+
+    // And back again.
+    let triangles = [[0, 1, 2], [0, 2, 3]];
+    let surface = Triangles { positions: &soup.positions, triangles: &triangles };
+    let output = Output::new(surface).channels(&soup.channels).material_libraries(&soup.material_libraries);
+    let mut bytes = Vec::new();
+    write_to(&mut bytes, Format::Obj, &output, &WriteOptions::default()).unwrap();
+    let again = obj(std::str::from_utf8(&bytes).unwrap());
+    assert_eq!(again.channels.len(), soup.channels.len());
+    for (now, before) in again.channels.iter().zip(&soup.channels) {
+        let is_named = !before.labels.is_empty();
+        assert!(
+            if is_named { names(now) == names(before) } else { values(now) == values(before) },
+            "{}",
+            now.name
+        );
+    }
+    assert_eq!(again.material_libraries, soup.material_libraries);
+}
+
+/// Corners that name texture coordinates that are not there: the shape is read, and that is told.
+#[test]
+fn texture_coordinates_that_are_not_there_are_told() {
+    for corner in ["1/2", "1/x", "1/0", "1/-2"] {
+        let soup = obj(&format!("vt 0 0\n{OBJ_SQUARE}f {corner} 2/1 3/1\n"));
+        assert_eq!(
+            soup.left_out,
+            ["texture coordinates: some corners name others than there are"],
+            "{corner}"
+        );
+        assert!(soup.channels.is_empty());
     }
 }
 

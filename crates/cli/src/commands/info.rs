@@ -14,7 +14,9 @@ use crate::mesh_info;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::information::{PolygonCount, TagCounts};
-use crate::report::{AssetInformation, InformationReport, InputReport, MeshInformation, VERSION};
+use crate::report::{
+    AssetInformation, ChannelReport, InformationReport, InputReport, MeshInformation, VERSION,
+};
 
 /// Examines a file and prints what it holds.
 pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Result<Outcome> {
@@ -33,6 +35,7 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         vertices: soup.positions.len(),
         faces: soup.faces.len(),
         left_out: soup.left_out.clone(),
+        channels: soup.channels.iter().map(Into::into).collect(),
     };
     progress.stage(format!("connecting {}", counted(input.faces, "face", "faces")));
     let (mesh, diagnosis) =
@@ -70,7 +73,7 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
 }
 
 fn describe_file(report: &InformationReport) -> String {
-    let InputReport { path, format, vertices, faces, left_out } = &report.input;
+    let InputReport { path, format, vertices, faces, left_out, channels } = &report.input;
     let format = if *format == "builtin" { "built-in model".to_owned() } else { format.to_uppercase() };
     let mut text = format!(
         "{path}: {format}, {}, {}",
@@ -86,6 +89,10 @@ fn describe_file(report: &InformationReport) -> String {
         text.push_str(&format!(" ({})", sizes.join(", ")));
     }
     text.push('\n');
+    if !channels.is_empty() {
+        let all: Vec<String> = channels.iter().map(ChannelReport::in_words).collect();
+        text.push_str(&format!("carries: {}\n", all.join("; ")));
+    }
     if !left_out.is_empty() {
         text.push_str(&format!("left out: {}\n", left_out.join("; ")));
     }

@@ -2,6 +2,7 @@
 //! all numbers are finite, angles in degrees, times in seconds.
 
 pub(crate) mod certified;
+mod channel;
 mod comparison;
 pub(crate) mod diagnosis;
 pub(crate) mod information;
@@ -10,6 +11,7 @@ pub(crate) mod measurement;
 pub(crate) mod refinement;
 
 pub(crate) use certified::CertifiedReport;
+pub(crate) use channel::ChannelReport;
 pub(crate) use comparison::{CertifiedErrorReport, ComparedMethod};
 pub(crate) use diagnosis::DiagnosisReport;
 pub(crate) use information::{AssetInformation, InformationReport, MeshInformation};
@@ -39,4 +41,6 @@ pub(crate) struct InputReport {
     pub(crate) faces: usize,
     /// What else the file held and was left out, in words.
     pub(crate) left_out: Vec<String>,
+    /// What vertices, corners and faces carry.
+    pub(crate) channels: Vec<ChannelReport>,
 }

@@ -385,9 +385,73 @@ fn what_is_left_out_is_told() {
     let folder = folder();
     let content = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl red\nf 1/1 2/1 3/1\n";
     let (input, output) = (file(&folder, "in.obj", content), folder.path().join("out.obj"));
-    let words = "left out: texture coordinates; materials";
-    run("refine {} -o {}", &[&input, &output]).expect(0).saying(words);
-    assert!(run("info {}", &[&input]).expect(0).stdout.contains(words));
+    let told = run("refine {} -o {}", &[&input, &output]).expect(0).stderr;
+    assert!(!told.contains("left out"), "{told}");
+    let text = std::fs::read_to_string(&output).expect("it is there");
+    assert!(text.contains("vt 0 0\n") && text.contains("usemtl red\n"), "{text}");
+    let carried = "carries: texture coordinates (2 numbers a corner); materials (by face)";
+    assert!(run("info {}", &[&input]).expect(0).stdout.contains(carried));
     let report = run("info {} --json", &[&input]).expect(0).json();
-    assert_eq!(report["input"]["left_out"], serde_json::json!(["texture coordinates", "materials"]));
+    assert_eq!(report["input"]["left_out"], serde_json::json!([]));
+    assert_eq!(report["input"]["channels"][0]["name"], "texture coordinates");
+    let stl = folder.path().join("out.stl");
+    let words = "left out: texture coordinates; materials (the output's format has no place for them)";
+    run("refine {} -o {}", &[&input, &stl]).expect(0).saying(words);
+    let words = "left out: texture coordinates; materials (--optimize does not keep them)";
+    run("refine {} -o {} --optimize", &[&input, &output]).expect(0).saying(words);
+    let words = "left out: texture coordinates; materials (the stepwise methods do not keep them)";
+    run("refine {} -o {} --method uniform --levels 1", &[&input, &output]).expect(0).saying(words);
+}
+
+/// A cube's texture, a net of six squares: affine over each face, so with straight seams it is what it was everywhere, and each square
+/// of the texture has a sixth of the triangles' area.
+#[test]
+fn textures_come_out_as_they_went_in() {
+    let folder = folder();
+    let corners = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    let mut content = String::new();
+    for v in 0..8 {
+        content += &format!("v {} {} {}\n", v >> 2 & 1, v >> 1 & 1, v & 1);
+    }
+    for (side, corners) in corners.iter().enumerate() {
+        for [s, t] in [[0, 0], [1, 0], [1, 1], [0, 1]] {
+            content += &format!("vt {} {t}\n", side + s);
+        }
+        content += &format!("usemtl side{side}\nf");
+        corners.iter().enumerate().for_each(|(k, v)| content += &format!(" {}/{}", v + 1, 4 * side + k + 1));
+        content += "\n";
+    }
+    let (input, output) = (file(&folder, "cube.obj", &content), folder.path().join("out.obj"));
+    run("refine {} -o {} --tolerance 1%", &[&input, &output]).expect(0);
+    let text = std::fs::read_to_string(&output).expect("it is there");
+    let mut places: Vec<[f64; 2]> = Vec::new();
+    let (mut side, mut areas, mut count) = (0, [0.0; 6], 0);
+    for line in text.lines() {
+        let words: Vec<&str> = line.split(' ').collect();
+        match words[0] {
+            "vt" => places.push([1, 2].map(|i| words[i].parse().expect("a number"))),
+            "usemtl" => side = words[1].strip_prefix("side").expect("its name").parse().expect("a number"),
+            "f" => {
+                let place = |word: &str| {
+                    places[word.split('/').nth(1).expect("vt").parse::<usize>().expect("vt") - 1]
+                };
+                let [a, b, c] = [1, 2, 3].map(|i| place(words[i]));
+                // Each triangle lies in its own side's square.
+                for [s, t] in [a, b, c] {
+                    let s: f64 = s - side as f64;
+                    assert!(
+                        (-1e-12..=1.0 + 1e-12).contains(&s) && (-1e-12..=1.0 + 1e-12).contains(&t),
+                        "{line}"
+                    );
+                }
+                areas[side] += 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+                count += 1;
+            }
+            _ => {}
+        }
+    }
+    assert!(count > 100);
+    for area in areas {
+        assert!((area - 1.0).abs() < 1e-9, "{areas:?}");
+    }
 }

@@ -28,7 +28,6 @@ pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
         polygon: Vec::new(),
         attributes: Attributes::default(),
         highest_corner: Latest::default(),
-        highest_texture: Latest::default(),
         highest_tag: Latest::default(),
         left_out: LeftOut::default(),
     }
@@ -75,7 +74,6 @@ struct Reader<'a> {
     polygon: Vec<u32>,
     attributes: Attributes,
     highest_corner: Latest,
-    highest_texture: Latest,
     highest_tag: Latest,
     left_out: LeftOut,
 }
@@ -102,8 +100,13 @@ impl Reader<'_> {
         }
         self.check_indices()?;
         self.soup.positions.shrink_to_fit();
-        if self.attributes.has_unused_textures() {
+        if self.attributes.has_wrong_textures() {
+            self.left_out.other("texture coordinates: some corners name others than there are".to_owned());
+        } else if self.attributes.has_unused_textures() {
             self.left_out.note(Kind::TextureCoordinates);
+        }
+        if !self.soup.material_libraries.is_empty() && !self.attributes.has_materials(self.soup.faces.len()) {
+            self.left_out.note(Kind::Materials);
         }
         let (vertices, faces) = (self.soup.positions.len(), &self.soup.faces);
         self.soup.channels = self.attributes.channels(vertices, faces.len(), faces.corner_count());
@@ -128,29 +131,36 @@ impl Reader<'_> {
         super::check_count(index as u64 + 1, "vertices", self.scanner.place())?;
         let point = self.scanner.point().map_err(|flaw| flaw.element("vertex", index))?;
         self.soup.positions.push(point);
-        self.more_numbers(index)
+        self.more_numbers(index);
+        Ok(())
     }
 
-    /// After x, y and z: a weight, or red, green and blue, as some programs write them.
+    /// After x, y and z: a weight, or red, green and blue, as some programs write them, or both.
     #[inline]
-    fn more_numbers(&mut self, vertex: usize) -> Result<(), Flaw> {
-        let Some(red) = self.scanner.word() else { return Ok(()) };
-        let Some(green) = self.scanner.word() else {
-            if number(red) != Some(1.0) {
-                self.left_out.note(Kind::Weights);
+    fn more_numbers(&mut self, vertex: usize) {
+        let Some(first) = self.scanner.word() else { return };
+        let mut numbers = [number(first).unwrap_or(f64::NAN), 0.0, 0.0, 0.0];
+        let mut count = 1;
+        while let Some(word) = self.scanner.word() {
+            if let Some(slot) = numbers.get_mut(count) {
+                *slot = number(word).unwrap_or(f64::NAN);
             }
-            return Ok(());
-        };
-        let words = [Some(red), Some(green), self.scanner.word()];
-        let mut colour = [0.0; 3];
-        for (part, word) in colour.iter_mut().zip(words) {
-            let found = word.and_then(number).filter(|x: &f64| x.is_finite());
-            *part = found.ok_or_else(|| {
-                self.scanner.unexpected(word, "red, green and blue as numbers").element("vertex", vertex)
-            })?;
+            count += 1;
         }
-        self.attributes.colour(vertex, colour);
-        Ok(())
+        let (weight, colour) = match count {
+            1 => (numbers[0], None),
+            3 => (1.0, Some([numbers[0], numbers[1], numbers[2]])),
+            4 => (numbers[0], Some([numbers[1], numbers[2], numbers[3]])),
+            _ => (1.0, Some([f64::NAN; 3])),
+        };
+        if weight != 1.0 {
+            self.left_out.note(Kind::Weights);
+        }
+        match colour {
+            Some(colour) if colour.iter().all(|x| x.is_finite()) => self.attributes.colour(vertex, colour),
+            Some(_) => self.left_out.note(Kind::Colours),
+            None => {}
+        }
     }
 
     /// `vt U [V [W]]`.
@@ -196,10 +206,7 @@ impl Reader<'_> {
         self.polygon.clear();
         while let Some(word) = self.scanner.word() {
             let index = self.corner(word)?;
-            if let Some(texture) = self.texture_of(word)? {
-                if texture as usize >= self.attributes.texture_count() {
-                    self.highest_texture.note(texture, self.scanner.line());
-                }
+            if let Some(texture) = self.texture_of(word) {
                 let corner = self.soup.faces.corner_count() + self.polygon.len();
                 self.attributes.texture_of_corner(corner, texture);
             }
@@ -237,23 +244,16 @@ impl Reader<'_> {
 
     /// The texture coordinate, counted from 0, that a corner names, if it does.
     #[inline]
-    fn texture_of(&self, word: &[u8]) -> Result<Option<u32>, Flaw> {
-        let Some(texture) = word.split(|&b| b == b'/').nth(1).filter(|part| !part.is_empty()) else {
-            return Ok(None);
-        };
+    fn texture_of(&self, word: &[u8]) -> Option<u32> {
+        let texture = word.split(|&b| b == b'/').nth(1).filter(|part| !part.is_empty())?;
         let latest = self.attributes.texture_count() as i64;
         let index = match integer(texture) {
             Some(index) if index > 0 => Some(index - 1),
             Some(index) if index < 0 => Some(latest + index),
             _ => None,
         };
-        let index = index.and_then(|i| u32::try_from(i).ok()).filter(|&i| i < u32::MAX);
-        index.map(Some).ok_or_else(|| {
-            let expected = format!(
-                "after the first / the index of a texture coordinate from 1, or one from -{latest} to -1"
-            );
-            Flaw::new(self.scanner.place(), quoted(word), expected).element("face", self.soup.faces.len())
-        })
+        // What names nothing is found with what names too much.
+        Some(index.and_then(|i| u32::try_from(i).ok()).unwrap_or(u32::MAX - 1))
     }
 
     /// `t NAME INTEGERS/FLOATS/STRINGS` and that many values. Names other than `crease` and `corner` are
@@ -334,12 +334,6 @@ impl Reader<'_> {
             let met = format!("vertex index {} in a face", self.highest_corner.count_needed);
             let expected = format!("at most {count}, the number of vertices");
             return Err(Flaw::new(crate::Place::Line(self.highest_corner.line), met, expected));
-        }
-        let textures = self.attributes.texture_count();
-        if self.highest_texture.count_needed > textures {
-            let met = format!("texture coordinate {} in a face", self.highest_texture.count_needed);
-            let expected = format!("at most {textures}, the number of texture coordinates");
-            return Err(Flaw::new(crate::Place::Line(self.highest_texture.line), met, expected));
         }
         if self.highest_tag.count_needed > count {
             let met = format!("vertex index {} in a tag", self.highest_tag.count_needed - 1);

@@ -335,8 +335,8 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, arguments: &Refin
         false => "not bounded as the cameras see it".to_owned(),
     }));
     if found.unfolded > 0 {
-        let regions = counted(found.unfolded, "flat region folds", "flat regions fold");
-        lines.push(format!("{regions} by the scheme's rules: what its rim encloses stands there instead"));
+        let regions = counted(found.unfolded, "flat region", "flat regions");
+        lines.push(format!("{regions} would fold by the scheme's rules: what the rim encloses stands there"));
     }
     if found.refused > 0 {
         let vertices = counted(found.refused, "vertex", "vertices");

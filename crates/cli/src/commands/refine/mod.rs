@@ -94,6 +94,7 @@ fn refine(
         vertices: input.diagnosis.input_vertices,
         faces: input.diagnosis.input_faces,
         left_out: input.left_out,
+        channels: input.channels.iter().map(Into::into).collect(),
     };
     let mut channels =
         Channels::of_input(input.channels, input.material_libraries, (format, arguments), progress);

@@ -81,16 +81,28 @@ impl Attributes {
         !self.textures.is_empty() && self.texture_corners.is_empty()
     }
 
+    /// Whether a corner names a texture coordinate that there is not: which others are meant is anybody's guess then.
+    pub(super) fn has_wrong_textures(&self) -> bool {
+        let count = self.textures.len() as u32;
+        self.texture_corners.iter().any(|&index| index >= count && index != NONE)
+    }
+
+    /// Whether one of so many faces has a material.
+    pub(super) fn has_materials(&self, faces: usize) -> bool {
+        self.labels[LabelKind::Material as usize].are_used(faces)
+    }
+
     /// All as channels of a soup.
     pub(super) fn channels(self, vertices: usize, faces: usize, corners: usize) -> Vec<Channel> {
+        let is_wrong = self.has_wrong_textures();
         let Self { textures, texture_arity, mut texture_corners, mut colours, labels } = self;
         let mut found = Vec::new();
-        if !texture_corners.is_empty() {
+        if !texture_corners.is_empty() && !is_wrong {
             texture_corners.resize(corners, NONE);
             let arity = texture_arity.max(2);
             let mut values: Vec<f64> = textures.iter().flat_map(|place| &place[..arity]).copied().collect();
             if texture_corners.contains(&NONE) {
-                // Corners without one have the texture's first place.
+                // Corners without one have the texture's origin.
                 let missing = textures.len() as u32;
                 values.extend(std::iter::repeat_n(0.0, arity));
                 texture_corners.iter_mut().filter(|index| **index == NONE).for_each(|index| *index = missing);
@@ -114,13 +126,19 @@ impl Attributes {
 }
 
 impl Labels {
+    /// Whether one of so many faces stands under a name.
+    fn are_used(&self, faces: usize) -> bool {
+        let is_used =
+            |&(face, number): &(usize, u32)| face < faces && !self.names[number as usize].is_empty();
+        self.changes.iter().any(is_used)
+    }
+
     /// The names of all faces, if any stands under one: before the first, that of none.
     fn channel(self, name: &str, faces: usize) -> Option<Channel> {
-        let Self { mut names, changes, .. } = self;
-        let is_used = |&(face, number): &(usize, u32)| face < faces && !names[number as usize].is_empty();
-        if !changes.iter().any(is_used) {
+        if !self.are_used(faces) {
             return None;
         }
+        let Self { mut names, changes, .. } = self;
         let mut indices = Vec::with_capacity(faces);
         let first = changes.first().map_or(0, |&(face, _)| face);
         if first > 0 {

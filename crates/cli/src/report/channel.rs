@@ -1,0 +1,54 @@
+//! What a mesh carries beside its shape, as reported.
+
+use limitmesh::mesh::{Channel, Domain, Interpolation};
+use serde::Serialize;
+
+/// A channel of the input.
+#[derive(Serialize, Debug)]
+pub(crate) struct ChannelReport {
+    /// Its name in the file, or what it is where the format gives no names.
+    pub(crate) name: String,
+    /// `vertex`, `corner` or `face`.
+    pub(crate) domain: &'static str,
+    /// Numbers in a value.
+    pub(crate) arity: usize,
+    /// `smooth`, `linear` or `nearest`, where nothing else is asked for.
+    pub(crate) interpolation: &'static str,
+    /// Values in the table.
+    pub(crate) values: usize,
+}
+
+impl From<&Channel> for ChannelReport {
+    fn from(channel: &Channel) -> Self {
+        Self {
+            name: channel.name.clone(),
+            domain: match channel.domain {
+                Domain::Vertex => "vertex",
+                Domain::Corner => "corner",
+                Domain::Face => "face",
+            },
+            arity: channel.arity,
+            interpolation: match channel.interpolation {
+                Interpolation::Smooth(_) => "smooth",
+                Interpolation::Linear => "linear",
+                _ => "nearest",
+            },
+            values: channel.value_count(),
+        }
+    }
+}
+
+impl ChannelReport {
+    /// `texture coordinates (2 numbers a corner)`.
+    pub(crate) fn in_words(&self) -> String {
+        match self.interpolation {
+            "nearest" => format!("{} (by {})", self.name, self.domain),
+            _ => format!(
+                "{} ({} a {})",
+                self.name,
+                crate::format::counted(self.arity, "number", "numbers"),
+                self.domain
+            ),
+        }
+    }
+}
