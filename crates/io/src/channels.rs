@@ -28,6 +28,6 @@ pub fn holds(format: Format, channel: &Channel) -> bool {
             }
             _ => false,
         },
-        Format::Ply | Format::Stl | Format::Off => false,
+        Format::Ply | Format::Stl | Format::Off | Format::Gltf | Format::Glb => false,
     }
 }

@@ -4,7 +4,7 @@ use limitmesh::mesh::{Channel, Domain, Interpolation};
 use serde::Serialize;
 
 /// A channel of the input.
-#[derive(Serialize, Debug)]
+#[derive(Serialize, Debug, Clone)]
 pub(crate) struct ChannelReport {
     /// Its name in the file, or what it is where the format gives no names.
     pub(crate) name: String,

@@ -11,6 +11,7 @@ use limitmesh_io::gltf::{Geometry, Joining, MeshSoup};
 use limitmesh_io::{Asset, Format};
 use limitmesh_render::Style;
 
+use super::channels::Channels;
 use super::control::Control;
 use super::exact::{self, Goals};
 use super::{Refined, change_in_words, estimate, picture, stepwise, summary, turned_over};
@@ -135,7 +136,8 @@ impl Job {
             built => built.map_err(|error| input::describe(&name, error))?,
         };
         self.notes(&name, &own, &built.1, progress);
-        let control = Control::new(built, Some(diagonal), arguments, progress)?;
+        let (built, diagnosis, trace) = built;
+        let control = Control::new((built, diagnosis, trace.faces), Some(diagonal), arguments, progress)?;
         let arguments = self.of_mesh(&own, done)?;
         let goals = Goals::new(&arguments, &control.featured.mesh, diagonal)?;
         let parameters = match arguments.method {
@@ -149,7 +151,9 @@ impl Job {
         let Control { featured, before, bulk, diagnosis, interpolation, .. } = control;
         let start = Instant::now();
         let mut refined = match arguments.method {
-            Method::Exact => exact::run((&featured, &before), &goals, &arguments, progress)?,
+            Method::Exact => {
+                exact::run((&featured, &before, &Channels::default()), &goals, &arguments, progress)?
+            }
             _ => stepwise::run(featured.mesh, &arguments, self.output, progress)?,
         };
         let refining = start.elapsed();
@@ -219,6 +223,7 @@ impl Job {
             vertices: own.soup.positions.len(),
             faces: own.soup.faces.len(),
             left_out: Vec::new(),
+            channels: own.soup.channels.iter().map(Into::into).collect(),
         }
     }
 

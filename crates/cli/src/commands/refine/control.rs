@@ -51,7 +51,8 @@ impl Control {
             progress,
         )?;
         let featured = Featured { mesh, concave };
-        let before = Before { surface, faces, residual: interpolation.as_ref().map(|report| report.residual) };
+        let before =
+            Before { surface, faces, residual: interpolation.as_ref().map(|report| report.residual) };
         Ok(Self { featured, diagnosis, before, bulk, interpolation, diagonal })
     }
 }
