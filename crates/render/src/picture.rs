@@ -358,8 +358,8 @@ fn line_share<const S: usize>(
         if length > 0.0 { ((a * pixel[0] + b * pixel[1] + c) / length) as f32 } else { 0.0 }
     });
     // No point of a pixel is farther from its corner than its diagonal.
-    let near = |i: usize| ink.opacity[i] > 0.0 && corner[i].abs() < ink.reach[i] + 2.0;
-    if !(near(0) || near(1) || near(2)) {
+    let near = |i: usize| corner[i].abs() < ink.reach[i] + 2.0;
+    if ink.opacity <= 0.0 || !(near(0) || near(1) || near(2)) {
         return 0.0;
     }
     let slopes = lines.distances();
@@ -374,9 +374,9 @@ fn line_share<const S: usize>(
         for i in 0..3 {
             let distance = (corner[i] + slopes[i][0] * x + slopes[i][1] * y).abs();
             let covered = ((ink.reach[i] - distance) / blur + 0.5).clamp(0.0, 1.0);
-            darkest = darkest.max(covered * ink.opacity[i]);
+            darkest = darkest.max(covered);
         }
         total += darkest;
     }
-    total / group.count as f32
+    ink.opacity * total / group.count as f32
 }
