@@ -4,7 +4,7 @@ use anyhow::Result;
 use limitmesh::mesh::PolygonFaces;
 use limitmesh::refine::{Exact, ExactOptions, exact};
 use limitmesh::scheme::Loop;
-use limitmesh::{FaceId, HalfEdgeId, Mesh, PolygonSoup, Triangles};
+use limitmesh::{Mesh, PolygonSoup};
 use limitmesh_paper::format::thousands;
 use limitmesh_render::{
     Camera, GridStyle, Image, Panel, Shading, Style, TextStyle, ViewDirection, grid, render,
@@ -27,8 +27,12 @@ const CREASE: f64 = 30.0;
 /// Part of the diagonal that the results are off by at most.
 const TOLERANCE: f64 = 0.001;
 
-/// Pixels of a panel.
-const SIZE: (u32, u32) = (268, 300);
+/// Pixels of a panel with the part, and with the shape.
+const PART_SIZE: (u32, u32) = (300, 300);
+const MODEL_SIZE: (u32, u32) = (220, 300);
+
+/// The edges of what comes out are paler: it is its shading that is to be seen.
+const PALE: [u8; 3] = [104, 124, 152];
 
 /// Where the two are looked at from.
 const PART_VIEW: ViewDirection = ViewDirection { sight: [-0.35, -0.75, -1.0], up: [0.0, 1.0, 0.0] };
@@ -38,19 +42,20 @@ const MODEL_VIEW: ViewDirection = ViewDirection { sight: [-0.45, -0.2, -1.0], up
 pub(super) fn picture() -> Result<Vec<u8>> {
     let part = part()?.with_creases_above(CREASE.to_radians())?;
     let mut panels = Vec::new();
-    for (control, view) in [(part, PART_VIEW), (builtin(MODEL)?, MODEL_VIEW)] {
+    let shapes = [(part, PART_VIEW, PART_SIZE), (builtin(MODEL)?, MODEL_VIEW, MODEL_SIZE)];
+    for (control, view, size) in shapes {
         let options = ExactOptions::default().tolerance(TOLERANCE * control.diagonal());
         let refined = exact(&control, &Loop, &options)?;
-        let camera = Camera::fit_tightly(control.as_triangles(), view, SIZE.0, SIZE.1)?;
+        let camera = Camera::fit_tightly(control.as_triangles(), view, size.0, size.1)?;
         let style = Style::default().wireframe(true).shading(Shading::Flat);
-        let before = render(control.as_triangles(), None, None, &camera, &style, SIZE.0, SIZE.1)?;
+        let before = render(control.as_triangles(), None, None, &camera, &style, size.0, size.1)?;
         let triangles = |mesh: &Mesh| thousands(mesh.face_count());
-        panels.push(Panel::new(before, format!("{} triangles …", triangles(&control))));
+        panels.push(Panel::new(before, format!("{} triangles", triangles(&control))));
         let percent = 100.0 * refined.error.upper / control.diagonal();
-        let words = format!("… smooth within {percent:.2} %: {}", triangles(&refined.mesh));
-        panels.push(Panel::new(by_sides(&refined, &camera)?, words));
+        let words = format!("{} triangles within {percent:.2} %", triangles(&refined.mesh));
+        panels.push(Panel::new(by_sides(&refined, &camera, size)?, words));
     }
-    let style = GridStyle::default().columns(panels.len()).gap(6).caption(TextStyle::default().size(15.0));
+    let style = GridStyle::default().columns(panels.len()).gap(6).caption(TextStyle::default().size(14.0));
     Ok(grid(&panels, &style)?.encode_png()?)
 }
 
@@ -75,18 +80,9 @@ fn part() -> Result<Mesh> {
     Ok(Mesh::from_soup(&soup, &Default::default())?.0)
 }
 
-/// The refined mesh with the normals of each side at sharp edges, so that these look sharp: no corner is shared then.
-fn by_sides(refined: &Exact, camera: &Camera) -> Result<Image> {
-    let surface = refined.mesh.as_triangles();
-    let faces = 0..surface.triangles.len();
-    let positions: Vec<[f64; 3]> = faces.clone().flat_map(|face| surface.corners(face)).collect();
-    let corners =
-        faces.clone().flat_map(|face| [0, 1, 2].map(|side| HalfEdgeId::of(FaceId(face as u32), side)));
-    let normals: Vec<[f64; 3]> = corners.map(|corner| refined.corner_normal(corner)).collect();
-    let triangles: Vec<[u32; 3]> = faces.map(|face| [0, 1, 2].map(|side| 3 * face as u32 + side)).collect();
-    let surface = Triangles { positions: &positions, triangles: &triangles };
-    // Each of two triangles draws the whole width of a line on its side of an edge that is not shared.
-    let style = Style::default().wireframe(true);
-    let style = style.wire_width(0.5 * style.wire_width);
-    Ok(render(surface, Some(&normals), None, camera, &style, SIZE.0, SIZE.1)?)
+/// The refined mesh with the normals of each side at sharp edges, so that these look sharp.
+fn by_sides(refined: &Exact, camera: &Camera, size: (u32, u32)) -> Result<Image> {
+    let surface = refined.split_surface();
+    let style = Style::default().wireframe(true).wire_colour(PALE);
+    Ok(render(surface.as_triangles(), Some(&surface.normals), None, camera, &style, size.0, size.1)?)
 }

@@ -1,12 +1,11 @@
 //! Uniform refinement, the paper's method, exact refinement and its optimisation at nearly equal triangle counts: the
-//! meshes above, their distances to the limit surface below, in one colour scale.
+//! heads of the meshes above, large enough for triangles to be told apart, and the distances of the whole to the limit surface
+//! below, in one colour scale.
 
 use anyhow::Result;
 use limitmesh::Mesh;
-use limitmesh::limit::LimitTable;
 use limitmesh::measure::distances_to;
 use limitmesh::refine::SeamRule;
-use limitmesh::scheme::Loop;
 use limitmesh_paper::{match_angle, methods};
 use limitmesh_render::{
     Camera, ColourBar, GridStyle, Image, Lighting, Panel, Scale, Shading, Style, TextStyle, ViewDirection,
@@ -30,8 +29,16 @@ const FIRST_ANGLE: f64 = 10.0;
 /// From the front, a little from the right and above.
 const VIEW: ViewDirection = ViewDirection { sight: [-0.45, -0.2, -1.0], up: [0.0, 1.0, 0.0] };
 
-/// Pixels of a panel.
-const SIZE: (u32, u32) = (216, 290);
+/// Pixels of a panel below.
+const SIZE: (u32, u32) = (160, 214);
+
+/// Pixels of a panel above, the middle of the head in it, and half of its height in the model's units.
+const HEAD_SIZE: (u32, u32) = (160, 132);
+const HEAD: [f64; 3] = [0.02, 0.14, 0.2];
+const HEAD_REACH: f64 = 0.23;
+
+/// The width of edges in pixels: thinner than usual, as triangles are some pixels wide.
+const WIRE: f32 = 0.6;
 
 /// Into so many parts a triangle's side is cut for the colours inside of it to show.
 const PARTS: usize = 5;
@@ -71,12 +78,13 @@ pub(super) fn picture() -> Result<Vec<u8>> {
         column(optimized(&control, triangles)?, "exact, optimised".to_owned(), &judge)?,
     ];
     let camera = Camera::fit_tightly(reference.mesh.as_triangles(), VIEW, SIZE.0, SIZE.1)?;
+    let close = Camera::orthographic(HEAD, VIEW, HEAD_REACH)?;
     let [_, _, exact, _] = &columns;
     let most = REACH * exact.symmetric;
     let scale = Scale::logarithmic(SPAN * most, most).marking_above(BEYOND);
     let mut panels = Vec::new();
     for (letter, column) in ('a'..).zip(&columns) {
-        panels.push(Panel::new(mesh(column, &camera)?, format!("({letter}) {}", column.words)));
+        panels.push(Panel::new(head(column, &close)?, format!("({letter}) {}", column.words)));
     }
     for (letter, column) in ('e'..).zip(&columns) {
         let caption = format!(
@@ -86,8 +94,8 @@ pub(super) fn picture() -> Result<Vec<u8>> {
         );
         panels.push(Panel::new(heat(column, &scale, &camera)?, caption));
     }
-    let style = GridStyle::default().columns(columns.len()).gap(8).caption(TextStyle::default().size(15.0));
-    let bar = ColourBar::new(scale).title("distance").unit("%").text_size(13.0);
+    let style = GridStyle::default().columns(columns.len()).gap(8).caption(TextStyle::default().size(12.0));
+    let bar = ColourBar::new(scale).title("distance").unit("%").text_size(11.5);
     Ok(bar.beside(&grid(&panels, &style)?, style.background)?.encode_png()?)
 }
 
@@ -99,10 +107,9 @@ fn column(mesh: Mesh, words: String, judge: &Judge<'_>) -> Result<Column> {
     Ok(Column { mesh, words, symmetric, distances, diced })
 }
 
-fn mesh(column: &Column, camera: &Camera) -> Result<Image> {
-    let normals = LimitTable::new(&Loop).normals(&column.mesh)?;
-    let style = Style::default().wireframe(true).shading(Shading::Flat);
-    Ok(render(column.mesh.as_triangles(), Some(&normals), None, camera, &style, SIZE.0, SIZE.1)?)
+fn head(column: &Column, camera: &Camera) -> Result<Image> {
+    let style = Style::default().wireframe(true).wire_width(WIRE).shading(Shading::Flat);
+    Ok(render(column.mesh.as_triangles(), None, None, camera, &style, HEAD_SIZE.0, HEAD_SIZE.1)?)
 }
 
 fn heat(column: &Column, scale: &Scale, camera: &Camera) -> Result<Image> {
