@@ -6,6 +6,7 @@
 use std::path::Path;
 
 use anyhow::Result;
+use glam::DVec3;
 use limitmesh::Mesh;
 use limitmesh::interpolate::{InterpolateOptions, interpolate};
 use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between};
@@ -13,7 +14,7 @@ use limitmesh::refine::limit_reference;
 use limitmesh::scheme::Loop;
 
 use crate::mesh;
-use crate::thinning::{dot, length, normal, thinned};
+use crate::thinning::{normal, thinned};
 
 /// Closed models whose faces are small against their features.
 const MODELS: [&str; 5] =
@@ -62,16 +63,18 @@ pub(crate) fn through(folder: &Path) -> Result<()> {
 
 /// The root of the mean square angle between a surface's facets and those of another at the nearest points, by area.
 fn normals_apart(surface: &Bvh<'_>, truth: &Bvh<'_>) -> f64 {
+    let corners = |of: &Bvh<'_>, face| of.surface().corners(face).map(DVec3::from_array);
     let (mut sum, mut areas) = (0.0, 0.0);
     for face in 0..surface.surface().triangles.len() {
-        let corners = surface.surface().corners(face);
-        let middle = [0, 1, 2].map(|i| corners.iter().map(|p| p[i]).sum::<f64>() / 3.0);
-        let own = normal(corners);
-        let other = normal(truth.surface().corners(truth.closest(middle).face as usize));
-        let (area, cosine) =
-            (length(own), dot(own, other) / (length(own) * length(other)).max(f64::MIN_POSITIVE));
-        sum += area * cosine.clamp(-1.0, 1.0).acos().powi(2);
-        areas += area;
+        let own = corners(surface, face);
+        let middle = own.iter().sum::<DVec3>() / 3.0;
+        let other = corners(truth, truth.closest(middle.to_array()).face as usize);
+        let angle = normal(own).angle_between(normal(other));
+        let area = normal(own).length();
+        if angle.is_finite() {
+            sum += area * angle * angle;
+            areas += area;
+        }
     }
     (sum / areas).sqrt()
 }

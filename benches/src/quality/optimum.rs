@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use anyhow::Result;
+use glam::DVec3;
 use limitmesh::Mesh;
 use limitmesh::refine::{ExactOptions, exact};
 use limitmesh::scheme::Loop;
@@ -77,29 +78,16 @@ fn root_of_curvature(mesh: &Mesh) -> f64 {
     let mut defects = vec![std::f64::consts::TAU; mesh.vertex_count()];
     let mut areas = vec![0.0; mesh.vertex_count()];
     for (face, triangle) in mesh.triangles().iter().enumerate() {
-        let corners = mesh.as_triangles().corners(face);
+        let corners = mesh.as_triangles().corners(face).map(DVec3::from_array);
         for (i, &vertex) in triangle.iter().enumerate() {
             let [at, next, last] = [0, 1, 2].map(|k| corners[(i + k) % 3]);
-            let (to_next, to_last) = (difference(next, at), difference(last, at));
-            let cross = cross(to_next, to_last);
-            let doubled_area = dot(cross, cross).sqrt();
-            defects[vertex as usize] -= doubled_area.atan2(dot(to_next, to_last));
+            let (to_next, to_last) = (next - at, last - at);
+            let doubled_area = to_next.cross(to_last).length();
+            defects[vertex as usize] -= doubled_area.atan2(to_next.dot(to_last));
             areas[vertex as usize] += doubled_area / 6.0;
         }
     }
     defects.iter().zip(areas).map(|(defect, area): (&f64, f64)| (defect.abs() * area).sqrt()).sum()
-}
-
-fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[cfg(test)]
@@ -111,7 +99,7 @@ mod tests {
         // √K = 1/r, and the area is 4πr².
         let control = super::super::builtin("icosphere").unwrap();
         let mut mesh = limitmesh::refine::limit_reference(&control, &Loop, 3).unwrap();
-        let onto_sphere = |p: &[f64; 3]| p.map(|x| 2.5 * x / dot(*p, *p).sqrt());
+        let onto_sphere = |p: &[f64; 3]| (2.5 * DVec3::from_array(*p).normalize()).to_array();
         let positions = mesh.positions().iter().map(onto_sphere).collect();
         mesh = mesh.with_positions(positions).unwrap();
         let expected = 4.0 * std::f64::consts::PI * 2.5;
