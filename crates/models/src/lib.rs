@@ -6,6 +6,7 @@
 mod animals;
 mod cup;
 mod cusp;
+mod ellipsoid;
 mod head;
 mod parametric;
 mod polyhedra;
@@ -35,7 +36,7 @@ impl Model {
 }
 
 /// All built-in models: those of the paper first, then simple shapes.
-static MODELS: [Model; 16] = [
+static MODELS: [Model; 17] = [
     Model {
         name: "head",
         about: "human head of 142 triangles, open at the neck (as the paper's Figure 7)",
@@ -80,6 +81,11 @@ static MODELS: [Model; 16] = [
         name: "sphere",
         about: "sphere of 360 triangles, 20 slices by 10 stacks, two poles of valence 20 (as in Figure 9)",
         generate: || parametric::sphere().into_soup(),
+    },
+    Model {
+        name: "ellipsoid",
+        about: "ellipsoid of 142 even triangles, closed, with a head's proportions (beside Figure 7's head)",
+        generate: || ellipsoid::ellipsoid().into_soup(),
     },
     Model {
         name: "icosphere",

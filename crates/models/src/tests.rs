@@ -28,7 +28,7 @@ const fn promise(
 }
 
 /// All models in their order, but for the cube of squares.
-const PROMISES: [Promise; 15] = [
+const PROMISES: [Promise; 16] = [
     promise("head", 142, 1, 0, 5.0),
     promise("shoe", 684, 0, 0, 3.0),
     promise("bunny", 900, 0, 0, 5.0),
@@ -38,6 +38,7 @@ const PROMISES: [Promise; 15] = [
     promise("radish", 640, 0, 0, 5.0),
     promise("cusp", 480, 0, 0, 4.0),
     promise("sphere", 360, 0, 0, 15.0),
+    promise("ellipsoid", 142, 0, 0, 30.0),
     promise("icosphere", 320, 0, 0, 50.0),
     promise("torus", 256, 0, 1, 25.0),
     promise("sheet", 288, 1, 0, 30.0),
@@ -226,6 +227,9 @@ fn closed_forms_lie_where_they_should() {
         let out = (x * x + z * z).sqrt() - 0.7;
         assert!((out * out + y * y - 0.09).abs() < 1e-12);
     }
+    for &[x, y, z] in mesh("ellipsoid").positions() {
+        assert!(((x / 0.5).powi(2) + (y / 0.8).powi(2) + (z / 0.6).powi(2) - 1.0).abs() < 1e-12);
+    }
     let valence = |name: &str| {
         let mesh = mesh(name);
         let valences: Vec<u32> =
@@ -235,6 +239,7 @@ fn closed_forms_lie_where_they_should() {
     assert_eq!(valence("sphere"), (5, 20));
     assert_eq!(valence("icosphere"), (5, 6));
     assert_eq!(valence("torus"), (6, 6));
+    assert_eq!(valence("ellipsoid"), (5, 6));
     assert_eq!(valence("tetrahedron"), (3, 3));
     assert_eq!(valence("spike").1, 64);
 }

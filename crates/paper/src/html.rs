@@ -27,9 +27,13 @@ pub(super) fn pictures(pictures: &[Picture], class: &str) -> String {
 /// One picture with its caption.
 pub(super) fn figure(picture: &Picture, class: &str) -> String {
     let (file, alt, caption) = (&picture.file, escape(&picture.alt), escape(&picture.caption));
+    // As wide as page.css takes a page for a phone's.
+    let narrow = picture.narrow.as_ref().map_or_else(String::new, |narrow| {
+        format!("<source media=\"(max-width: 52rem)\" srcset=\"{narrow}\">")
+    });
     format!(
-        "<figure{class}><a href=\"{file}\"><img src=\"{file}\" alt=\"{alt}\" loading=\"lazy\"></a>\
-         <figcaption>{caption}</figcaption></figure>\n"
+        "<figure{class}><a href=\"{file}\"><picture>{narrow}<img src=\"{file}\" alt=\"{alt}\" loading=\"lazy\">\
+         </picture></a><figcaption>{caption}</figcaption></figure>\n"
     )
 }
 

@@ -17,6 +17,7 @@ mod pictures;
 mod plot;
 mod prose;
 mod readings;
+mod room;
 mod settings;
 mod statistics;
 mod study;
@@ -33,8 +34,9 @@ use figures::Picture;
 use figures::view::Shown;
 use folder::Folder;
 use numbers::Results;
-use paper_models::{Casting, HEAD, Player, SHOE, SPHERE, TABLE_1};
+use paper_models::{Casting, ELLIPSOID, HEAD, Player, SHOE, SPHERE, TABLE_1};
 use pictures::Renderer;
+use room::Room;
 use settings::Settings;
 
 pub use matching::{Matched, match_angle, nearest_level};
@@ -137,7 +139,7 @@ pub fn reproduce(request: &Request, host: &dyn Host) -> anyhow::Result<Written> 
 /// All models that take part.
 struct Company {
     table_1: Vec<Player>,
-    /// The head that plays in Figure 7, and the built-in one beside it.
+    /// The head that plays in Figure 7, the built-in one beside it, and the ellipsoid.
     heads: Vec<Player>,
     shoe: Player,
     sphere: Player,
@@ -146,7 +148,8 @@ struct Company {
 impl Company {
     fn gather(casting: &Casting<'_>) -> anyhow::Result<Self> {
         let head = casting.play(&HEAD)?;
-        let heads = if head.origin.file { vec![head, casting.builtin(&HEAD)?] } else { vec![head] };
+        let mut heads = if head.origin.file { vec![head, casting.builtin(&HEAD)?] } else { vec![head] };
+        heads.push(casting.builtin(&ELLIPSOID)?);
         Ok(Self {
             table_1: TABLE_1.iter().map(|part| casting.play(part)).collect::<Result<_, _>>()?,
             heads,
@@ -191,9 +194,11 @@ fn write(results: &Results, portraits: &[Picture], folder: &mut Folder<'_>) -> a
     let json = serde_json::to_string_pretty(results)? + "\n";
     folder.write("reproduction.json", json.as_bytes())?;
     let rows: Vec<_> = results.rows().cloned().collect();
-    folder.write("table1.svg", plot::table_1(&rows)?.as_bytes())?;
     let drift: Vec<_> = results.table_1.iter().flat_map(|study| study.drift.clone()).collect();
     let angle = results.settings.extra_angle_degrees;
-    folder.write("drift.svg", plot::drift(&drift, angle)?.as_bytes())?;
+    for room in Room::ALL {
+        folder.write(&room.file("table1"), plot::table_1(&rows, room)?.as_bytes())?;
+        folder.write(&room.file("drift"), plot::drift(&drift, angle, room)?.as_bytes())?;
+    }
     folder.write("index.html", page::page(results, portraits).as_bytes())
 }

@@ -128,8 +128,8 @@ fn table_1(results: &Results) -> String {
          that surface, and the places with the greatest distance are divided first, until there are as many faces as \
          the paper's method has."
     );
-    let chart = Picture::new(
-        "table1.svg",
+    let chart = Picture::drawn(
+        "table1",
         "Distances of Table 1 as dots on a logarithmic scale",
         "The same numbers: a line for each setting, a dot for each method.",
     );
@@ -245,8 +245,8 @@ fn drift(results: &Results) -> String {
         "The paper's method at {angle}° after more and more steps, beside uniform refinement with limit vertices after \
          as many levels. (Uniform refinement is not shown at the level that stands for the limit surface itself.)"
     );
-    let picture = Picture::new(
-        "drift.svg",
+    let picture = Picture::drawn(
+        "drift",
         "Distance against the number of steps, a small chart for each model",
         "All charts have the same scales. The numbers are in drift.csv.",
     );

@@ -94,6 +94,9 @@ pub(super) const HEAD: Part = Part {
     ],
 };
 
+/// Beside Figure 7's head: its proportions without its features. No file plays it.
+pub(super) const ELLIPSOID: Part = Part { name: "ellipsoid", files: &[] };
+
 /// Figure 8.
 pub(super) const SHOE: Part =
     Part { name: "shoe", files: &[file("shoe", "shoe"), file("boot_684", "a boot of 684 faces")] };

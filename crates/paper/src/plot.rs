@@ -5,6 +5,7 @@ use limitmesh_render::svg::{Drawing, Pen};
 use limitmesh_render::{Align, RenderError};
 
 use super::palette::{AMRESH, EXACT, GRID, PALE, PAPER, UNIFORM, dot, plain, small, thin};
+use super::room::{Legend, Room, lines, paragraph, width_of};
 use super::study::{DriftPoint, Row};
 
 /// A logarithmic axis: from values to pixels, over whole decades or halves of them.
@@ -46,49 +47,54 @@ fn tick_label(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-fn legend(drawing: &mut Drawing, mut x: f64, y: f64, entries: &[([u8; 3], &str)]) {
-    for (colour, label) in entries {
-        dot(drawing, [x, y - 4.5], 5.0, *colour);
-        drawing.label([x + 10.0, y], label, &plain());
-        // Viewers' fonts differ: this is the mean width of a letter in the widest of the usual ones.
-        x += 34.0 + 7.4 * label.chars().count() as f64;
-    }
-}
+/// What the horizontal axis of Table 1's chart and the vertical ones of the drift show.
+const DISTANCE: &str = "symmetric Hausdorff distance, % of the control mesh's diagonal (logarithmic)";
 
 /// Table 1 as a dot chart: a line for each setting, a dot for each method.
-pub(super) fn table_1(rows: &[Row]) -> Result<String, RenderError> {
+pub(super) fn table_1(rows: &[Row], room: Room) -> Result<String, RenderError> {
     let step = 19.0;
     let gap = 12.0;
-    let (left, right, top) = (150.0, 740.0, 62.0);
-    let models = rows.chunk_by(|a, b| a.model == b.model).count();
-    let bottom = top + rows.len() as f64 * step + models as f64 * gap;
-    let mut drawing = Drawing::new(760.0, bottom + 44.0)?;
-    let values =
-        rows.iter().flat_map(|r| [&r.paper, &r.amresh, &r.uniform_limit, &r.exact]).map(|m| m.shd_percent);
-    let axis = LogAxis::new(values, left, right);
-    for tick in axis.ticks() {
-        let x = axis.at(tick);
-        drawing.line([x, top - 8.0], [x, bottom], &thin(GRID));
-        drawing.label([x, bottom + 16.0], &tick_label(tick), &small().align(Align::Centre));
-    }
-    let caption =
-        "symmetric Hausdorff distance, % of the control mesh's diagonal (logarithmic; left is better)";
-    drawing.label([0.5 * (left + right), bottom + 36.0], caption, &plain().size(12.0).align(Align::Centre));
+    let (width, left) = room.pick((760.0, 150.0), (Room::NARROW, 56.0));
+    let right = width - 20.0;
+    // Beside the first of its lines a model's name has no room on a phone: it gets a line of its own.
+    let name = room.pick(0.0, step);
     let entries = [
         (PAPER, "limit normal (paper)"),
         (AMRESH, "Amresh"),
         (UNIFORM, "uniform, limit vertices (nearest count)"),
         (EXACT, "exact"),
     ];
-    legend(&mut drawing, left, 24.0, &entries);
+    let legend = Legend::new(&entries, width - 20.0)?;
+    let words = plain().size(12.0).align(Align::Centre);
+    let caption = lines(&format!("{DISTANCE}; left is better"), width - 20.0, &words)?;
+    let top = 26.0 + legend.height();
+    let models = rows.chunk_by(|a, b| a.model == b.model).count() as f64;
+    let bottom = top + rows.len() as f64 * step + models * (gap + name);
+    let mut drawing = Drawing::new(width, bottom + 30.0 + 17.0 * caption.len() as f64)?;
+    let values =
+        rows.iter().flat_map(|r| [&r.paper, &r.amresh, &r.uniform_limit, &r.exact]).map(|m| m.shd_percent);
+    let axis = LogAxis::new(values, left, right);
+    let mut free = 0.0;
+    for tick in axis.ticks() {
+        let (x, label) = (axis.at(tick), tick_label(tick));
+        drawing.line([x, top - 8.0], [x, bottom], &thin(GRID));
+        let half = 0.5 * width_of(&label, &small())?;
+        if x - half > free && x + half < width {
+            drawing.label([x, bottom + 16.0], &label, &small().align(Align::Centre));
+            free = x + half + 3.0;
+        }
+    }
+    paragraph(&mut drawing, [0.5 * width, bottom + 36.0], &caption, &words);
+    legend.draw(&mut drawing, [10.0, 8.0]);
     let mut y = top;
     for model in rows.chunk_by(|a, b| a.model == b.model) {
         y += 0.5 * gap;
-        for (i, row) in model.iter().enumerate() {
+        if let Some(row) = model.first() {
+            drawing.label([10.0, y + 0.5 * step + 4.5], row.model, &plain().bold(true));
+        }
+        y += name;
+        for row in model {
             let middle = y + 0.5 * step;
-            if i == 0 {
-                drawing.label([10.0, middle + 4.5], row.model, &plain().bold(true));
-            }
             let label = format!("{}°", row.angle_degrees);
             drawing.label([left - 14.0, middle + 4.5], &label, &plain().colour(PALE).align(Align::Right));
             dots(&mut drawing, row, &axis, middle);
@@ -109,29 +115,28 @@ fn dots(drawing: &mut Drawing, row: &Row, axis: &LogAxis, y: f64) {
 }
 
 /// Distance against steps, a small chart for each model, all on the same scales.
-pub(super) fn drift(points: &[DriftPoint], angle_degrees: f64) -> Result<String, RenderError> {
+pub(super) fn drift(points: &[DriftPoint], angle_degrees: f64, room: Room) -> Result<String, RenderError> {
     let models: Vec<&[DriftPoint]> = points.chunk_by(|a, b| a.model == b.model).collect();
-    let columns = models.len().clamp(1, 3);
-    let (cell, height, top, left) = (236.0, 190.0, 48.0, 46.0);
+    let columns = models.len().clamp(1, room.pick(3, 2));
+    let (cell, height, left) = (room.pick(236.0, 167.0), 190.0, 46.0);
     let rows = models.len().div_ceil(columns);
     let width = left + columns as f64 * cell;
-    let mut drawing = Drawing::new(width, top + rows as f64 * height + 28.0)?;
-    let label = format!("limit normal, {angle_degrees}° (paper)");
-    legend(
-        &mut drawing,
-        left + 6.0,
-        24.0,
-        &[(PAPER, &label), (UNIFORM, "uniform, limit vertices, as many levels")],
-    );
+    let paper = format!("limit normal, {angle_degrees}° (paper)");
+    let entries = [(PAPER, paper.as_str()), (UNIFORM, "uniform, limit vertices, as many levels")];
+    let legend = Legend::new(&entries, width - 20.0)?;
+    let words = plain().size(12.0).align(Align::Centre);
+    let caption = lines(&format!("steps; vertically the {DISTANCE}"), width - 20.0, &words)?;
+    let top = 24.0 + legend.height();
+    let bottom = top + rows as f64 * height;
+    let mut drawing = Drawing::new(width, bottom + 12.0 + 17.0 * caption.len() as f64)?;
+    legend.draw(&mut drawing, [10.0, 8.0]);
     for (i, model) in models.iter().enumerate() {
         let (column, row) = (i % columns, i / columns);
         let x = left + column as f64 * cell;
         let y = top + row as f64 * height;
         panel(&mut drawing, model, points, [x, y, cell - 18.0, height - 44.0], column == 0);
     }
-    let centre = [left + 0.5 * (width - left), top + rows as f64 * height + 14.0];
-    let caption = "steps; vertically the symmetric Hausdorff distance in % of the control mesh's diagonal (logarithmic)";
-    drawing.label(centre, caption, &plain().size(12.0).align(Align::Centre));
+    paragraph(&mut drawing, [0.5 * width, bottom + 14.0], &caption, &words);
     drawing.finish()
 }
 

@@ -16,11 +16,14 @@ use crate::folder::Folder;
 use crate::methods;
 use crate::palette::{AMRESH, INK, PALE, PAPER, plain, small, tinted};
 use crate::paper_models::Player;
+use crate::room::Room;
 use crate::vector::{Vector, cross, dot, sub, unit};
 
 /// The steps and angle whose cases are counted and drawn.
 const STEPS: usize = 3;
 const ANGLE_DEGREES: f64 = 10.0;
+
+const FILE: &str = "figure5";
 
 #[derive(Debug, Serialize)]
 pub(crate) struct ClosureFigure {
@@ -80,14 +83,15 @@ pub(crate) fn closure(players: &[&Player], folder: &mut Folder<'_>) -> anyhow::R
         }
         search(player, &mut best)?;
     }
-    let file = "figure5.svg";
-    folder.write(file, picture(&best)?.as_bytes())?;
+    for room in Room::ALL {
+        folder.write(&room.file(FILE), picture(&best, room)?.as_bytes())?;
+    }
     Ok(ClosureFigure {
         angle_degrees: ANGLE_DEGREES,
         counts,
         drawn: best.map(|example| example.map(|e| e.place)),
-        picture: Picture::new(
-            file,
+        picture: Picture::drawn(
+            FILE,
             "Four faces with none, one, two and three divided neighbours, and the triangles that cover them",
             "Indivisible faces (blue) beside divisible ones (orange) after a step; dashed: the face before it",
         ),
@@ -191,40 +195,44 @@ fn shape([a, b, c]: [Vector; 3]) -> f64 {
     if squares > 0.0 { 2.0 * 3.0_f64.sqrt() * dot(normal, normal).sqrt() / squares } else { 0.0 }
 }
 
-const PANEL: f64 = 240.0;
 const CAPTIONS: [&str; 4] = ["none divisible: left", "one: in two", "two: in three", "three: in four"];
 
-fn picture(examples: &[Option<Example>; 4]) -> Result<String, RenderError> {
-    let mut drawing = Drawing::new(4.0 * PANEL, PANEL + 54.0)?;
+fn picture(examples: &[Option<Example>; 4], room: Room) -> Result<String, RenderError> {
+    let (columns, panel) = room.pick((4, 240.0), (2, 0.5 * Room::NARROW));
+    let height = panel + 54.0;
+    let rows = examples.len() / columns;
+    let mut drawing = Drawing::new(columns as f64 * panel, rows as f64 * height)?;
     for (case, example) in examples.iter().enumerate() {
-        let x = case as f64 * PANEL;
-        let centre = x + 0.5 * PANEL;
+        let corner = [(case % columns) as f64 * panel, (case / columns) as f64 * height];
+        let centre = corner[0] + 0.5 * panel;
         let words = format!("({}) {}", ["a", "b", "c", "d"][case], CAPTIONS[case]);
-        drawing.label([centre, PANEL + 18.0], &words, &plain().bold(true).align(Align::Centre));
+        let below = corner[1] + panel;
+        drawing.label([centre, below + 18.0], &words, &plain().bold(true).align(Align::Centre));
         let place = match example {
             Some(example) => {
-                panel(&mut drawing, example, x);
+                draw(&mut drawing, example, corner, panel);
                 let Place { model, step, face } = example.place;
                 format!("{model}, step {step}, face {face}")
             }
             None => "no such face in these models".to_owned(),
         };
-        drawing.label([centre, PANEL + 38.0], &place, &small().align(Align::Centre));
+        drawing.label([centre, below + 38.0], &place, &small().align(Align::Centre));
     }
     drawing.finish()
 }
 
-fn panel(drawing: &mut Drawing, example: &Example, x: f64) {
+/// An example in a square.
+fn draw(drawing: &mut Drawing, example: &Example, corner: [f64; 2], side: f64) {
     let points = || example.after.iter().flat_map(|(triangle, _)| triangle).chain(&example.before);
     let extent = |axis: usize| {
         points().fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p[axis]), high.max(p[axis])))
     };
     let ((left, right), (top, bottom)) = (extent(0), extent(1));
-    let scale = (PANEL - 28.0) / (right - left).max(bottom - top).max(f64::MIN_POSITIVE);
+    let scale = (side - 28.0) / (right - left).max(bottom - top).max(f64::MIN_POSITIVE);
     let place = |p: [f64; 2]| {
         [
-            x + 0.5 * PANEL + scale * (p[0] - 0.5 * (left + right)),
-            0.5 * PANEL + scale * (p[1] - 0.5 * (top + bottom)),
+            corner[0] + 0.5 * side + scale * (p[0] - 0.5 * (left + right)),
+            corner[1] + 0.5 * side + scale * (p[1] - 0.5 * (top + bottom)),
         ]
     };
     for (triangle, kind) in &example.after {

@@ -17,11 +17,15 @@ use crate::folder::Folder;
 use crate::methods;
 use crate::palette::{self, AMRESH, GRID, INK, PALE, PAPER, plain, thin, tinted};
 use crate::paper_models::Player;
+use crate::room::Room;
 use crate::vector::{Vector, add_scaled, angle_degrees, cross, dot, sub, tangents, unit};
 
 /// The cone's angle α, in degrees.
 const ALPHA: f64 = 10.0;
 const STEPS: usize = 2;
+
+const FILE: &str = "figure2";
+
 const VALENCES: std::ops::RangeInclusive<u32> = 5..=7;
 
 #[derive(Debug, Serialize)]
@@ -81,14 +85,15 @@ pub(crate) fn cone(player: &Player, folder: &mut Folder<'_>) -> anyhow::Result<O
             }
         })
         .collect();
-    let file = "figure2.svg";
-    folder.write(file, picture(&stages, normal)?.as_bytes())?;
-    let picture = Picture::new(
-        file,
+    for room in Room::ALL {
+        folder.write(&room.file(FILE), picture(&stages, normal, room)?.as_bytes())?;
+    }
+    let picture = Picture::drawn(
+        FILE,
         "Face normals around a vertex entering the cone around its limit normal over two steps",
         format!(
-            "Above: the faces around the vertex (each ring drawn at the same size), the cone of {ALPHA}° around \
-                 the limit normal (black) and the face normals. Below: the same looking down the limit normal."
+            "The faces around the vertex (each ring drawn at the same size), the cone of {ALPHA}° around the limit \
+             normal (black) and the face normals; and the same looking down the limit normal."
         ),
     );
     let (model, vertex) = (player.name, vertex.0);
@@ -135,21 +140,34 @@ fn face_normal([a, b, c]: [Vector; 3]) -> Vector {
 const PANEL: f64 = 300.0;
 const SPACE_HEIGHT: f64 = 270.0;
 
-fn picture(stages: &[Stage], normal: Vector) -> Result<String, RenderError> {
-    let width = PANEL * stages.len() as f64;
-    let height = SPACE_HEIGHT + PANEL + 20.0;
+/// Height of a stage on a phone, where both of its pictures stand side by side.
+const ROW: f64 = 236.0;
+
+fn picture(stages: &[Stage], normal: Vector, room: Room) -> Result<String, RenderError> {
+    let count = stages.len() as f64;
+    let (width, height) =
+        room.pick((PANEL * count, SPACE_HEIGHT + PANEL + 20.0), (Room::NARROW, ROW * count));
+    let scale = room.pick(1.0, 0.5 * Room::NARROW / PANEL);
     let mut drawing = Drawing::new(width, height)?;
     let widest = stages.iter().map(Stage::greatest).fold(ALPHA, f64::max);
-    for (column, stage) in stages.iter().enumerate() {
-        let x = column as f64 * PANEL;
+    for (index, stage) in stages.iter().enumerate() {
+        let [x, y] = room.pick([PANEL * index as f64, 0.0], [0.0, ROW * index as f64]);
         let title = match stage.step {
             0 => "(a) control mesh".to_owned(),
             1 => "(b) after one step".to_owned(),
             step => format!("(c) after {step} steps"),
         };
-        drawing.label([x + 0.5 * PANEL, 20.0], &title, &plain().bold(true).align(Align::Centre));
-        in_space(&mut drawing, stage, normal, x);
-        from_above(&mut drawing, stage, normal, widest, [x + 0.5 * PANEL, SPACE_HEIGHT + 0.5 * PANEL]);
+        let middle = x + 0.5 * room.pick(PANEL, Room::NARROW);
+        drawing.label([middle, y + 20.0], &title, &plain().bold(true).align(Align::Centre));
+        let [space, above] = room.pick(
+            [[middle, 178.0], [middle, SPACE_HEIGHT + 0.5 * PANEL]],
+            [[0.25 * width, y + 140.0], [0.75 * width, y + 120.0]],
+        );
+        in_space(&mut drawing, stage, normal, space, scale);
+        from_above(&mut drawing, stage, normal, widest, above, scale);
+        let greatest = format!("greatest {:.1}°, cone {ALPHA}°", stage.greatest());
+        let below = [above[0], above[1] + 0.5 * PANEL * scale - 4.0];
+        drawing.label(below, &greatest, &plain().align(Align::Centre));
     }
     drawing.finish()
 }
@@ -159,7 +177,7 @@ fn colour(angle: f64) -> [u8; 3] {
 }
 
 /// The ring, the cone and the normals, seen from the side and a little from above.
-fn in_space(drawing: &mut Drawing, stage: &Stage, normal: Vector, x: f64) {
+fn in_space(drawing: &mut Drawing, stage: &Stage, normal: Vector, origin: [f64; 2], scale: f64) {
     let [u, v] = tangents(normal);
     // Heights are drawn in full; depth is foreshortened as from 25° above the tangent plane.
     let (rise, depth) = (25.0_f64.to_radians().cos(), 25.0_f64.to_radians().sin());
@@ -167,12 +185,11 @@ fn in_space(drawing: &mut Drawing, stage: &Stage, normal: Vector, x: f64) {
         let d = sub(p, stage.centre);
         dot(d, d).sqrt()
     });
-    let scale = 105.0 / size.fold(f64::MIN_POSITIVE, f64::max);
-    let (origin, arrow) = ([x + 0.5 * PANEL, 178.0], 120.0);
+    let (ring, arrow) = (105.0 * scale / size.fold(f64::MIN_POSITIVE, f64::max), 120.0 * scale);
     let flat = |d: Vector| [origin[0] + dot(d, u), origin[1] - rise * dot(d, normal) + depth * dot(d, v)];
     let mut faces: Vec<(f64, [[f64; 2]; 3], f64)> = Vec::new();
     for (face, &angle) in stage.faces.iter().zip(&stage.angles_degrees) {
-        let corners = face.map(|p| sub(p, stage.centre).map(|c| scale * c));
+        let corners = face.map(|p| sub(p, stage.centre).map(|c| ring * c));
         let far = corners.iter().map(|&c| dot(c, v)).sum::<f64>();
         faces.push((far, corners.map(flat), angle));
     }
@@ -201,9 +218,16 @@ fn in_space(drawing: &mut Drawing, stage: &Stage, normal: Vector, x: f64) {
 }
 
 /// The normals by angle and direction around the limit normal.
-fn from_above(drawing: &mut Drawing, stage: &Stage, normal: Vector, widest: f64, centre: [f64; 2]) {
+fn from_above(
+    drawing: &mut Drawing,
+    stage: &Stage,
+    normal: Vector,
+    widest: f64,
+    centre: [f64; 2],
+    scale: f64,
+) {
     let [u, v] = tangents(normal);
-    let scale = 118.0 / widest;
+    let scale = 118.0 * scale / widest;
     drawing.circle(centre, scale * ALPHA, &thin(PALE).fill(GRID));
     let mut ring = 2.0 * ALPHA;
     while ring <= widest {
@@ -221,6 +245,4 @@ fn from_above(drawing: &mut Drawing, stage: &Stage, normal: Vector, widest: f64,
         palette::dot(drawing, at, 5.0, colour(angle));
     }
     drawing.circle(centre, 4.0, &Pen::area(INK));
-    let greatest = format!("greatest {:.1}°, cone {ALPHA}°", stage.greatest());
-    drawing.label([centre[0], centre[1] + 0.5 * PANEL - 4.0], &greatest, &plain().align(Align::Centre));
 }

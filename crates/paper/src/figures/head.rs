@@ -1,4 +1,5 @@
-//! Figure 7: the head of 142 faces, three uniform steps beside three steps of the paper's method at π/36.
+//! Figure 7: the head of 142 faces, three uniform steps beside three steps of the paper's method at π/36; and the same for an
+//! ellipsoid of as many faces, since how many are divided depends on how evenly a mesh bends.
 
 use limitmesh::refine::SeamRule;
 use serde::Serialize;
@@ -20,9 +21,10 @@ pub(crate) const PAPER_UNIFORM: usize = 9088;
 /// The paper's count of its method's faces.
 pub(crate) const PAPER_ADAPTIVE: usize = 3954;
 
-/// One head.
+/// One head, or the ellipsoid.
 #[derive(Debug, Serialize)]
 pub(crate) struct Head {
+    pub(crate) name: &'static str,
     pub(crate) origin: Origin,
     pub(crate) control_faces: usize,
     pub(crate) uniform_faces: usize,
@@ -33,6 +35,13 @@ pub(crate) struct Head {
     pub(crate) matching_angle_degrees: f64,
     pub(crate) matching_faces: usize,
     pub(crate) pictures: Vec<Picture>,
+}
+
+impl Head {
+    /// How far its adaptive count is from the paper's, in per cent.
+    pub(crate) fn off_percent(&self) -> f64 {
+        100.0 * (self.adaptive_faces as f64 / PAPER_ADAPTIVE as f64 - 1.0)
+    }
 }
 
 /// Refines a head both ways and draws it.
@@ -48,18 +57,20 @@ pub(crate) fn head(player: &Player, renderer: &Renderer, folder: &mut Folder<'_>
     let matching = match_angle(PAPER_ADAPTIVE, ANGLE_DEGREES, |angle| refine(angle, SeamRule::All))?;
     let camera = renderer.camera(control, player.view())?;
     let place = if player.origin.file { "file" } else { "builtin" };
+    let name = player.name;
     let mut pictures = Vec::new();
     for (mesh, step, words) in [
         (control, "control", "control mesh"),
         (&uniform, "uniform", "uniform, 3 steps"),
         (&adaptive, "adaptive", "limit normal, π/36, 3 steps"),
     ] {
-        let file = format!("figure7-{place}-{step}.png");
+        let file = format!("figure7-{name}-{place}-{step}.png");
         folder.write(&file, &renderer.draw(mesh, &camera)?)?;
         let caption = format!("{words}: {} faces", thousands(mesh.face_count()));
-        pictures.push(Picture::new(file, format!("Head, {caption}"), caption));
+        pictures.push(Picture::new(file, format!("{name}, {caption}"), caption));
     }
     Ok(Head {
+        name,
         origin: player.origin.clone(),
         control_faces: control.face_count(),
         uniform_faces: uniform.face_count(),
