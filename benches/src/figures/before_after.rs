@@ -31,7 +31,8 @@ const TOLERANCE: f64 = 0.001;
 const PART_SIZE: (u32, u32) = (300, 300);
 const MODEL_SIZE: (u32, u32) = (220, 300);
 
-/// The edges of what comes out are paler: it is its shading that is to be seen.
+/// The edges of what comes out are thinner and paler: it is its shading that is to be seen.
+const WIRE: f32 = 0.6;
 const PALE: [u8; 3] = [104, 124, 152];
 
 /// Where the two are looked at from.
@@ -83,6 +84,6 @@ fn part() -> Result<Mesh> {
 /// The refined mesh with the normals of each side at sharp edges, so that these look sharp.
 fn by_sides(refined: &Exact, camera: &Camera, size: (u32, u32)) -> Result<Image> {
     let surface = refined.split_surface();
-    let style = Style::default().wireframe(true).wire_colour(PALE);
+    let style = Style::default().wireframe(true).wire_width(WIRE).wire_colour(PALE);
     Ok(render(surface.as_triangles(), Some(&surface.normals), None, camera, &style, size.0, size.1)?)
 }
