@@ -28,6 +28,40 @@ pub fn holds(format: Format, channel: &Channel) -> bool {
             }
             _ => false,
         },
-        Format::Ply | Format::Stl | Format::Off | Format::Gltf | Format::Glb => false,
+        Format::Ply => match channel.semantic {
+            Semantic::TextureCoordinates => channel.domain != Domain::Face,
+            Semantic::Label => channel.labels.is_empty(),
+            _ => true,
+        },
+        Format::Stl | Format::Off | Format::Gltf | Format::Glb => false,
     }
+}
+
+/// By vertex, the number of its value, of several corners the first's; and how many vertices have several.
+pub(crate) fn by_vertex(channel: &Channel, vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, usize) {
+    const NONE: u32 = u32::MAX;
+    if channel.domain == Domain::Vertex {
+        return (channel.indices.clone(), 0);
+    }
+    let (mut values, mut is_torn) = (vec![NONE; vertices], vec![false; vertices]);
+    for (corner, &vertex) in triangles.as_flattened().iter().enumerate() {
+        let element = if channel.domain == Domain::Face { corner / 3 } else { corner };
+        let (index, first) = (channel.indices[element], &mut values[vertex as usize]);
+        is_torn[vertex as usize] |= *first != NONE && *first != index;
+        if *first == NONE {
+            *first = index;
+        }
+    }
+    // Vertices in no triangle have the first value there is.
+    values.iter_mut().filter(|index| **index == NONE).for_each(|index| *index = 0);
+    (values, is_torn.into_iter().filter(|&is_torn| is_torn).count())
+}
+
+/// How many vertices have several values of a channel of which a format holds one: these get the first of their corners'.
+pub fn values_lost(format: Format, channel: &Channel, triangles: &[[u32; 3]], vertices: usize) -> usize {
+    let is_by_corner = channel.semantic == Semantic::TextureCoordinates;
+    if channel.domain != Domain::Corner || is_by_corner || !holds(format, channel) {
+        return 0;
+    }
+    by_vertex(channel, vertices, triangles).1
 }

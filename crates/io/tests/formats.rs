@@ -372,17 +372,93 @@ fn texture_coordinates_that_are_not_there_are_told() {
     }
 }
 
+/// Colours, texture coordinates and other numbers, as other programs write them; read, written in both forms, and read again.
+#[test]
+fn ply_files_hold_channels() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        property float s\nproperty float t\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
+        property uchar alpha\nproperty int joint\nproperty double heat\nelement face 2\n\
+        property list uchar int vertex_indices\nproperty int texnumber\nproperty list uchar float texcoord\nend_header\n\
+        0 0 0 0 0 255 0 0 255 7 0.5\n1 0 0 1 0 0 255 0 128 -3 1.5\n1 1 0 1 1 0 0 255 255 7 2.5\n0 1 0 0 1 51 51 51 0 7 0.1\n\
+        3 0 1 2 0 6 0 0 1 0 1 1\n3 0 2 3 1 6 0.5 0.5 0.25 0.25 0 1\n";
+    let soup = read_bytes(text.as_bytes(), Format::Ply).unwrap();
+    assert!(soup.left_out.is_empty(), "{:?}", soup.left_out);
+    let find = |soup: &PolygonSoup, name: &str| -> Channel {
+        soup.channels.iter().find(|channel| channel.name == name).unwrap_or_else(|| panic!("{name}")).clone()
+    };
+    let values = |channel: &Channel| -> Vec<f64> {
+        (0..channel.indices.len()).flat_map(|element| channel.value(element).to_vec()).collect()
+    };
+    let check = |soup: &PolygonSoup, expects_places: bool| {
+        let colours = find(soup, "red,green,blue,alpha");
+        let expected = [
+            [1.0, 0.0, 0.0, 1.0],
+            [0.0, 1.0, 0.0, 128.0 / 255.0],
+            [0.0, 0.0, 1.0, 1.0],
+            [0.2, 0.2, 0.2, 0.0],
+        ];
+        assert_eq!(values(&colours), expected.concat());
+        assert_eq!(values(&find(soup, "joint")), [7.0, -3.0, 7.0, 7.0]);
+        assert_eq!(values(&find(soup, "heat")), [0.5, 1.5, 2.5, 0.1]);
+        assert_eq!(values(&find(soup, "texnumber")), [0.0, 1.0]);
+        let corners = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.5, 0.5, 0.25, 0.25, 0.0, 1.0];
+        assert_eq!(values(&find(soup, "texcoord")), corners);
+        if expects_places {
+            assert_eq!(values(&find(soup, "s,t")), [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0]);
+        }
+    };
+    check(&soup, true);
+    let triangles = [[0, 1, 2], [0, 2, 3]];
+    let surface = Triangles { positions: &soup.positions, triangles: &triangles };
+    for ascii in [true, false] {
+        let mut bytes = Vec::new();
+        let output = Output::new(surface).channels(&soup.channels);
+        write_to(&mut bytes, Format::Ply, &output, &WriteOptions::default().ascii(ascii)).unwrap();
+        let again = read_bytes(&bytes, Format::Ply).unwrap();
+        assert!(again.left_out.is_empty(), "{:?}", again.left_out);
+        check(&again, true);
+        let header = String::from_utf8_lossy(&bytes);
+        for line in [
+            "property float s",
+            "property uchar red",
+            "property uchar alpha",
+            "property int joint",
+            "property double heat",
+        ] {
+            assert!(header.contains(&format!("{line}\n")), "{line}");
+        }
+    }
+}
+
+/// Lists that do not fit, and numbers that are none: the shape is read, and that is told.
+#[test]
+fn ply_channels_that_do_not_fit_are_told() {
+    let ply = |heat: &str, list: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+             property float heat\nelement face 1\nproperty list uchar int vertex_indices\n\
+             property list uchar float texcoord\nend_header\n0 0 0 {heat}\n1 0 0 1\n0 1 0 1\n3 0 1 2 {list}\n"
+        )
+    };
+    let told = |heat: &str, list: &str| left_out(ply(heat, list).as_bytes(), Format::Ply);
+    assert!(told("1", "6 0 0 1 0 1 1").is_empty());
+    assert_eq!(told("nan", "6 0 0 1 0 1 1"), ["vertex properties heat (not all finite)"]);
+    assert_eq!(told("1", "4 0 0 1 0"), ["face properties texcoord (not two numbers for each corner)"]);
+    assert_eq!(told("1", "0"), ["face properties texcoord (not two numbers for each corner)"]);
+}
+
 #[test]
 fn what_a_ply_file_held_and_a_soup_cannot_is_named() {
     let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
         property float nx\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\n\
         property int flags\nelement edge 1\nproperty int a\nelement note 0\nproperty int b\nend_header\n\
         0 0 0 1 9\n1 0 0 1 9\n0 1 0 1 9\n3 0 1 2 7\n5\n";
-    let named = ["vertex properties nx, red", "face properties flags", "element edge"];
+    // Of normals one number says nothing; red and flags are carried.
+    let named = ["vertex properties nx", "element edge"];
     assert_eq!(left_out(ply.as_bytes(), Format::Ply), named);
     assert_eq!(left_out(format!("{ply} \n\n").as_bytes(), Format::Ply), named);
     let more = left_out(format!("{ply}\n4 5\n").as_bytes(), Format::Ply);
-    assert_eq!(more[3..], ["4 bytes after the last element"]);
+    assert_eq!(more[2..], ["4 bytes after the last element"]);
     let surface =
         Triangles { positions: &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], triangles: &[[0, 1, 2]] };
     let normals = [[0.0, 0.0, 1.0]; 3];

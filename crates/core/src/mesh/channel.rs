@@ -79,6 +79,21 @@ pub enum SeamRule {
     Boundaries,
 }
 
+/// How files hold the numbers of a channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Storage {
+    /// In double precision, or as digits.
+    #[default]
+    Double,
+    /// In single precision.
+    Single,
+    /// As bytes, 255 for 1.
+    Byte,
+    /// As whole numbers.
+    Integer,
+}
+
 /// Values that a mesh carries.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -97,6 +112,8 @@ pub struct Channel {
     pub indices: Vec<u32>,
     /// How values between those of the control mesh come about.
     pub interpolation: Interpolation,
+    /// How its file holds the numbers.
+    pub storage: Storage,
     /// Where the values are [`Semantic::Label`], what each number stands for; empty where they stand for themselves.
     pub labels: Vec<String>,
 }
@@ -181,6 +198,7 @@ impl Channel {
             values: Vec::new(),
             indices: Vec::new(),
             interpolation: semantic.interpolation(),
+            storage: Storage::default(),
             labels: Vec::new(),
         }
     }
@@ -189,6 +207,11 @@ impl Channel {
     pub fn with(mut self, values: Vec<f64>, indices: Vec<u32>) -> Self {
         (self.values, self.indices) = (values, indices);
         self
+    }
+
+    /// The same, held in another way by files.
+    pub fn stored(self, storage: Storage) -> Self {
+        Self { storage, ..self }
     }
 
     /// The same, interpolated in another way.

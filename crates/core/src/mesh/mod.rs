@@ -20,7 +20,7 @@ mod topology;
 pub(crate) use crate::geometry::NONE;
 pub use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule};
 pub use build::{BuildOptions, Weld};
-pub use channel::{Channel, ChannelError, Domain, Interpolation, SeamRule, Semantic, Trace};
+pub use channel::{Channel, ChannelError, Domain, Interpolation, SeamRule, Semantic, Storage, Trace};
 pub use concave::ConcaveCorners;
 pub use diagnosis::{Diagnosis, Finding};
 pub use face_parts::FaceParts;

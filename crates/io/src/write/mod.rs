@@ -4,6 +4,7 @@ mod numbers;
 mod obj;
 mod off;
 mod ply;
+mod ply_columns;
 mod property;
 mod stl;
 mod whole;

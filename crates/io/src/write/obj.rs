@@ -78,7 +78,8 @@ fn vertices(out: &mut Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
         .channels
         .iter()
         .find(|channel| channel.semantic == Semantic::Colour && crate::holds(crate::Format::Obj, channel));
-    let colours = colours.map(|channel| (channel, of_vertices(channel, output)));
+    let (count, triangles) = (output.surface.positions.len(), output.surface.triangles);
+    let colours = colours.map(|channel| (channel, channels::by_vertex(channel, count, triangles).0));
     for (vertex, position) in output.surface.positions.iter().enumerate() {
         out.bytes(b"v");
         position.iter().for_each(|&x| out.number(x));
@@ -87,26 +88,13 @@ fn vertices(out: &mut Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
             colours[vertex]
                 .iter()
                 .for_each(|&c| out.number((f64::from(c) / 255.0 * 1000.0).round() / 1000.0));
-        } else if let Some((channel, elements)) = &colours {
-            channel.value(elements[vertex]).iter().for_each(|&c| out.number(c));
+        } else if let Some((channel, numbers)) = &colours {
+            let start = numbers[vertex] as usize * channel.arity;
+            channel.values[start..start + channel.arity].iter().for_each(|&c| out.number(c));
         }
         out.end_line()?;
     }
     Ok(())
-}
-
-/// By vertex, the element of a channel that has its value; of several corners the first.
-fn of_vertices(channel: &Channel, output: &Output<'_>) -> Vec<usize> {
-    let vertices = output.surface.positions.len();
-    if channel.domain == Domain::Vertex {
-        return (0..vertices).collect();
-    }
-    let mut elements = vec![usize::MAX; vertices];
-    for (corner, &vertex) in output.surface.triangles.as_flattened().iter().enumerate() {
-        let first = &mut elements[vertex as usize];
-        *first = (*first).min(corner);
-    }
-    elements
 }
 
 fn texture(channel: &Channel, vertex: u32, corner: usize) -> u32 {

@@ -4,9 +4,10 @@ use limitmesh::Mesh;
 use limitmesh::carry::carried;
 use limitmesh::mesh::{Channel, Domain, FaceParts};
 use limitmesh::refine::Exact;
-use limitmesh_io::{Format, Output, holds};
+use limitmesh_io::{Format, Output, holds, values_lost};
 
 use crate::arguments::{Method, RefineArguments};
+use crate::format::counted;
 use crate::progress::Progress;
 
 /// The channels of a mesh, and the files that describe the materials they name.
@@ -73,6 +74,16 @@ impl Channels {
         }
         let channels = carried(&self.channels, control, arguments.scheme.scheme(), found)?;
         Ok(Self { channels, material_libraries: self.material_libraries.clone() })
+    }
+
+    /// Of which channels the output holds one value a vertex where there are several, and for how many.
+    pub(super) fn note(&self, format: Format, mesh: &Mesh) -> Option<String> {
+        let lost = |channel: &Channel| {
+            let vertices = values_lost(format, channel, mesh.triangles(), mesh.vertex_count());
+            (vertices > 0).then(|| format!("{} at {}", channel.name, counted(vertices, "vertex", "vertices")))
+        };
+        let lost: Vec<String> = self.channels.iter().filter_map(lost).collect();
+        (!lost.is_empty()).then(|| format!("one of several values is written: {}", lost.join("; ")))
     }
 
     /// Adds them to what is written.

@@ -142,6 +142,9 @@ fn refine(
     if let Some(note) = refined.normals.as_ref().and_then(|all| all.note(format, arguments.split_normals)) {
         progress.note(note);
     }
+    if let Some(note) = refined.channels.note(format, &refined.mesh) {
+        progress.note(note);
+    }
     write(path, format, arguments, &refined)?;
     let writing = start.elapsed();
     progress.note(summary(&arguments.output_name(), &refined, refining));

@@ -119,17 +119,30 @@ impl Header {
     pub(super) fn left_out(&self) -> Vec<String> {
         const NORMALS: [&str; 3] = ["nx", "ny", "nz"];
         let elements = || self.elements.iter().filter(|element| element.count > 0);
+        let has_strips = elements().any(|e| e.name == "tristrips");
         let has_normals =
             elements().any(|e| e.name == "vertex" && NORMALS.iter().all(|name| e.find(&[name]).is_some()));
         let extra = |element: &Element| -> Option<String> {
+            // Lists other than these, and what strips have, have no place.
+            let is_carried = |property: &&Property| match (element.name.as_str(), property.kind) {
+                ("vertex", Kind::Scalar(_)) => has_normals || !NORMALS.contains(&property.name.as_str()),
+                ("face", Kind::Scalar(_)) => !has_strips,
+                ("face", Kind::List { .. }) => !has_strips && property.name == super::columns::TEXTURES,
+                _ => false,
+            };
             let taken: &[&str] = match element.name.as_str() {
                 "vertex" if has_normals => &["x", "y", "z", "nx", "ny", "nz"],
                 "vertex" => &["x", "y", "z"],
                 "face" | "tristrips" => &["vertex_indices", "vertex_index"],
                 other => return Some(format!("element {other}")),
             };
-            let names: Vec<&str> =
-                element.properties.iter().map(|p| &p.name[..]).filter(|name| !taken.contains(name)).collect();
+            let names: Vec<&str> = element
+                .properties
+                .iter()
+                .filter(|p| !is_carried(p))
+                .map(|p| &p.name[..])
+                .filter(|name| !taken.contains(name))
+                .collect();
             (!names.is_empty()).then(|| format!("{} properties {}", element.name, names.join(", ")))
         };
         let normals = has_normals.then(|| "normals".to_owned());

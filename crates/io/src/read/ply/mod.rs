@@ -1,17 +1,20 @@
 //! Stanford PLY 1.0: ASCII and binary of both byte orders.
 //!
 //! Takes `x`, `y`, `z` of element `vertex` (any number types), the list `vertex_indices` or `vertex_index` of
-//! element `face`, and the same list of element `tristrips`, where -1 ends a strip. All other properties and
-//! elements are passed over, and so is what follows the last element, which is told.
+//! element `face`, and the same list of element `tristrips`, where -1 ends a strip. Single numbers of vertices and faces, and lists of
+//! texture coordinates, become channels (`columns`); all other properties and elements are passed over, and so is what follows the
+//! last element, which is told.
 
+mod columns;
 mod header;
 mod source;
 
 use super::left_out::trailing_bytes;
 use super::{check_count, push_face};
 use crate::error::{Flaw, Place};
+use columns::{Columns, CornerTextures, TEXTURES};
 use header::{Element, Encoding, Header, Kind, Scalar};
-use limitmesh::mesh::{PolygonFaces, PolygonSoup};
+use limitmesh::mesh::{Domain, PolygonFaces, PolygonSoup};
 use source::{Binary, Source, Text};
 
 const INDEX_NAMES: [&str; 2] = ["vertex_indices", "vertex_index"];
@@ -34,8 +37,8 @@ fn read_body(header: &Header, mut source: impl Source) -> Result<PolygonSoup, Fl
     for element in &header.elements {
         check_room(header.encoding, element, &source)?;
         match element.name.as_str() {
-            "vertex" => soup.positions = read_vertices(header.encoding, element, &mut source)?,
-            "face" => read_polygons(element, &mut source, vertices, &mut soup.faces)?,
+            "vertex" => read_vertices(header.encoding, element, &mut source, &mut soup)?,
+            "face" => read_polygons(element, &mut source, vertices, &mut soup)?,
             "tristrips" => read_strips(element, &mut source, vertices, &mut soup.faces)?,
             _ => skip_element(element, &mut source)?,
         }
@@ -65,7 +68,8 @@ fn read_vertices(
     encoding: Encoding,
     element: &Element,
     source: &mut impl Source,
-) -> Result<Vec<[f64; 3]>, Flaw> {
+    soup: &mut PolygonSoup,
+) -> Result<(), Flaw> {
     let mut axes = [0; 3];
     for (axis, name) in axes.iter_mut().zip(["x", "y", "z"]) {
         let found = element.find(&[name]).filter(|&p| matches!(element.properties[p].kind, Kind::Scalar(_)));
@@ -77,15 +81,31 @@ fn read_vertices(
     // No more than the rest of the file can hold; the last line of a text may lack its end.
     let most = source.remaining() / element.least_size(encoding) + 1;
     let mut positions = Vec::with_capacity(element.count.min(most));
+    let mut columns = Columns::of(element);
     for index in 0..element.count {
-        let point = read_vertex(element, source, axes).map_err(|flaw| flaw.element("vertex", index))?;
+        let point =
+            read_vertex(element, source, axes, &mut columns).map_err(|flaw| flaw.element("vertex", index))?;
         positions.push(point);
     }
-    Ok(positions)
+    soup.positions = positions;
+    let (channels, lost) = columns.channels(Domain::Vertex, element.count);
+    soup.channels.extend(channels);
+    soup.left_out.extend(not_finite("vertex", &lost));
+    Ok(())
+}
+
+/// Tells about properties some of whose numbers are none.
+fn not_finite(element: &str, names: &[String]) -> Option<String> {
+    (!names.is_empty()).then(|| format!("{element} properties {} (not all finite)", names.join(", ")))
 }
 
 #[inline]
-fn read_vertex(element: &Element, source: &mut impl Source, axes: [usize; 3]) -> Result<[f64; 3], Flaw> {
+fn read_vertex(
+    element: &Element,
+    source: &mut impl Source,
+    axes: [usize; 3],
+    columns: &mut Columns,
+) -> Result<[f64; 3], Flaw> {
     let mut point = [0.0; 3];
     for (i, property) in element.properties.iter().enumerate() {
         match (property.kind, axes.iter().position(|&a| a == i)) {
@@ -97,6 +117,7 @@ fn read_vertex(element: &Element, source: &mut impl Source, axes: [usize; 3]) ->
                 }
                 point[axis] = value;
             }
+            (Kind::Scalar(scalar), None) if columns.has(i) => columns.push(i, source.number(scalar)?),
             (kind, _) => skip_property(kind, source)?,
         }
     }
@@ -145,6 +166,7 @@ fn count_corners(element: &Element, mut source: impl Source) -> Result<usize, Fl
 fn read_lists<S: Source>(
     element: &Element,
     source: &mut S,
+    more: &mut impl FnMut(usize, Kind, &mut S) -> Result<(), Flaw>,
     mut take: impl FnMut(&[i64], &S) -> Result<(), Flaw>,
 ) -> Result<(), Flaw> {
     let (list, count_type, item) = find_index_list(element)?;
@@ -157,7 +179,7 @@ fn read_lists<S: Source>(
                     indices.clear();
                     source.integers(item, count, &mut indices)?;
                 } else {
-                    skip_property(property.kind, source)?;
+                    more(i, property.kind, source)?;
                 }
             }
             take(&indices, source)?;
@@ -172,21 +194,61 @@ fn read_polygons<S: Source>(
     element: &Element,
     source: &mut S,
     vertices: usize,
-    faces: &mut PolygonFaces,
+    soup: &mut PolygonSoup,
 ) -> Result<(), Flaw> {
     let corners = count_corners(element, source.fork())?;
+    let faces = &mut soup.faces;
     let strips = std::mem::replace(faces, PolygonFaces::with_capacity(element.count, corners));
     for triangle in strips.iter() {
         push_face(faces, triangle, || source.place())?;
     }
+    let textures =
+        element.find(&[TEXTURES]).filter(|&at| matches!(element.properties[at].kind, Kind::List { .. }));
+    let (mut columns, mut places) = (Columns::of(element), (Vec::new(), Vec::new()));
+    let mut more = |property: usize, kind: Kind, source: &mut S| match kind {
+        Kind::Scalar(scalar) if columns.has(property) => {
+            columns.push(property, source.number(scalar)?);
+            Ok(())
+        }
+        Kind::List { count, item } if textures == Some(property) => {
+            let count = list_length(source.integer(count)?, source)?;
+            for _ in 0..count {
+                places.0.push(source.number(item)?);
+            }
+            places.1.push(places.0.len());
+            Ok(())
+        }
+        kind => skip_property(kind, source),
+    };
     let mut polygon = Vec::new();
-    read_lists(element, source, |indices, source| {
+    read_lists(element, source, &mut more, |indices, source| {
         polygon.clear();
         for &index in indices {
             polygon.push(vertex_index(index, vertices, source)?);
         }
         push_face(faces, &polygon, || source.place())
-    })
+    })?;
+    if !strips.is_empty() {
+        // What strips have beside is not known.
+        return Ok(());
+    }
+    let (channels, lost) = columns.channels(Domain::Face, element.count);
+    soup.left_out.extend(not_finite("face", &lost));
+    soup.channels.extend(channels);
+    if textures.is_some() {
+        let mut corners = CornerTextures::default();
+        let starts = std::iter::once(0).chain(places.1.iter().copied());
+        for ((start, &end), face) in starts.zip(&places.1).zip(soup.faces.iter()) {
+            corners.face(&places.0[start..end], face.len());
+        }
+        match corners.channel() {
+            Some(channel) => soup.channels.push(channel),
+            None => {
+                soup.left_out.push(format!("face properties {TEXTURES} (not two numbers for each corner)"))
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Strips of triangles: each vertex after the second makes one with the two before it, turned every other time.
@@ -196,7 +258,8 @@ fn read_strips<S: Source>(
     vertices: usize,
     faces: &mut PolygonFaces,
 ) -> Result<(), Flaw> {
-    read_lists(element, source, |indices, source| {
+    let mut skip = |_, kind: Kind, source: &mut S| skip_property(kind, source);
+    read_lists(element, source, &mut skip, |indices, source| {
         for strip in indices.split(|&i| i == -1) {
             for (i, corners) in strip.windows(3).enumerate() {
                 let mut triangle = [0; 3];

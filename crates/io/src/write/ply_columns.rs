@@ -1,0 +1,174 @@
+//! Channels as numbers of a PLY file's vertices and faces: what `read::ply` makes channels of.
+
+use limitmesh::mesh::{Channel, Domain, Semantic, Storage};
+
+use super::Output;
+use super::numbers::Pieces;
+use crate::channels::by_vertex;
+use crate::format::Format;
+
+/// One number of each element.
+pub(super) struct Column<'a> {
+    pub(super) name: String,
+    storage: Storage,
+    channel: &'a Channel,
+    /// Which number of a value.
+    part: usize,
+    /// By element, its value.
+    values: std::rc::Rc<Vec<u32>>,
+}
+
+/// What an output's channels become.
+#[derive(Default)]
+pub(super) struct Columns<'a> {
+    pub(super) vertices: Vec<Column<'a>>,
+    pub(super) faces: Vec<Column<'a>>,
+    /// Texture coordinates with seams: a list for each face.
+    pub(super) textures: Option<&'a Channel>,
+}
+
+impl<'a> Columns<'a> {
+    /// Those of an output. Where a name is taken already, what has it is newer.
+    pub(super) fn of(output: &Output<'a>) -> Self {
+        let mut found = Self::default();
+        let (vertices, triangles) = (output.surface.positions.len(), output.surface.triangles);
+        for channel in output.channels.iter().filter(|channel| crate::holds(Format::Ply, channel)) {
+            if channel.domain == Domain::Face {
+                let values = std::rc::Rc::new(channel.indices.clone());
+                let is_taken = |name: &str| {
+                    output.face_properties.iter().any(|p| p.name == name) || name == "vertex_indices"
+                };
+                add(&mut found.faces, channel, values, is_taken);
+                continue;
+            }
+            let (values, torn) = by_vertex(channel, vertices, triangles);
+            if torn > 0 && channel.semantic == Semantic::TextureCoordinates {
+                found.textures = found.textures.or(Some(channel));
+                continue;
+            }
+            let is_taken = |name: &str| {
+                let has_colours = output.colours.is_some() && ["red", "green", "blue"].contains(&name);
+                let is_own = ["x", "y", "z", "nx", "ny", "nz"].contains(&name);
+                let has_quality = output.quality.is_some() && name == "quality";
+                has_colours
+                    || is_own
+                    || has_quality
+                    || output.vertex_properties.iter().any(|p| p.name == name)
+            };
+            add(&mut found.vertices, channel, std::rc::Rc::new(values), is_taken);
+        }
+        found
+    }
+}
+
+fn add<'a>(
+    columns: &mut Vec<Column<'a>>,
+    channel: &'a Channel,
+    values: std::rc::Rc<Vec<u32>>,
+    is_taken: impl Fn(&str) -> bool,
+) {
+    for (part, name) in names(channel).into_iter().enumerate() {
+        if !is_taken(&name) && columns.iter().all(|column| column.name != name) {
+            let storage = storage(channel);
+            columns.push(Column { name, storage, channel, part, values: values.clone() });
+        }
+    }
+}
+
+/// Names of a value's numbers: those that the channel has, or those that are usual.
+fn names(channel: &Channel) -> Vec<String> {
+    let visible =
+        |name: &str| -> String { name.chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect() };
+    let own: Vec<String> = channel.name.split(',').map(visible).collect();
+    if own.len() == channel.arity
+        && own.iter().all(|name| !name.is_empty())
+        && channel.semantic != Semantic::TextureCoordinates
+    {
+        return own;
+    }
+    let usual: &[&str] = match channel.semantic {
+        Semantic::TextureCoordinates if own.len() == channel.arity => return own,
+        Semantic::TextureCoordinates => &["s", "t", "r"],
+        Semantic::Colour => &["red", "green", "blue", "alpha"],
+        _ => &[],
+    };
+    let name = |part: usize| {
+        usual.get(part).map_or_else(|| format!("{}_{part}", visible(&channel.name)), |&name| name.to_owned())
+    };
+    (0..channel.arity).map(name).collect()
+}
+
+fn storage(channel: &Channel) -> Storage {
+    let fits = || {
+        channel
+            .values
+            .iter()
+            .all(|&x| x.fract() == 0.0 && (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&x))
+    };
+    match channel.storage {
+        // Other programs know colours as bytes.
+        Storage::Double if channel.semantic == Semantic::Colour => Storage::Byte,
+        Storage::Integer if !fits() => Storage::Double,
+        storage => storage,
+    }
+}
+
+impl Column<'_> {
+    /// PLY's name of the numbers' type.
+    pub(super) fn kind(&self) -> &'static str {
+        match self.storage {
+            Storage::Single => "float",
+            Storage::Byte => "uchar",
+            Storage::Integer => "int",
+            _ => "double",
+        }
+    }
+
+    #[inline]
+    fn number(&self, element: usize) -> f64 {
+        self.channel.values[self.values[element] as usize * self.channel.arity + self.part]
+    }
+
+    /// Writes the little-endian bytes of an element's number.
+    #[inline]
+    pub(super) fn bytes(&self, out: &mut Pieces<'_>, element: usize) {
+        let number = self.number(element);
+        match self.storage {
+            Storage::Single => out.bytes(&(number as f32).to_le_bytes()),
+            Storage::Byte => out.bytes(&[byte(number)]),
+            Storage::Integer => out.bytes(&(number as i32).to_le_bytes()),
+            _ => out.bytes(&number.to_le_bytes()),
+        }
+    }
+
+    /// Writes an element's number as text, a blank before it.
+    pub(super) fn text(&self, out: &mut Pieces<'_>, element: usize) {
+        let number = self.number(element);
+        match self.storage {
+            Storage::Single => out.single(number as f32),
+            Storage::Byte => out.integer(u32::from(byte(number))),
+            _ => out.number(number),
+        }
+    }
+}
+
+/// The nearest of 255 steps.
+fn byte(number: f64) -> u8 {
+    (255.0 * number.clamp(0.0, 1.0)).round() as u8
+}
+
+/// Writes the texture coordinates of a face's corners.
+pub(super) fn textures(out: &mut Pieces<'_>, channel: &Channel, face: usize, ascii: bool) {
+    if ascii {
+        out.integer(6);
+    } else {
+        out.bytes(&[6]);
+    }
+    for corner in 3 * face..3 * face + 3 {
+        let value = channel.value(corner);
+        for part in 0..2 {
+            let number = value.get(part).copied().unwrap_or(0.0) as f32;
+            if ascii { out.single(number) } else { out.bytes(&number.to_le_bytes()) }
+        }
+    }
+}
