@@ -30,19 +30,7 @@ pub(crate) fn against_simplified(folder: &Path) -> Result<()> {
     println!(
         "\nbeside level {LEVEL}, then quadric edge collapse: distances in % of the diagonal, processor seconds"
     );
-    let mut rows = Vec::new();
-    let mut distances = vec![Vec::new(); 2];
-    let mut speeds = vec![Vec::new(); 2];
-    for model in gather(folder, MOST_FACES)? {
-        let reference = Reference::new(&model.mesh)?;
-        let judge = Judge::new(&reference)?;
-        compare(&model, &judge, &mut rows, &mut distances, &mut speeds)?;
-    }
-    if rows.is_empty() {
-        println!("neither MeshLab nor meshoptimizer is installed (pip install pymeshlab meshoptimizer)");
-        return Ok(());
-    }
-    let heads = [
+    table::begin(&[
         "model",
         "triangles",
         "method",
@@ -52,8 +40,18 @@ pub(crate) fn against_simplified(folder: &Path) -> Result<()> {
         "distance / optimised",
         "seconds / exact",
         "seconds / optimised",
-    ];
-    table::print(&heads, &rows);
+    ]);
+    let mut distances = vec![Vec::new(); 2];
+    let mut speeds = vec![Vec::new(); 2];
+    for model in gather(folder, MOST_FACES)? {
+        let reference = Reference::new(&model.mesh)?;
+        let judge = Judge::new(&reference)?;
+        compare(&model, &judge, &mut distances, &mut speeds)?;
+    }
+    if distances.iter().all(Vec::is_empty) {
+        println!("neither MeshLab nor meshoptimizer is installed (pip install pymeshlab meshoptimizer)");
+        return Ok(());
+    }
     for (which, name) in Simplifier::ALL.iter().enumerate() {
         println!(
             "\n{}: median {} times the distance of exact refinement and {} times its time",
@@ -68,7 +66,6 @@ pub(crate) fn against_simplified(folder: &Path) -> Result<()> {
 fn compare(
     model: &Model,
     judge: &Judge<'_>,
-    rows: &mut Vec<Vec<String>>,
     distances: &mut [Vec<f64>],
     speeds: &mut [Vec<f64>],
 ) -> Result<()> {
@@ -93,7 +90,7 @@ fn compare(
             let mut row = vec![model.name.clone(), count(triangles), name.to_owned()];
             row.extend([digits(judge.percent(distance)), digits(seconds)]);
             row.extend(["", "", "", ""].map(str::to_owned));
-            rows.push(row);
+            table::print_row(&row);
         }
         for (which, simplifier) in Simplifier::ALL.into_iter().enumerate() {
             let Some(theirs) = peers::simplified(simplifier, &fine, triangles)? else { continue };
@@ -106,7 +103,7 @@ fn compare(
             row.extend([digits(judge.percent(distance)), digits(seconds)]);
             row.extend(ours.map(|(d, _)| digits(distance / d)));
             row.extend(ours.map(|(_, s)| digits(seconds / s)));
-            rows.push(row);
+            table::print_row(&row);
         }
     }
     Ok(())

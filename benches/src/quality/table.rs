@@ -4,11 +4,19 @@ pub(crate) use limitmesh_paper::format::thousands as count;
 
 /// Prints a table: heads, then rows.
 pub(crate) fn print(heads: &[&str], rows: &[Vec<String>]) {
+    begin(heads);
+    rows.iter().for_each(|row| print_row(row));
+}
+
+/// Prints a table's heads; its rows follow as they are measured, so that a run of minutes that is cut short has said something.
+pub(crate) fn begin(heads: &[&str]) {
     println!("\n| {} |", heads.join(" | "));
     println!("|{}", "---|".repeat(heads.len()));
-    for row in rows {
-        println!("| {} |", row.join(" | "));
-    }
+}
+
+/// Prints a row of a table.
+pub(crate) fn print_row(row: &[String]) {
+    println!("| {} |", row.join(" | "));
 }
 
 /// Three significant digits.

@@ -24,7 +24,14 @@ const REPEATS: usize = 3;
 /// Every run in a process of its own, whose peak of memory is then its.
 pub(crate) fn throughput(folder: &Path) -> Result<()> {
     println!("\nexact refinement within a tolerance, with certificate, one thread; best of {REPEATS}");
-    let mut rows = Vec::new();
+    table::begin(&[
+        "model",
+        "tolerance %",
+        "triangles",
+        "million triangles a second, user time",
+        "user and system time",
+        "peak bytes a triangle beyond input and output",
+    ]);
     let mut rates = Vec::new();
     for name in MODELS {
         let path = folder.join(name);
@@ -51,20 +58,9 @@ pub(crate) fn throughput(folder: &Path) -> Result<()> {
             row.push(count(triangles as usize));
             row.extend([triangles / user / 1e6, triangles / all / 1e6].map(digits));
             row.push(format!("{bytes:.0}"));
-            rows.push(row);
+            table::print_row(&row);
         }
     }
-    table::print(
-        &[
-            "model",
-            "tolerance %",
-            "triangles",
-            "million triangles a second, user time",
-            "user and system time",
-            "peak bytes a triangle beyond input and output",
-        ],
-        &rows,
-    );
     println!("\nmedian: {} million triangles a second of user time", digits(median(rates)));
     Ok(())
 }
