@@ -8,8 +8,6 @@ use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 #[cfg(feature = "parallel")]
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-use crate::progress::Cancelled;
-
 /// Below this many elements a loop stays on the calling thread: starting workers would cost more than the work.
 const SEQUENTIAL_BELOW: usize = 4096;
 
@@ -139,6 +137,11 @@ pub(crate) fn for_each_run<A: Send, B: Send, F: Fn(usize, &mut [A], &mut [B]) + 
     hand_out(pieces.into_iter(), &mut |pieces| poll((pieces * PIECE).min(n)), |piece, _| work(piece))?;
     Ok(())
 }
+
+/// The observer asked to stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled by the observer")]
+pub struct Cancelled;
 
 /// What a loop that can be cancelled calls between its blocks, always on the calling thread, with the number of elements
 /// done by then.

@@ -29,6 +29,7 @@ use core::cell::{Cell, RefCell};
 use core::fmt;
 use core::ops::{ControlFlow, Range};
 
+pub use crate::parallel::Cancelled;
 use crate::parallel::{self, IsStopped};
 
 /// How far a long function has come.
@@ -89,11 +90,6 @@ impl fmt::Display for Stage {
 
 /// What is told of progress, and says whether to go on.
 pub type Observer<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + 'a;
-
-/// The observer asked to stop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("cancelled by the observer")]
-pub struct Cancelled;
 
 /// The observer of those who do not watch.
 pub(crate) fn unobserved(_: &Progress) -> ControlFlow<()> {
