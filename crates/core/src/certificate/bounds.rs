@@ -53,27 +53,20 @@
 //! So the greatest of the least of both bounds over all triangles bounds the distance of mesh and surface, both
 //! ways. θ and the neighbours' angles are those of the mesh as it is emitted.
 
+mod irregular;
+
 use super::deviation::{Borders, Deviation, DeviationBound, INSIDE};
+use super::exceeds;
 use super::sampled::Samples;
 use super::sub_triangle::SubTriangle;
 use super::triangle_frame::TriangleFrame;
-use super::{exceeds, greater};
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::characteristic::{Characteristic, MapSector};
-use crate::patch::extraordinary::ExtraordinaryPatch;
 use crate::patch::{Patch, RefinedPatch, Rules};
 use crate::vector::DVec3;
-
-/// Levels that a piece at an irregular vertex is split at most: it has shrunk by 2⁻⁴⁰ then, below rounding.
-const DEEPEST: usize = 40;
 
 /// Pieces that reach this many times as far as the target will not pass; bounds of others stay tight, so that they are
 /// told apart even if they may not be split.
 const HOPELESS: f64 = 1.5;
-
-/// Where the lasting twin of a piece is farther away than the target by this many times what lies between the two, the piece is
-/// taken to be too far as well.
-const CERTAIN: f64 = 3.0;
 
 /// The whole piece stands for the triangle.
 const ALL: Borders = [0, 1, 2];
@@ -93,11 +86,16 @@ pub(crate) struct Effort {
     pub(crate) slopes: [f64; 3],
     /// Whether nobody asks how far off a triangle is that surely misses the target.
     pub(crate) gives_up: bool,
+    /// Then the least chord of angles that can count, with slopes no greater than those expected: what is beyond the target with
+    /// it is beyond it whatever is still to come.
+    pub(crate) least_chord: Option<f64>,
 }
 
 /// A patch whose parts several triangles stand for, and what is derived from it once for all of them.
 pub(crate) struct Pieces<'a> {
     patch: &'a Patch,
+    /// Its refinement, where somebody has it already.
+    known: Option<&'a RefinedPatch<'a>>,
     refined: Option<RefinedPatch<'a>>,
     net: Option<BezierTriangle>,
     samples: Option<Samples>,
@@ -109,12 +107,20 @@ const SAMPLED_LEVELS: usize = 3;
 
 impl<'a> Pieces<'a> {
     pub(crate) fn of(patch: &'a Patch) -> Self {
-        Self { patch, refined: None, net: None, samples: None }
+        Self { patch, known: None, refined: None, net: None, samples: None }
+    }
+
+    /// The same for a patch with its refinement.
+    pub(crate) fn with_refined(patch: &'a Patch, refined: &'a RefinedPatch<'a>) -> Self {
+        Self { known: Some(refined), ..Self::of(patch) }
     }
 
     /// The patch refined once.
     pub(crate) fn refined(&mut self, rules: &'a Rules<'a>) -> &RefinedPatch<'a> {
-        self.refined.get_or_insert_with(|| self.patch.refined(rules))
+        match self.known {
+            Some(known) => known,
+            None => self.refined.get_or_insert_with(|| self.patch.refined(rules)),
+        }
     }
 
     /// The limits of the vertices down to so many levels below the patch, its corners left out.
@@ -149,15 +155,16 @@ impl<'a> Pieces<'a> {
                 return samples.deviation(part, &bound);
             }
             (_, SubTriangle::Child(child)) => {
-                let refined = self.refined.get_or_insert_with(|| self.patch.refined(rules));
-                search.part(&refined.part(child), SubTriangle::Whole, ALL, 1);
+                search.refined(self.refined(rules), child, SubTriangle::Whole, ALL, 1);
             }
             (Patch::Regular(points), _) => {
                 let net = self.net.get_or_insert_with(|| BezierTriangle::of(points));
                 search.net_part(net, part, ALL);
             }
             (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::Pole(_) | Patch::SemiSharp(_), _) => {
-                search.irregular(self.patch, part, ALL, 0);
+                if !search.is_settled(self.patch, part, ALL, 0) {
+                    search.divided(self.refined(rules), part, ALL, 0);
+                }
             }
         }
         search.found
@@ -217,7 +224,7 @@ impl Search<'_> {
     fn part(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) {
         match (patch, part) {
             (_, SubTriangle::Child(child)) => {
-                self.part(&patch.refined(self.rules).part(child), SubTriangle::Whole, borders, depth + 1);
+                self.refined(&patch.refined(self.rules), child, SubTriangle::Whole, borders, depth + 1);
             }
             (Patch::Regular(points), _) => self.net_part(&BezierTriangle::of(points), part, borders),
             (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::Pole(_) | Patch::SemiSharp(_), _) => {
@@ -225,6 +232,27 @@ impl Search<'_> {
             }
             // Their points' hull holds nothing.
             (Patch::Mesh(_), _) => self.add(Deviation::alone(f64::INFINITY)),
+        }
+    }
+
+    /// A part of a refinement, or a part of that: as it is at hand.
+    fn refined(
+        &mut self,
+        refined: &RefinedPatch<'_>,
+        child: usize,
+        part: SubTriangle,
+        borders: Borders,
+        depth: usize,
+    ) {
+        if let Some(points) = refined.points(child) {
+            self.net_part(&BezierTriangle::of(&points), part, borders);
+        } else if let Some(piece) = refined.extraordinary(child) {
+            if !self.is_settled_at(piece, part, borders, depth) {
+                let refined = RefinedPatch::Extraordinary(piece.refined(self.rules.beta(piece.ring.len())));
+                self.divided(&refined, part, borders, depth);
+            }
+        } else {
+            self.part(&refined.part(child), part, borders, depth);
         }
     }
 
@@ -253,6 +281,11 @@ impl Search<'_> {
         // A slope that is too great must not spoil what others are good for.
         let counts = deviation.is_within(self.effort.slopes);
         self.found = self.found.max(if counts { deviation } else { Deviation::alone(deviation.own) });
+        if let Some(chord) = self.effort.least_chord
+            && exceeds(self.found.bound(chord, self.effort.slopes), self.effort.target)
+        {
+            self.found = Deviation::alone(f64::INFINITY);
+        }
     }
 
     fn net(&mut self, net: &BezierTriangle, borders: Borders, halvings: usize) {
@@ -283,44 +316,8 @@ impl Search<'_> {
         }
     }
 
-    /// Takes the lasting twin of a semi-sharp piece in its place if that is enough, or if it is clear that nothing will be; says
-    /// whether it did.
-    fn by_twin(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) -> bool {
-        let Patch::SemiSharp(piece) = patch else { return false };
-        let aim = self.aim();
-        let Some((near, rest)) = piece.lasting_twin(self.rules).filter(|&(_, rest)| rest <= aim) else {
-            return false;
-        };
-        // At corners of the triangle the twin is off by up to the rest: no division gets below that.
-        let effort = Effort { target: (aim - 2.0 * rest).max(1.5 * rest), ..self.effort };
-        let mut twin = Search { effort, found: Deviation::default(), ..*self };
-        twin.part(&near, part, borders, depth);
-        let found = twin.found.off(rest, rest);
-        let Deviation { own, height, across, .. } = found;
-        let found = Deviation { own: own + rest, height: height + rest, across: across + rest, ..found };
-        let fails = exceeds(self.value(&twin.found) - CERTAIN * rest, aim);
-        if fails || self.value(&found) <= aim {
-            self.add(found);
-            return true;
-        }
-        false
-    }
-
-    /// A piece at an irregular vertex: as it is if that is enough, else refined.
-    fn irregular(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) {
-        if self.found.own == f64::INFINITY {
-            return;
-        }
-        if self.by_twin(patch, part, borders, depth) {
-            return;
-        }
-        if let Some(deviation) = self.held(patch, part, borders, depth)
-            && (depth >= DEEPEST || self.value(&deviation) <= self.aim())
-        {
-            self.add(deviation);
-            return;
-        }
-        let refined = patch.refined(self.rules);
+    /// A refined piece.
+    fn divided(&mut self, refined: &RefinedPatch<'_>, part: SubTriangle, borders: Borders, depth: usize) {
         match part {
             SubTriangle::Whole => {
                 let inner = |part: usize| {
@@ -329,95 +326,15 @@ impl Search<'_> {
                     (part, SubTriangle::Whole, sides)
                 };
                 self.pieces(
-                    &refined,
+                    refined,
                     [inner(0), inner(1), inner(2), (3, SubTriangle::Whole, [INSIDE; 3])],
                     depth,
                 );
             }
-            SubTriangle::Child(child) => self.pieces(&refined, [(child, SubTriangle::Whole, borders)], depth),
-            SubTriangle::Half { edge, second } => self.half(&refined, edge, second, borders, depth),
-            SubTriangle::Quarter { edge, at_end } => self.quarter(&refined, edge, at_end, borders, depth),
+            SubTriangle::Child(child) => self.pieces(refined, [(child, SubTriangle::Whole, borders)], depth),
+            SubTriangle::Half { edge, second } => self.half(refined, edge, second, borders, depth),
+            SubTriangle::Quarter { edge, at_end } => self.quarter(refined, edge, at_end, borders, depth),
         }
-    }
-
-    /// What a piece is good for without being refined; `None` if nothing is known, or nothing that helps.
-    fn held(&self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) -> Option<Deviation> {
-        if let Patch::Extraordinary(piece) = patch
-            && let Some(map) = self.rules.characteristic(piece.ring.len())
-            && depth < DEEPEST
-        {
-            return match part {
-                SubTriangle::Whole => self.affine(piece, map, &map.sectors[0], borders),
-                SubTriangle::Half { edge, second } if edge == (piece.corner + 1) % 3 => {
-                    self.affine(piece, map, &map.sectors[1 + usize::from(second)], borders)
-                }
-                _ => None,
-            };
-        }
-        let limit = if depth < DEEPEST { self.aim() } else { f64::INFINITY };
-        self.hull(patch, borders, limit).map(Deviation::alone)
-    }
-
-    /// The bound by an affine image of the characteristic map's sector, if what the piece differs from it is little.
-    fn affine(
-        &self,
-        piece: &ExtraordinaryPatch,
-        map: &Characteristic,
-        sector: &MapSector,
-        borders: Borders,
-    ) -> Option<Deviation> {
-        let valence = piece.ring.len();
-        let sums = piece.ring.iter().zip(&map.control.ring).fold([DVec3::ZERO; 3], |sums, (&point, at)| {
-            [sums[0] + point, sums[1] + at.x * point, sums[2] + at.y * point]
-        });
-        let weight = 0.375 / self.rules.beta(valence);
-        let limit = (weight * piece.at + sums[0]) / (weight + valence as f64);
-        let tangents = [1, 2].map(|i| sums[i] * (2.0 / valence as f64));
-        let image = |at: DVec3| limit + at.x * tangents[0] + at.y * tangents[1];
-        let rest = piece.points().zip(map.control.points());
-        let rest = rest.map(|(point, at)| point.distance_squared(image(at))).fold(0.0, greater).sqrt();
-        if exceeds(rest, self.aim()) {
-            return None;
-        }
-        let mut curves = [(0, DVec3::ZERO); 13];
-        let mut count = 0;
-        let mut curve = |border: u8, at: DVec3| {
-            if border != INSIDE {
-                curves[count] = (border as usize, image(at));
-                count += 1;
-            }
-        };
-        let [starts, rim, ends] = [0, 1, 2].map(|edge| borders[(piece.corner + edge) % 3]);
-        curve(starts, sector.start);
-        curve(ends, sector.end);
-        sector.rim.iter().for_each(|&at| curve(rim, at));
-        // Where only one of the edges at the vertex is the triangle's, the vertex lies on that edge.
-        match (starts, ends) {
-            (INSIDE, on) | (on, INSIDE) => curve(on, DVec3::ZERO),
-            (first, second) if first == second => curve(first, DVec3::ZERO),
-            _ => {}
-        }
-        let is_inside = starts == INSIDE && ends == INSIDE;
-        let vertex = is_inside.then_some(DVec3::ZERO);
-        let inner = sector.hull.iter().copied().chain(vertex).map(image);
-        Some(self.bound.points(inner, &curves[..count]).grown(rest))
-    }
-
-    /// The greatest distance of the control points from the triangle, and from the edges in `borders`; `None` as soon as
-    /// one is farther away than `limit`.
-    fn hull(&self, patch: &Patch, borders: Borders, limit: f64) -> Option<f64> {
-        let frame = self.bound.frame;
-        let (mut greatest, limit) = (0.0f64, limit * limit);
-        patch.for_each_hull_point(|point| {
-            if exceeds(greatest, limit) {
-                return;
-            }
-            greatest = greater(greatest, frame.squared(point));
-            for border in borders.into_iter().filter(|&border| border != INSIDE) {
-                greatest = greater(greatest, frame.squared_to_edge(border as usize, point));
-            }
-        });
-        (!exceeds(greatest, limit)).then(|| greatest.sqrt())
     }
 
     /// The pieces that make up a half; see [`SubTriangle::Half`].
@@ -485,7 +402,7 @@ impl Search<'_> {
         for regular in [true, false] {
             for (child, part, borders) in pieces {
                 if refined.is_regular(child) == regular {
-                    self.part(&refined.part(child), part, borders, depth + 1);
+                    self.refined(refined, child, part, borders, depth + 1);
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! How far hull points stand from a triangle, its plane and its edges: what the bounds of [`super::bounds`] are the
 //! greatest of.
 
+use super::greatest::{CURVE, Greatest, SEEN, SeenPoints};
 use super::triangle_frame::{Beside, TriangleFrame};
 use super::{exceeds, greater};
 use crate::criterion::Apart;
@@ -120,144 +121,11 @@ impl Deviation {
     }
 }
 
-/// A point as a triangle sees it from its first corner.
-struct Seen {
-    offset: DVec3,
-    height: f64,
-    /// How far outside the lines of the edges.
-    outside: [f64; 3],
-}
-
-impl Seen {
-    fn of(point: DVec3, frame: &TriangleFrame) -> Self {
-        let offset = frame.seen_from_first(point);
-        let outside = [0, 1, 2].map(|edge| frame.outside_from_first(edge, offset));
-        Self { offset, height: frame.height_from_first(offset), outside }
-    }
-}
-
-/// The points of a net likewise, by axis and point, so that several are looked at together.
-struct SeenNet {
-    offsets: [[f64; SEEN]; 3],
-    heights: [f64; SEEN],
-    outside: [[f64; SEEN]; 3],
-}
-
-/// The points of a net, rounded up to whole registers.
-const SEEN: usize = 16;
-
-impl SeenNet {
-    /// `None` if not all points are finite.
-    #[inline]
-    fn of(net: &BezierTriangle, frame: &TriangleFrame) -> Option<Self> {
-        let mut offsets = [[0.0; SEEN]; 3];
-        let mut sum = DVec3::ZERO;
-        for (at, &point) in net.0.iter().enumerate() {
-            let offset = frame.seen_from_first(point);
-            sum += offset;
-            (offsets[0][at], offsets[1][at], offsets[2][at]) = (offset.x, offset.y, offset.z);
-        }
-        let along = |direction: DVec3, from: f64| {
-            let mut values = [0.0; SEEN];
-            let [x, y, z] = &offsets;
-            for (at, value) in values.iter_mut().enumerate() {
-                *value = direction.x * x[at] + direction.y * y[at] + direction.z * z[at] - from;
-            }
-            values
-        };
-        let outside = [0, 1, 2].map(|edge| along(frame.outward(edge), frame.offset(edge)));
-        sum.is_finite().then(|| Self { offsets, heights: along(frame.normal(), 0.0), outside })
-    }
-
-    #[inline]
-    fn at(&self, at: usize) -> Seen {
-        let ([x, y, z], [a, b, c]) = (&self.offsets, &self.outside);
-        Seen {
-            offset: DVec3::new(x[at], y[at], z[at]),
-            height: self.heights[at],
-            outside: [a[at], b[at], c[at]],
-        }
-    }
-}
-
 /// A triangle and which of its edges have no neighbour.
 #[derive(Clone, Copy)]
 pub(crate) struct DeviationBound<'a> {
     pub(crate) frame: &'a TriangleFrame,
     pub(crate) open: [bool; 3],
-}
-
-/// The greatest of what was met, for a triangle that has a plane and neighbours all round. All points are finite.
-#[derive(Default)]
-struct Greatest {
-    height: f64,
-    /// Squared distance from the triangle, or for points of curves from the edge.
-    squared: f64,
-    /// The part of that distance within the plane.
-    side: f64,
-    drift: f64,
-    slopes: [f64; 3],
-    /// By edge, the ratio of a curve point's distance from its edge's line, on either side, to the distance from the ends.
-    swings: [f64; 3],
-    /// A foot stood beyond the ends of its edge.
-    beyond: bool,
-}
-
-impl Greatest {
-    #[inline]
-    fn stands(&mut self, height: f64, side: f64) {
-        self.height = self.height.max(height.abs());
-        self.side = self.side.max(side.abs());
-        self.squared = self.squared.max(height * height + side * side);
-    }
-
-    /// A point of the surface.
-    #[inline]
-    fn inner(&mut self, frame: &TriangleFrame, seen: &Seen) {
-        let mut side = 0.0f64;
-        for edge in 0..3 {
-            let outside = seen.outside[edge];
-            if exceeds(outside, frame.on_edge()) {
-                let room = frame.room_from_first(edge, seen.offset);
-                side = side.max(outside);
-                self.drift = self.drift.max(outside);
-                self.slopes[edge] = self.slopes[edge].max(outside / room);
-                self.beyond |= exceeds(0.0, room);
-            }
-        }
-        self.stands(seen.height, side);
-    }
-
-    /// The same for a point of the curve over an edge.
-    #[inline]
-    fn curve(&mut self, frame: &TriangleFrame, edge: usize, seen: &Seen) {
-        let Seen { offset, height, outside } = *seen;
-        let outside = outside[edge];
-        let room = frame.room_from_first(edge, offset);
-        self.stands(height, outside);
-        if outside.abs() <= frame.on_edge() {
-            self.beyond |= exceeds(-room, frame.on_edge());
-            return;
-        }
-        self.beyond |= exceeds(0.0, room);
-        self.swings[edge] = self.swings[edge].max(outside.abs() / room);
-        if exceeds(outside, 0.0) {
-            self.drift = self.drift.max(outside);
-            self.slopes[edge] = self.slopes[edge].max(outside / room);
-        }
-    }
-}
-
-impl Greatest {
-    /// What that comes to; `None` if the points have to be looked at one by one.
-    fn deviation(self, frame: &TriangleFrame) -> Option<Deviation> {
-        let Self { height, squared, side, drift, slopes, .. } = self;
-        // Squares of tiny lengths vanish.
-        let own = if squared > 1e-280 { squared.sqrt() } else { height.hypot(side) };
-        // A curve that swings less than the angles at its edge open crosses no other edge.
-        let stays = (0..3).all(|edge| self.swings[edge] <= frame.slope_at(edge));
-        (stays && !self.beyond).then_some(Deviation { own, height, drift, slopes, across: 0.0 })
-    }
 }
 
 impl DeviationBound<'_> {
@@ -267,31 +135,34 @@ impl DeviationBound<'_> {
             return (self.each_of_net(net, borders), 0.0);
         }
         let frame = self.frame;
-        let Some(seen) = SeenNet::of(net, frame) else {
+        let mut seen = SeenPoints::NONE;
+        seen.look(frame, net.0.iter().copied());
+        if !seen.is_finite {
             return (Deviation::alone(f64::INFINITY), 0.0);
-        };
+        }
+        let attained = attained(&seen.heights);
         let mut greatest = Greatest::default();
-        for at in INNER {
-            greatest.inner(frame, &seen.at(at));
-        }
-        for (edge, points) in EDGES.iter().enumerate() {
-            let border = borders[edge];
-            for &at in &points[1..4] {
-                if border == INSIDE {
-                    greatest.inner(frame, &seen.at(at));
-                } else {
-                    greatest.curve(frame, border as usize, &seen.at(at));
-                }
-            }
-            let at = points[0];
-            match corner(borders, edge) {
-                Corner::Own => {}
-                Corner::On(border) => greatest.curve(frame, border, &seen.at(at)),
-                Corner::Inside => greatest.inner(frame, &seen.at(at)),
+        let corners = [0, 1, 2].map(|edge| corner(borders, edge));
+        for edge in 0..3 {
+            if matches!(corners[edge], Corner::Own) {
+                // On the surface, but for rounding.
+                seen.heights[EDGES[edge][0]] = 0.0;
             }
         }
+        for edge in 0..3 {
+            if borders[edge] == INSIDE {
+                continue;
+            }
+            let [start, second, middle, fourth, end] = EDGES[edge];
+            let or_middle = |at, corner| if matches!(corner, Corner::On(_)) { at } else { middle };
+            let (start, end) = (or_middle(start, corners[edge]), or_middle(end, corners[(edge + 1) % 3]));
+            let points = [start, second, middle, fourth, end, middle].map(|at| at as u8);
+            greatest.curve(frame, usize::from(borders[edge]), &seen, points);
+        }
+        let inside = (0..3).fold(0, |bits, edge| bits | usize::from(borders[edge] == INSIDE) << edge);
+        greatest.inner(frame, &seen, INNER_POINTS[inside]);
         let deviation = greatest.deviation(frame).unwrap_or_else(|| self.each_of_net(net, borders));
-        (deviation, attained(&seen.heights))
+        (deviation, attained)
     }
 
     /// The deviation of points of the surface, and of curves over edges.
@@ -301,15 +172,12 @@ impl DeviationBound<'_> {
         curves: &[(usize, DVec3)],
     ) -> Deviation {
         let frame = self.frame;
-        let is_finite =
-            inner.clone().chain(curves.iter().map(|&(_, point)| point)).sum::<DVec3>().is_finite();
-        if is_finite && !frame.is_flat() && self.open == [false; 3] {
-            let mut greatest = Greatest::default();
-            inner.clone().for_each(|point| greatest.inner(frame, &Seen::of(point, frame)));
-            curves.iter().for_each(|&(edge, point)| greatest.curve(frame, edge, &Seen::of(point, frame)));
-            if let Some(deviation) = greatest.deviation(frame) {
-                return deviation;
-            }
+        if !frame.is_flat()
+            && self.open == [false; 3]
+            && let Some(greatest) = greatest_of(frame, inner.clone(), curves)
+            && let Some(deviation) = greatest.deviation(frame)
+        {
+            return deviation;
         }
         let mut deviation = Deviation::default();
         inner.for_each(|point| self.inner_point(point, &mut deviation));
@@ -411,6 +279,7 @@ impl DeviationBound<'_> {
 }
 
 /// What a corner of a piece is to the triangle.
+#[derive(Clone, Copy)]
 enum Corner {
     /// One of its own, which lies on the surface.
     Own,
@@ -431,6 +300,62 @@ fn corner(borders: Borders, edge: usize) -> Corner {
     }
 }
 
+/// The points of a net that stand for the surface rather than for its curve over an edge of the triangle, one bit each, by which
+/// of its edges are [`INSIDE`], one bit each.
+const INNER_POINTS: [u16; 8] = {
+    let mut all = [0; 8];
+    let mut inside = 0;
+    while inside < 8 {
+        all[inside] = 1 << INNER[0] | 1 << INNER[1] | 1 << INNER[2];
+        let mut edge = 0;
+        while edge < 3 {
+            let [start, second, middle, fourth, _] = EDGES[edge];
+            if inside & 1 << edge != 0 {
+                all[inside] |= 1 << second | 1 << middle | 1 << fourth;
+                if inside & 1 << ((edge + 2) % 3) != 0 {
+                    all[inside] |= 1 << start;
+                }
+            }
+            edge += 1;
+        }
+        inside += 1;
+    }
+    all
+};
+
+/// What some points of the surface, and of curves over edges, come to; `None` if not all of them are finite.
+fn greatest_of(
+    frame: &TriangleFrame,
+    mut inner: impl Iterator<Item = DVec3>,
+    curves: &[(usize, DVec3)],
+) -> Option<Greatest> {
+    let mut greatest = Greatest::default();
+    loop {
+        let mut points = inner.by_ref().take(SEEN).peekable();
+        if points.peek().is_none() {
+            break;
+        }
+        let mut seen = SeenPoints::NONE;
+        seen.look(frame, points);
+        greatest.inner(frame, &seen, u16::MAX);
+        if !seen.is_finite {
+            return None;
+        }
+    }
+    for of_some in curves.chunks(SEEN) {
+        let mut seen = SeenPoints::NONE;
+        seen.look(frame, of_some.iter().map(|&(_, point)| point));
+        for (at, &(edge, _)) in of_some.iter().enumerate() {
+            greatest.curve(frame, edge, &seen, [at as u8; CURVE]);
+        }
+        greatest.heights(&seen);
+        if !seen.is_finite {
+            return None;
+        }
+    }
+    Some(greatest)
+}
+
 /// The greatest height in the middle of a piece and of its edges, from those of its net.
 #[inline]
 fn attained(heights: &[f64; SEEN]) -> f64 {
@@ -447,4 +372,55 @@ fn attained(heights: &[f64; SEEN]) -> f64 {
         inner += 12.0 * heights[at];
     }
     greatest.max((outer + halves + inner).abs() / 81.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points that are seen together come to what they come to one by one, whatever the net's edges are.
+    #[test]
+    fn nets_come_to_what_their_points_come_to() {
+        let mut count = 0.0;
+        let mut number = || {
+            count += 1.0;
+            let t: f64 = count;
+            (t * t * 0.37 + t * 1.9).sin()
+        };
+        let (mut told, mut compared) = (0, 0);
+        for case in 0..4000 {
+            // A net over the triangle or a part of it, stirred.
+            let noise = 0.15 * 0.5f64.powi(case % 12);
+            let mut point =
+                |x: f64, y: f64| DVec3::new(x, y, 0.0) + noise * DVec3::new(number(), number(), number());
+            let frame = TriangleFrame::new([point(0.0, 0.0), point(1.0, 0.1), point(0.2, 0.9)]);
+            let (size, from) = ([1.0, 0.5, 0.25][case as usize % 3], [0.0, 0.2][case as usize % 2]);
+            let mut net = BezierTriangle([DVec3::ZERO; 15]);
+            let places = (0..5).flat_map(|k| (0..5 - k).map(move |j| (f64::from(j), f64::from(k))));
+            for (at, (j, k)) in net.0.iter_mut().zip(places) {
+                let (s, t) = (0.25 * size * j + from, 0.25 * size * k + from);
+                *at = point(s + 0.2 * t, 0.1 * s + 0.9 * t);
+            }
+            let borders = [0, 2, 4].map(|shift| [0, 1, 2, INSIDE][(case as usize >> shift) % 4]);
+            let bound = DeviationBound { frame: &frame, open: [false; 3] };
+            let (found, each) = (bound.net(&net, borders).0, bound.each_of_net(&net, borders));
+            let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * (1.0 + b.abs()) || a == b;
+            if each.slopes.iter().all(|slope| slope.is_finite()) {
+                compared += 1;
+                assert!(near(found.own, each.own) || found.own >= each.own, "{case}: {found:?} {each:?}");
+                assert!(
+                    near(found.height, each.height) && near(found.drift, each.drift),
+                    "{case}: {found:?} {each:?}"
+                );
+                assert!(
+                    (0..3).all(|edge| near(found.slopes[edge], each.slopes[edge])),
+                    "{case}: {found:?} {each:?}"
+                );
+            } else {
+                // What crosses an edge far off is seen by the angles at its own edge or by each point.
+                told += usize::from(found.slopes == each.slopes);
+            }
+        }
+        assert!(compared > 500 && told > 100, "{compared}, {told}");
+    }
 }

@@ -9,6 +9,7 @@ mod bounds;
 mod cell_rows;
 mod deviation;
 mod dihedral;
+mod greatest;
 mod quartic_cell;
 mod sampled;
 mod sub_triangle;

@@ -216,27 +216,21 @@ impl TriangleFrame {
         self.on_edge
     }
 
+    /// Where an edge starts along its direction, from the first corner.
+    #[inline]
+    pub(crate) fn start(&self, edge: usize) -> f64 {
+        self.starts[edge]
+    }
+
     /// A point as seen from the first corner.
     #[inline]
     pub(crate) fn seen_from_first(&self, point: DVec3) -> DVec3 {
         point - self.corners[0]
     }
 
-    /// [`Self::height`] of a point as seen from the first corner.
-    #[inline]
-    pub(crate) fn height_from_first(&self, offset: DVec3) -> f64 {
-        self.normal.dot(offset)
-    }
-
     /// Where an edge's line stands outwards of the first corner.
     pub(crate) fn offset(&self, edge: usize) -> f64 {
         self.offsets[edge]
-    }
-
-    /// How far a point, as seen from the first corner, stands outside an edge's line; negative inside.
-    #[inline]
-    pub(crate) fn outside_from_first(&self, edge: usize, offset: DVec3) -> f64 {
-        self.outward[edge].dot(offset) - self.offsets[edge]
     }
 
     /// [`Beside::along`] of a point as seen from the first corner, or what is left of the edge from there if that is

@@ -4,7 +4,7 @@
 //! The points are the vertex v, its ring r₀, r₁, … (the face is v r₀ r₁) and the five beyond the ring that complete the
 //! rings of r₀ and r₁. One refinement gives the same again, smaller, and three regular pieces.
 
-use super::box_spline::{self, Points};
+use super::box_spline::Points;
 use super::{Neighbours, Patch};
 use crate::vector::DVec3;
 
@@ -25,9 +25,8 @@ pub(crate) struct ExtraordinaryPatch {
 /// The points around the four parts of an [`ExtraordinaryPatch`].
 pub(crate) struct RefinedExtraordinary {
     own: ExtraordinaryPatch,
-    /// What the regular parts need besides: the new points between r₀ and the first three outer points, and
-    /// between r₁ and the last three.
-    beyond: [DVec3; 6],
+    /// Those near the face, by their numbers in [`near`].
+    near: [DVec3; 16],
 }
 
 impl ExtraordinaryPatch {
@@ -48,25 +47,34 @@ impl ExtraordinaryPatch {
         let Self { corner, at, ref ring, outer: [before, past_first, between, past_second, after] } = *self;
         let valence = ring.len();
         let (last, first, second, third) = (ring[valence - 1], ring[0], ring[1], ring[2 % valence]);
-        let edges = (0..valence).map(|slot| {
-            let previous = ring[if slot == 0 { valence - 1 } else { slot - 1 }];
+        let mut edges = Neighbours::from_elem(DVec3::ZERO, valence);
+        let mut previous = last;
+        for slot in 0..valence {
             let next = ring[if slot + 1 == valence { 0 } else { slot + 1 }];
-            edge(at, ring[slot], previous, next)
-        });
-        let vertex = |at: DVec3, ring: [DVec3; 6]| 0.625 * at + 0.0625 * ring.into_iter().sum::<DVec3>();
-        let own = Self {
-            corner,
-            at: moved,
-            ring: edges.collect(),
-            outer: [
-                edge(last, first, at, before),
-                vertex(first, [at, last, before, past_first, between, second]),
-                edge(first, second, at, between),
-                vertex(second, [at, first, between, past_second, after, third]),
-                edge(second, third, at, after),
-            ],
+            edges[slot] = edge(at, ring[slot], previous, next);
+            previous = ring[slot];
+        }
+        let vertex = |at: DVec3, [a, b, c, d, e, f]: [DVec3; 6]| {
+            0.625 * at + 0.0625 * (DVec3::ZERO + a + b + c + d + e + f)
         };
-        let beyond = [
+        let outer = [
+            edge(last, first, at, before),
+            vertex(first, [at, last, before, past_first, between, second]),
+            edge(first, second, at, between),
+            vertex(second, [at, first, between, past_second, after, third]),
+            edge(second, third, at, after),
+        ];
+        let near = [
+            moved,
+            edges[valence - 1],
+            edges[0],
+            edges[1],
+            edges[2 % valence],
+            outer[0],
+            outer[1],
+            outer[2],
+            outer[3],
+            outer[4],
             edge(first, before, last, past_first),
             edge(first, past_first, before, between),
             edge(first, between, past_first, second),
@@ -74,7 +82,7 @@ impl ExtraordinaryPatch {
             edge(second, past_second, between, after),
             edge(second, after, past_second, third),
         ];
-        RefinedExtraordinary { own, beyond }
+        RefinedExtraordinary { own: Self { corner, at: moved, ring: edges, outer }, near }
     }
 }
 
@@ -92,71 +100,125 @@ impl RefinedExtraordinary {
         self.local(part) != 0
     }
 
+    /// The piece at the irregular corner.
+    pub(crate) fn own(&self) -> &ExtraordinaryPatch {
+        &self.own
+    }
+
     /// The number of a part as it counts from the irregular corner.
+    #[inline]
     fn local(&self, part: usize) -> usize {
         if part == 3 { 3 } else { (part + 3 - self.own.corner) % 3 }
     }
 
+    /// The points of one of the parts, if it is regular.
+    #[inline]
+    pub(crate) fn points(&self, part: usize) -> Option<Points> {
+        let local = self.local(part);
+        (local != 0).then(|| self.regular(local))
+    }
+
     /// The points of a regular part, numbered from the irregular corner, as it stands in the face.
+    #[inline]
     pub(crate) fn regular(&self, local: usize) -> Points {
-        let [on_first, on_second] = [self.own.ring[0], self.own.ring[1]];
-        let [_, first, between, second, _] = self.own.outer;
-        let (mut corners, mut rings) = match local {
-            1 => ([on_first, first, between], [self.around_first(1), self.first(), self.between(5)]),
-            2 => ([on_second, between, second], [self.around_second(1), self.between(3), self.second()]),
-            _ => (
-                [between, on_second, on_first],
-                [self.between(4), self.around_second(0), self.around_first(2)],
-            ),
-        };
-        corners.rotate_right(self.own.corner);
-        rings.rotate_right(self.own.corner);
-        box_spline::assemble(corners, &rings)
+        let mut points = [DVec3::ZERO; 12];
+        let list = &near::PARTS[self.own.corner % 3][(local - 1) % 3];
+        points.iter_mut().zip(list).for_each(|(point, &at)| *point = self.near[usize::from(at) % 16]);
+        points
     }
 
     /// The new vertex on the edge from corner `edge` of the face, with its ring.
     pub(crate) fn middle(&self, edge: usize) -> (DVec3, [DVec3; 6]) {
-        match (edge + 3 - self.own.corner) % 3 {
-            0 => (self.own.ring[0], self.around_first(0)),
-            1 => (self.own.outer[2], self.between(0)),
-            _ => (self.own.ring[1], self.around_second(0)),
+        let (at, ring) = &near::MIDDLES[(edge + 3 - self.own.corner) % 3];
+        let mut around = [DVec3::ZERO; 6];
+        around.iter_mut().zip(ring).for_each(|(point, &at)| *point = self.near[usize::from(at) % 16]);
+        (self.near[usize::from(*at) % 16], around)
+    }
+}
+
+/// The new points near a face, by their numbers, and which of them its parts take.
+mod near {
+    use super::super::box_spline::{CORNERS, RINGS};
+
+    /// The irregular vertex, and the new points on the edges to the last, the first, the second and the third of its ring.
+    const AT: u8 = 0;
+    const LAST: u8 = 1;
+    const ON_FIRST: u8 = 2;
+    const ON_SECOND: u8 = 3;
+    const ON_THIRD: u8 = 4;
+    /// The five outer points.
+    const BEFORE: u8 = 5;
+    const FIRST: u8 = 6;
+    const BETWEEN: u8 = 7;
+    const SECOND: u8 = 8;
+    const AFTER: u8 = 9;
+    /// Those between r₀ and the first three outer points that were, and between r₁ and the last three.
+    const BEYOND: [u8; 6] = [10, 11, 12, 13, 14, 15];
+
+    /// The rings of the new points on the edges to r₀ and r₁ and between these, and of r₀ and r₁.
+    const AROUND_FIRST: [u8; 6] = [BEFORE, FIRST, BETWEEN, ON_SECOND, AT, LAST];
+    const AROUND_SECOND: [u8; 6] = [ON_FIRST, BETWEEN, SECOND, AFTER, ON_THIRD, AT];
+    const AROUND_BETWEEN: [u8; 6] = [FIRST, BEYOND[2], BEYOND[3], SECOND, ON_SECOND, ON_FIRST];
+    const OF_FIRST: [u8; 6] = [BETWEEN, ON_FIRST, BEFORE, BEYOND[0], BEYOND[1], BEYOND[2]];
+    const OF_SECOND: [u8; 6] = [ON_SECOND, BETWEEN, BEYOND[3], BEYOND[4], BEYOND[5], AFTER];
+
+    /// The new vertices on the edges, numbered from the irregular corner, and their rings.
+    pub(super) const MIDDLES: [(u8, [u8; 6]); 3] =
+        [(ON_FIRST, AROUND_FIRST), (BETWEEN, AROUND_BETWEEN), (ON_SECOND, AROUND_SECOND)];
+
+    /// The twelve points of the regular parts: by the face's irregular corner, and the part as it is numbered from there.
+    pub(super) const PARTS: [[[u8; 12]; 3]; 3] = {
+        let mut parts = [[[0; 12]; 3]; 3];
+        let mut corner = 0;
+        while corner < 3 {
+            parts[corner] = [
+                assembled(
+                    [ON_FIRST, FIRST, BETWEEN],
+                    [turned(AROUND_FIRST, 1), OF_FIRST, turned(AROUND_BETWEEN, 5)],
+                    corner,
+                ),
+                assembled(
+                    [ON_SECOND, BETWEEN, SECOND],
+                    [turned(AROUND_SECOND, 1), turned(AROUND_BETWEEN, 3), OF_SECOND],
+                    corner,
+                ),
+                assembled(
+                    [BETWEEN, ON_SECOND, ON_FIRST],
+                    [turned(AROUND_BETWEEN, 4), AROUND_SECOND, turned(AROUND_FIRST, 2)],
+                    corner,
+                ),
+            ];
+            corner += 1;
         }
+        parts
+    };
+
+    /// A ring from another of its points on.
+    const fn turned(ring: [u8; 6], from: usize) -> [u8; 6] {
+        let mut turned = [0; 6];
+        let mut slot = 0;
+        while slot < 6 {
+            turned[slot] = ring[(slot + from) % 6];
+            slot += 1;
+        }
+        turned
     }
 
-    /// The ring of the point on the edge to r₀, counter-clockwise from the given place on.
-    fn around_first(&self, from: usize) -> [DVec3; 6] {
-        let ExtraordinaryPatch { at, ref ring, outer: [before, first, between, ..], .. } = self.own;
-        let mut around = [before, first, between, ring[1], at, ring[ring.len() - 1]];
-        around.rotate_left(from);
-        around
-    }
-
-    /// The ring of the point on the edge to r₁.
-    fn around_second(&self, from: usize) -> [DVec3; 6] {
-        let ExtraordinaryPatch { at, ref ring, outer: [_, _, between, second, after], .. } = self.own;
-        let mut around = [ring[0], between, second, after, ring[2 % ring.len()], at];
-        around.rotate_left(from);
-        around
-    }
-
-    /// The ring of the point on r₀r₁.
-    fn between(&self, from: usize) -> [DVec3; 6] {
-        let ExtraordinaryPatch { ref ring, outer: [_, first, _, second, _], .. } = self.own;
-        let mut around = [first, self.beyond[2], self.beyond[3], second, ring[1], ring[0]];
-        around.rotate_left(from);
-        around
-    }
-
-    /// The ring of r₀.
-    fn first(&self) -> [DVec3; 6] {
-        let ExtraordinaryPatch { ref ring, outer: [before, _, between, ..], .. } = self.own;
-        [between, ring[0], before, self.beyond[0], self.beyond[1], self.beyond[2]]
-    }
-
-    /// The ring of r₁.
-    fn second(&self) -> [DVec3; 6] {
-        let ExtraordinaryPatch { ref ring, outer: [.., between, _, after], .. } = self.own;
-        [ring[1], between, self.beyond[3], self.beyond[4], self.beyond[5], after]
+    /// The twelve points of a face with these corners and rings, the first of which stands at corner `first`.
+    const fn assembled(corners: [u8; 3], rings: [[u8; 6]; 3], first: usize) -> [u8; 12] {
+        let mut points = [0; 12];
+        let mut corner = 0;
+        while corner < 3 {
+            let place = (corner + first) % 3;
+            let mut slot = 0;
+            while slot < 6 {
+                points[RINGS[place][slot] as usize] = rings[corner][slot];
+                slot += 1;
+            }
+            points[CORNERS[place]] = corners[corner];
+            corner += 1;
+        }
+        points
     }
 }
 

@@ -103,9 +103,17 @@ impl Patch {
             Some((patch, Far::Mean { valence, mean })) => {
                 Self::Pole(Box::new(PolePatch::near(patch, valence, mean)))
             }
-            Some((patch, _)) if patch.ring.len() > LARGEST_RING => Self::Pole(Box::new(PolePatch::of(patch))),
-            Some((patch, _)) => Self::Extraordinary(Box::new(patch)),
+            Some((patch, _)) => Self::of_extraordinary(patch),
             None => Self::Sectors(Box::new(sectors)),
+        }
+    }
+
+    /// A piece with one irregular corner, whose ring is known as a whole.
+    fn of_extraordinary(patch: ExtraordinaryPatch) -> Self {
+        if patch.ring.len() > LARGEST_RING {
+            Self::Pole(Box::new(PolePatch::of(patch)))
+        } else {
+            Self::Extraordinary(Box::new(patch))
         }
     }
 
@@ -169,9 +177,29 @@ impl RefinedPatch<'_> {
             Self::Regular(refined) => Patch::Regular(refined.part(part)),
             Self::Extraordinary(refined) => refined.part(part),
             Self::Pole(refined) => refined.part(part),
-            Self::Sectors(refined) => Patch::of(refined.part(part)),
+            Self::Sectors(refined) => refined.piece(part),
             Self::SemiSharp(refined) => refined.part(part),
             Self::Mesh(refined) => refined.part(part),
+        }
+    }
+
+    /// The points of a part, where it is known without more ado that it is regular.
+    #[inline]
+    pub(crate) fn points(&self, part: usize) -> Option<Points> {
+        match self {
+            Self::Regular(refined) => Some(refined.part(part)),
+            Self::Extraordinary(refined) => refined.points(part),
+            Self::Pole(refined) => refined.points(part),
+            Self::Sectors(_) | Self::SemiSharp(_) | Self::Mesh(_) => None,
+        }
+    }
+
+    /// A part that is at hand and need not be made.
+    #[inline]
+    pub(crate) fn extraordinary(&self, part: usize) -> Option<&ExtraordinaryPatch> {
+        match self {
+            Self::Extraordinary(refined) if !refined.is_regular(part) => Some(refined.own()),
+            _ => None,
         }
     }
 

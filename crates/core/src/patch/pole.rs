@@ -7,6 +7,7 @@
 //! piece lies in the hull of those points.
 
 use super::Patch;
+use super::box_spline::Points;
 use super::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use crate::vector::DVec3;
 
@@ -87,6 +88,11 @@ impl RefinedPole {
     /// Whether a part is regular: all but that at the irregular corner.
     pub(crate) fn is_regular(&self, part: usize) -> bool {
         self.near.is_regular(part)
+    }
+
+    /// The points of one of the parts, if it is regular.
+    pub(crate) fn points(&self, part: usize) -> Option<Points> {
+        self.near.points(part)
     }
 
     /// The new vertex on the edge from corner `edge` of the face, with its ring.

@@ -7,10 +7,10 @@
 //! Of very many neighbours only those near the face and what else the rules ask for are kept ([`Far`]), so that a piece takes no
 //! more than any other; see [`super::pole`] for how long that lasts.
 
-use super::Neighbours;
 use super::box_spline::{self, Points};
 use super::extraordinary::ExtraordinaryPatch;
 use super::rules::Rules;
+use super::{Neighbours, Patch};
 use crate::ring::RingShape;
 use crate::vector::DVec3;
 
@@ -130,17 +130,18 @@ impl VertexSector {
     /// The new vertices on the edges to the neighbours.
     fn edge_points(&self) -> Neighbours {
         let count = self.neighbours.len();
-        (0..count)
-            .map(|slot| {
-                let end = self.neighbours[slot];
-                if self.is_sharp(slot) {
-                    return 0.5 * (self.at + end);
-                }
-                let before = self.neighbours[if slot == 0 { count - 1 } else { slot - 1 }];
-                let after = self.neighbours[if slot + 1 == count { 0 } else { slot + 1 }];
-                0.375 * (self.at + end) + 0.125 * (before + after)
-            })
-            .collect()
+        let mut points = Neighbours::from_elem(DVec3::ZERO, count);
+        for slot in 0..count {
+            let end = self.neighbours[slot];
+            if self.is_sharp(slot) {
+                points[slot] = 0.5 * (self.at + end);
+                continue;
+            }
+            let before = self.neighbours[if slot == 0 { count - 1 } else { slot - 1 }];
+            let after = self.neighbours[if slot + 1 == count { 0 } else { slot + 1 }];
+            points[slot] = 0.375 * (self.at + end) + 0.125 * (before + after);
+        }
+        points
     }
 
     /// The six neighbours, the face's next corner first, of a regular sector; on an open one those beyond the curve are
@@ -219,30 +220,76 @@ impl RefinedSectors<'_> {
         self.edge_points[edge][self.sectors.0[edge].slot]
     }
 
-    /// The neighbours of that point: from the edge's end over the face to its start, and on beyond the edge unless that is
+    /// The neighbours of that point: from the edge's end over the face to its start, and on beyond the edge; `None` if that is
     /// sharp or a boundary.
-    fn around_middle(&self, edge: usize) -> (Neighbours, Centre) {
-        let (next, last) = ((edge + 1) % 3, (edge + 2) % 3);
+    fn smooth_ring(&self, edge: usize) -> Option<[DVec3; 6]> {
+        let next = (edge + 1) % 3;
         let (from, to) = (&self.sectors.0[edge], &self.sectors.0[next]);
-        let near = [self.moved[next], self.middle(next), self.middle(last), self.moved[edge]];
         if from.is_sharp(from.slot) || to.is_sharp(to.neighbour(1)) {
-            return (Neighbours::from_slice(&near), Centre::Crease);
+            return None;
         }
+        let [end, on_next, on_last, start] = self.before_middle(edge);
         let beyond = [self.edge_points[edge][from.neighbour(-1)], self.edge_points[next][to.neighbour(2)]];
-        (near.into_iter().chain(beyond).collect(), Centre::Smooth { sharp: None })
+        Some([end, on_next, on_last, start, beyond[0], beyond[1]])
+    }
+
+    /// Those of them over the face.
+    fn before_middle(&self, edge: usize) -> [DVec3; 4] {
+        let (next, last) = ((edge + 1) % 3, (edge + 2) % 3);
+        [self.moved[next], self.middle(next), self.middle(last), self.moved[edge]]
     }
 
     /// The sector of the new point on the edge from corner `edge`, with the face that starts at neighbour `slot`.
     fn middle_sector(&self, edge: usize, slot: usize) -> VertexSector {
-        let (neighbours, centre) = self.around_middle(edge);
+        let (neighbours, centre) = match self.smooth_ring(edge) {
+            Some(ring) => (Neighbours::from_slice(&ring), Centre::Smooth { sharp: None }),
+            None => (Neighbours::from_slice(&self.before_middle(edge)), Centre::Crease),
+        };
         VertexSector { at: self.middle(edge), neighbours, centre, slot, far: Far::Kept }
     }
 
     /// The new point on the edge from corner `edge` and its six neighbours: new points are always regular.
     pub(crate) fn regular_middle(&self, edge: usize) -> (DVec3, [DVec3; 6]) {
-        let sector = self.middle_sector(edge, 0);
-        let ring = sector.regular_ring().unwrap_or([sector.at; 6]);
-        (sector.at, ring)
+        let at = self.middle(edge);
+        let mirrored = || self.middle_sector(edge, 0).regular_ring().unwrap_or([at; 6]);
+        (at, self.smooth_ring(edge).unwrap_or_else(mirrored))
+    }
+
+    /// A part in its simplest form.
+    pub(crate) fn piece(&self, part: usize) -> Patch {
+        self.smooth(part).unwrap_or_else(|| Patch::of(self.part(part)))
+    }
+
+    /// A part that no sharp edge and nothing that is left out comes near, without its sectors.
+    fn smooth(&self, part: usize) -> Option<Patch> {
+        if part == 3 {
+            let edges = [1, 2, 0];
+            let mut rings = [self.smooth_ring(1)?, self.smooth_ring(2)?, self.smooth_ring(0)?];
+            rings.iter_mut().for_each(|ring| ring.rotate_left(1));
+            return Some(Patch::Regular(box_spline::assemble(edges.map(|edge| self.middle(edge)), &rings)));
+        }
+        let old = &self.sectors.0[part];
+        let own = &self.edge_points[part];
+        if old.centre != (Centre::Smooth { sharp: None }) || old.far != Far::Kept || own.len() < 3 {
+            return None;
+        }
+        let last = (part + 2) % 3;
+        let (mut on_next, on_last) = (self.smooth_ring(part)?, self.smooth_ring(last)?);
+        let at = self.moved[part];
+        if let &[a, b, c, d, e, f] = &own[..] {
+            let mut ring = [a, b, c, d, e, f];
+            ring.rotate_left(old.slot);
+            on_next.rotate_left(2);
+            let (mut corners, mut rings) =
+                ([at, self.middle(part), self.middle(last)], [ring, on_next, on_last]);
+            corners.rotate_right(part);
+            rings.rotate_right(part);
+            return Some(Patch::Regular(box_spline::assemble(corners, &rings)));
+        }
+        let mut ring = own.clone();
+        ring.rotate_left(old.slot);
+        let outer = [on_next[5], on_next[0], on_next[1], on_last[3], on_last[4]];
+        Some(Patch::of_extraordinary(ExtraordinaryPatch { corner: part, at, ring, outer }))
     }
 
     /// Whether a part is regular: new points are, old ones stay what they were.
@@ -272,5 +319,49 @@ impl RefinedSectors<'_> {
         let mut sectors = [own, on_next, on_last];
         sectors.rotate_right(part);
         SectorPatch(sectors)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scheme::Loop;
+
+    /// What is made without sectors is to the bit what they come to.
+    #[test]
+    fn pieces_are_those_of_the_sectors() {
+        let rules = Rules::of(&Loop);
+        let mut count = 0.0;
+        let mut point = || {
+            count += 1.0;
+            let t: f64 = count;
+            DVec3::new((t * 1.7).sin(), (t * t * 0.31).cos(), (t * 2.9 + 0.4).sin())
+        };
+        let centres = [
+            Centre::Smooth { sharp: None },
+            Centre::Smooth { sharp: Some(1) },
+            Centre::Crease,
+            Centre::Corner { open: true, sharp: None },
+        ];
+        let mut smooth = 0;
+        for case in 0..2000 {
+            let kind =
+                |corner: usize| if case % 3 == 0 { case / 3 / 5usize.pow(corner as u32) % 5 } else { 0 };
+            let sectors = SectorPatch([0, 1, 2].map(|corner| {
+                let count = 3 + (case / 7usize.pow(corner as u32)) % 7;
+                let centre = centres[kind(corner) % 4];
+                let is_open = matches!(centre, Centre::Crease | Centre::Corner { .. });
+                let slot = case % (count - usize::from(is_open));
+                let neighbours = (0..count).map(|_| point()).collect();
+                VertexSector { at: point(), neighbours, centre, slot, far: Far::Kept }
+            }));
+            let refined = sectors.refined(&rules);
+            for part in 0..4 {
+                let expected = Patch::of(refined.part(part));
+                assert_eq!(format!("{:?}", refined.piece(part)), format!("{expected:?}"), "{case}, {part}");
+                smooth += usize::from(refined.smooth(part).is_some());
+            }
+        }
+        assert!(smooth > 4000, "{smooth}");
     }
 }

@@ -1,6 +1,8 @@
 //! The bounds against dense samples of the pieces, both ways.
 
 use super::*;
+use crate::patch::characteristic::Characteristic;
+use crate::patch::extraordinary::ExtraordinaryPatch;
 use crate::scheme::Loop;
 
 /// Numbers between −1 and 1, the same on every run.
@@ -127,6 +129,7 @@ fn bounds_hold_for_every_part_and_valence() {
                         chord: 0.1,
                         slopes: [slope; 3],
                         gives_up: false,
+                        least_chord: None,
                     };
                     let found = Pieces::of(&patch).deviation(part, &frame, &rules, effort);
                     assert!(
@@ -152,8 +155,15 @@ fn nothing_is_within_a_distance_of_what_is_not_a_number() {
     let rules = Rules::of(&Loop);
     let mut numbers = Numbers(3);
     let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
-    let effort =
-        Effort { target: 1e9, halvings: 1, open: [false; 3], chord: 0.1, slopes: [0.5; 3], gives_up: false };
+    let effort = Effort {
+        target: 1e9,
+        halvings: 1,
+        open: [false; 3],
+        chord: 0.1,
+        slopes: [0.5; 3],
+        gives_up: false,
+        least_chord: None,
+    };
     let fails = |patch: &Patch, corners: [DVec3; 3], open: bool, what: &str| {
         let effort = Effort { open: [open; 3], ..effort };
         let found =
@@ -187,4 +197,38 @@ fn nothing_is_within_a_distance_of_what_is_not_a_number() {
             }
         }
     }
+}
+
+/// What is given up before all of it was looked at would have missed the target with any angles and slopes that can count; what is not is
+/// what it would have been.
+#[test]
+fn nothing_is_given_up_that_could_pass() {
+    let rules = Rules::of(&Loop);
+    let mut numbers = Numbers(11);
+    let (mut given_up, mut kept) = (0, 0);
+    for valence in (3..12).cycle().take(200) {
+        let patch = Patch::Extraordinary(Box::new(numbers.piece(valence, 0.02)));
+        let frame = TriangleFrame::new([0, 1, 2].map(|corner| limit(&patch, &rules, corner)));
+        let chord = 0.2 * (1.0 + numbers.next());
+        let all = Effort {
+            target: 0.02 + 0.015 * numbers.next(),
+            halvings: 2,
+            open: [false; 3],
+            chord: 0.3,
+            slopes: [0.6; 3],
+            gives_up: false,
+            least_chord: None,
+        };
+        let some = Effort { gives_up: true, least_chord: Some(chord.min(all.chord)), ..all };
+        let [whole, found] = [all, some]
+            .map(|effort| Pieces::of(&patch).deviation(SubTriangle::Whole, &frame, &rules, effort));
+        if found.own == f64::INFINITY {
+            given_up += 1;
+            assert!(whole.bound(chord, [0.4; 3]) > all.target && whole.bound(0.3, [0.6; 3]) > all.target);
+        } else {
+            kept += 1;
+            assert_eq!(whole, found);
+        }
+    }
+    assert!(given_up > 100 && kept > 5, "{given_up}, {kept}");
 }

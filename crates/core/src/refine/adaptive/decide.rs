@@ -331,7 +331,7 @@ impl<'a> Decider<'a> {
         }
         let judge = self.judge;
         if place.level >= self.max_levels || judge.may_pass(&corners, &middles, place.level) {
-            let mut pieces = Pieces::of(patch);
+            let mut pieces = Pieces::with_refined(patch, refined);
             let part = (place.level, SubTriangle::Whole);
             let verdict = judge.general(&mut pieces, part, &corners, open, &self.allowance);
             if !verdict.fails() || place.level >= self.max_levels {

@@ -264,7 +264,7 @@ impl Judge<'_> {
         if self.is_lenient {
             let beside = ground.jet().beside(cell, &seen.frame, open);
             let by_derivatives = beside.deviation(heights.refined(DIVISIONS, 0.0).min(high));
-            let by_net = net().deviation(&seen.frame, self.rules, self.effort(&seen, open));
+            let by_net = net().deviation(&seen.frame, self.rules, self.effort(&seen, open, allowance));
             let (chord, slopes) = seen.expected();
             let is_less = by_derivatives.bound(chord, slopes) <= by_net.bound(chord, slopes);
             return self.decided(&seen, if is_less { by_derivatives } else { by_net }, allowance);
@@ -347,7 +347,7 @@ impl Judge<'_> {
     }
 
     fn by_net(&self, seen: &Seen, net: &NetPart, open: [bool; 3], allowance: &Allowance) -> Verdict {
-        let deviation = net.deviation(&seen.frame, self.rules, self.effort(seen, open));
+        let deviation = net.deviation(&seen.frame, self.rules, self.effort(seen, open, allowance));
         self.decided(seen, deviation, allowance)
     }
 
@@ -357,12 +357,13 @@ impl Judge<'_> {
     }
 
     /// What is done for a bound.
-    fn effort(&self, seen: &Seen, open: [bool; 3]) -> Effort {
+    fn effort(&self, seen: &Seen, open: [bool; 3], allowance: &Allowance) -> Effort {
         let (chord, slopes) = seen.expected();
         // What will be divided needs no bound.
         let gives_up = !self.is_kept(seen);
         let halvings = if self.is_lenient { LENIENT_HALVINGS } else { HALVINGS };
-        Effort { target: self.limit, halvings, open, chord, slopes, gives_up }
+        let least_chord = gives_up.then(|| chord.min(seen.allowed(allowance).0));
+        Effort { target: self.limit, halvings, open, chord, slopes, gives_up, least_chord }
     }
 
     fn by_pieces<'p>(
@@ -373,7 +374,7 @@ impl Judge<'_> {
         open: [bool; 3],
         allowance: &Allowance,
     ) -> Verdict {
-        let deviation = pieces.deviation(part, &seen.frame, self.rules, self.effort(seen, open));
+        let deviation = pieces.deviation(part, &seen.frame, self.rules, self.effort(seen, open, allowance));
         self.decided(seen, deviation, allowance)
     }
 

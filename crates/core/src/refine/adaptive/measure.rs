@@ -248,6 +248,7 @@ impl Measuring<'_> {
             chord: among.chord,
             slopes: among.slopes,
             gives_up: false,
+            least_chord: None,
         }
     }
 

@@ -85,7 +85,7 @@ impl<'a> Trial<'a> {
     fn effort(&self, open: [bool; 3]) -> Effort {
         let (chord, slopes) = self.seen.expected();
         let target = self.limit * self.criteria.allowed_length(&self.region);
-        Effort { target, halvings: HALVINGS, open, chord, slopes, gives_up: false }
+        Effort { target, halvings: HALVINGS, open, chord, slopes, gives_up: false, least_chord: None }
     }
 
     pub(super) fn general<'p>(

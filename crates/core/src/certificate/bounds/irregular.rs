@@ -1,0 +1,181 @@
+//! Pieces at irregular vertices as they are: by an affine image of the characteristic map, by the hull of their control points, or by
+//! what stands for them while tags fade (see [`super`]).
+
+use super::super::{exceeds, greater};
+use super::{Borders, Deviation, Effort, INSIDE, Search, SubTriangle};
+use crate::patch::Patch;
+use crate::patch::characteristic::{Characteristic, MapSector};
+use crate::patch::extraordinary::ExtraordinaryPatch;
+use crate::vector::DVec3;
+
+/// Levels that a piece at an irregular vertex is split at most: it has shrunk by 2⁻⁴⁰ then, below rounding.
+const DEEPEST: usize = 40;
+
+/// Where the lasting twin of a piece is farther away than the target by this many times what lies between the two, the piece is
+/// taken to be too far as well.
+const CERTAIN: f64 = 3.0;
+
+/// Squares that are so many times too great are too great, whatever rounding does.
+const CLEARLY: f64 = 1.0 + 1e-9;
+
+impl Search<'_> {
+    /// Takes the lasting twin of a semi-sharp piece in its place if that is enough, or if it is clear that nothing will be; says
+    /// whether it did.
+    fn by_twin(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) -> bool {
+        let Patch::SemiSharp(piece) = patch else { return false };
+        let aim = self.aim();
+        let Some((near, rest)) = piece.lasting_twin(self.rules).filter(|&(_, rest)| rest <= aim) else {
+            return false;
+        };
+        // At corners of the triangle the twin is off by up to the rest: no division gets below that.
+        let target = (aim - 2.0 * rest).max(1.5 * rest);
+        let effort = Effort { target, least_chord: None, ..self.effort };
+        let mut twin = Search { effort, found: Deviation::default(), ..*self };
+        twin.part(&near, part, borders, depth);
+        let found = twin.found.off(rest, rest);
+        let Deviation { own, height, across, .. } = found;
+        let found = Deviation { own: own + rest, height: height + rest, across: across + rest, ..found };
+        let fails = exceeds(self.value(&twin.found) - CERTAIN * rest, aim);
+        if fails || self.value(&found) <= aim {
+            self.add(found);
+            return true;
+        }
+        false
+    }
+
+    /// A piece at an irregular vertex: as it is if that is enough, else refined.
+    pub(super) fn irregular(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) {
+        if !self.is_settled(patch, part, borders, depth) {
+            self.divided(&patch.refined(self.rules), part, borders, depth);
+        }
+    }
+
+    /// Takes a piece at an irregular vertex as it is if that is enough, or if nothing will be; says whether it did.
+    pub(super) fn is_settled(
+        &mut self,
+        patch: &Patch,
+        part: SubTriangle,
+        borders: Borders,
+        depth: usize,
+    ) -> bool {
+        if let Patch::Extraordinary(piece) = patch {
+            return self.is_settled_at(piece, part, borders, depth);
+        }
+        if self.found.own == f64::INFINITY || self.by_twin(patch, part, borders, depth) {
+            return true;
+        }
+        let held = self.hull(|visit| patch.for_each_hull_point(visit), borders, depth);
+        self.is_enough(held, depth)
+    }
+
+    /// The same for one at an irregular vertex inside the surface.
+    pub(super) fn is_settled_at(
+        &mut self,
+        piece: &ExtraordinaryPatch,
+        part: SubTriangle,
+        borders: Borders,
+        depth: usize,
+    ) -> bool {
+        if self.found.own == f64::INFINITY {
+            return true;
+        }
+        let held = match self.rules.characteristic(piece.ring.len()).filter(|_| depth < DEEPEST) {
+            Some(map) => {
+                let sector = match part {
+                    SubTriangle::Whole => Some(&map.sectors[0]),
+                    SubTriangle::Half { edge, second } if edge == (piece.corner + 1) % 3 => {
+                        Some(&map.sectors[1 + usize::from(second)])
+                    }
+                    _ => None,
+                };
+                sector.and_then(|sector| self.affine(piece, map, sector, borders))
+            }
+            None => self.hull(|visit| piece.points().for_each(visit), borders, depth),
+        };
+        self.is_enough(held, depth)
+    }
+
+    /// Takes what a piece is good for as it is, if that is enough; says whether it did.
+    fn is_enough(&mut self, held: Option<Deviation>, depth: usize) -> bool {
+        let held = held.filter(|held| depth >= DEEPEST || self.value(held) <= self.aim());
+        held.inspect(|&held| self.add(held)).is_some()
+    }
+
+    /// The bound by an affine image of the characteristic map's sector, if what the piece differs from it is little.
+    fn affine(
+        &self,
+        piece: &ExtraordinaryPatch,
+        map: &Characteristic,
+        sector: &MapSector,
+        borders: Borders,
+    ) -> Option<Deviation> {
+        let valence = piece.ring.len();
+        let sums = piece.ring.iter().zip(&map.control.ring).fold([DVec3::ZERO; 3], |sums, (&point, at)| {
+            [sums[0] + point, sums[1] + at.x * point, sums[2] + at.y * point]
+        });
+        let weight = 0.375 / self.rules.beta(valence);
+        let limit = (weight * piece.at + sums[0]) / (weight + valence as f64);
+        let tangents = [1, 2].map(|i| sums[i] * (2.0 / valence as f64));
+        let image = |at: DVec3| limit + at.x * tangents[0] + at.y * tangents[1];
+        let aim = self.aim();
+        let (mut rest, enough) = (0.0, CLEARLY * aim * aim);
+        // Those beyond the ring first: they are farthest away, and most pieces are refined because of them.
+        let outer = piece.outer.iter().zip(&map.control.outer);
+        let near = piece.ring.iter().zip(&map.control.ring).chain([(&piece.at, &map.control.at)]);
+        for (point, &at) in outer.chain(near) {
+            rest = greater(rest, point.distance_squared(image(at)));
+            if exceeds(rest, enough) {
+                return None;
+            }
+        }
+        let rest = rest.sqrt();
+        if exceeds(rest, aim) {
+            return None;
+        }
+        let mut curves = [(0, DVec3::ZERO); 13];
+        let mut count = 0;
+        let mut curve = |border: u8, at: DVec3| {
+            if border != INSIDE {
+                curves[count] = (border as usize, image(at));
+                count += 1;
+            }
+        };
+        let [starts, rim, ends] = [0, 1, 2].map(|edge| borders[(piece.corner + edge) % 3]);
+        curve(starts, sector.start);
+        curve(ends, sector.end);
+        sector.rim.iter().for_each(|&at| curve(rim, at));
+        // Where only one of the edges at the vertex is the triangle's, the vertex lies on that edge.
+        match (starts, ends) {
+            (INSIDE, on) | (on, INSIDE) => curve(on, DVec3::ZERO),
+            (first, second) if first == second => curve(first, DVec3::ZERO),
+            _ => {}
+        }
+        let is_inside = starts == INSIDE && ends == INSIDE;
+        let vertex = is_inside.then_some(DVec3::ZERO);
+        let inner = sector.hull.iter().copied().chain(vertex).map(image);
+        Some(self.bound.points(inner, &curves[..count]).grown(rest))
+    }
+
+    /// The greatest distance of the control points from the triangle, and from the edges in `borders`; `None` as soon as
+    /// one is farther away than helps.
+    fn hull(
+        &self,
+        each_point: impl FnOnce(&mut dyn FnMut(DVec3)),
+        borders: Borders,
+        depth: usize,
+    ) -> Option<Deviation> {
+        let frame = self.bound.frame;
+        let limit = if depth < DEEPEST { self.aim() } else { f64::INFINITY };
+        let (mut greatest, limit) = (0.0f64, limit * limit);
+        each_point(&mut |point| {
+            if exceeds(greatest, limit) {
+                return;
+            }
+            greatest = greater(greatest, frame.squared(point));
+            for border in borders.into_iter().filter(|&border| border != INSIDE) {
+                greatest = greater(greatest, frame.squared_to_edge(border as usize, point));
+            }
+        });
+        (!exceeds(greatest, limit)).then(|| Deviation::alone(greatest.sqrt()))
+    }
+}
