@@ -52,7 +52,7 @@ pub fn edit(bytes: &[u8]) {
         for part in own.parts.iter().filter(|part| part.faces.len() <= LARGEST) {
             let faces = part.faces.clone().map(|face| own.soup.faces.get(face));
             let triangles: Vec<[u32; 3]> = faces.filter_map(|face| face.try_into().ok()).collect();
-            let _ = asset.replace(mesh, part.primitive, &Geometry { positions, normals: None, triangles: &triangles });
+            let _ = asset.replace(mesh, part.primitive, &Geometry { positions, normals: None, triangles: &triangles, attributes: &[] });
         }
     }
     for format in [Format::Glb, Format::Gltf] {

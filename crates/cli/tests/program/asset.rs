@@ -7,8 +7,9 @@ use tempfile::TempDir;
 
 use crate::common::{counts, file, folder, run, soup};
 
-/// A text document with its buffer in it: positions of eight corners of a cube, and indices of its sides but the top,
-/// of the top, and of a line.
+/// A text document with its buffer in it: positions of eight corners of a cube (accessor 0), and indices of its sides but the top,
+/// of the top, and of a line; joints and weights of the corners (4 and 5), which are the first joint's below and the second's above.
+/// Its triangles have `more` attributes.
 fn cube(folder: &TempDir, name: &str, nodes: &str, more: &str) -> PathBuf {
     let mut bytes: Vec<u8> = Vec::new();
     for corner in 0..8u32 {
@@ -17,19 +18,24 @@ fn cube(folder: &TempDir, name: &str, nodes: &str, more: &str) -> PathBuf {
     }
     let sides = [[0u8, 2, 3, 1], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5], [4, 5, 7, 6]];
     bytes.extend(sides.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]));
-    bytes.extend([0, 7]);
+    bytes.extend([0, 7, 0, 0]);
+    (0..8u8).for_each(|corner| bytes.extend([corner >> 2, 9, 0, 0]));
+    (0..8).for_each(|_| [1f32, 0.0, 0.0, 0.0].iter().for_each(|weight| bytes.extend(weight.to_le_bytes())));
     let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
     let data = base64(&hex);
     let text = format!(
         r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{},"uri":"data:application/octet-stream;base64,{data}"}}],
-        "bufferViews":[{{"buffer":0,"byteLength":96}},{{"buffer":0,"byteOffset":96,"byteLength":38}}],
+        "bufferViews":[{{"buffer":0,"byteLength":96}},{{"buffer":0,"byteOffset":96,"byteLength":38}},
+            {{"buffer":0,"byteOffset":136,"byteLength":32}},{{"buffer":0,"byteOffset":168,"byteLength":128}}],
         "accessors":[{{"bufferView":0,"componentType":5126,"count":8,"type":"VEC3","min":[-1,-1,-1],"max":[1,1,1]}},
             {{"bufferView":1,"componentType":5121,"count":30,"type":"SCALAR"}},
             {{"bufferView":1,"byteOffset":30,"componentType":5121,"count":6,"type":"SCALAR"}},
-            {{"bufferView":1,"byteOffset":36,"componentType":5121,"count":2,"type":"SCALAR"}}],
+            {{"bufferView":1,"byteOffset":36,"componentType":5121,"count":2,"type":"SCALAR"}},
+            {{"bufferView":2,"componentType":5121,"count":8,"type":"VEC4"}},
+            {{"bufferView":3,"componentType":5126,"count":8,"type":"VEC4"}}],
         "materials":[{{"name":"body"}},{{"name":"lid","extras":{{"k":1.50}}}}],
         "meshes":[{{"name":"Box","primitives":[{{"attributes":{{"POSITION":0{more}}},"indices":1,"material":0}},
-            {{"attributes":{{"POSITION":0}},"indices":2,"material":1}},
+            {{"attributes":{{"POSITION":0{more}}},"indices":2,"material":1}},
             {{"attributes":{{"POSITION":0}},"indices":3,"mode":1}}]}}],
         "nodes":[{nodes}]}}"#,
         bytes.len()
@@ -117,18 +123,89 @@ fn materials_keep_their_border_and_stay_joined() {
     }
 }
 
+/// What a file's mesh has, read by the library's other half.
+fn first_mesh(path: &Path) -> limitmesh_io::gltf::MeshSoup {
+    let asset = limitmesh_io::Asset::open(path).expect("an asset");
+    asset.mesh(0, limitmesh_io::gltf::Joining::Never).expect("a mesh")
+}
+
+#[test]
+fn values_are_linear_on_the_faces_they_come_from() {
+    let folder = folder();
+    let output = folder.path().join("out.glb");
+    // The cube's own positions as values: wherever vertices move, these stay on the cube and cover it once.
+    let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, r#","_HEAT":0,"_SIDE":4"#);
+    for options in ["", "--crease-angle 30", "--crease-angle 100 --boundary corners"] {
+        let command = format!("refine {{}} -o {{}} --tolerance 1% {options} --report -");
+        let report = run(&command, &[&input, &output]).expect(0).json();
+        assert_eq!(report["left_out"], serde_json::json!([]));
+        let mesh = first_mesh(&output);
+        let table = |name: &str| mesh.attributes.iter().find(|table| table.name == name).expect("a table");
+        let (heat, side) = (table("_HEAT"), table("_SIDE"));
+        let point =
+            |v: u32| -> [f64; 3] { heat.values[3 * v as usize..][..3].try_into().expect("three numbers") };
+        let mut area = 0.0;
+        for corners in &heat.corners {
+            let [a, b, c] = corners.map(point);
+            let is_on = |axis: usize| a[axis].abs() == 1.0 && a[axis] == b[axis] && a[axis] == c[axis];
+            assert!((0..3).any(is_on), "{a:?} {b:?} {c:?} on no side");
+            let [u, v] = [b, c].map(|p| [0, 1, 2].map(|i| p[i] - a[i]));
+            let normal = [0, 1, 2].map(|i| u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3]);
+            area += 0.5 * normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+        }
+        assert!((area - 24.0).abs() < 1e-5, "{area}");
+        // Whole numbers are never blended.
+        assert!(
+            side.is_integer && side.values.chunks(4).all(|id| id[0] <= 1.0 && id[1..] == [9.0, 0.0, 0.0])
+        );
+    }
+    // Where triangles reach over many faces there is nothing to carry values by.
+    let single = cube(&folder, "single.gltf", r#"{"mesh":0}"#, r#","_HEAT":0"#);
+    let text = std::fs::read_to_string(&single).expect("text").replace(r#""count":30"#, r#""count":36"#);
+    let (before, rest) =
+        text.split_once(r#"{"attributes":{"POSITION":0,"_HEAT":0},"indices":2"#).expect("the lid");
+    let rest = rest.split_once("},").expect("the line").1;
+    let single = file(&folder, "single.gltf", &format!("{before}{rest}"));
+    run("refine {} -o {} --optimize", &[&single, &output]).expect(0).saying("left out: _HEAT");
+}
+
+#[test]
+fn skins_are_carried_along() {
+    let folder = folder();
+    let output = folder.path().join("out.glb");
+    let nodes = r#"{"mesh":0,"skin":0},{},{"translation":[0,0,5]}],"skins":[{"joints":[1,2]}"#;
+    let input = cube(&folder, "in.gltf", nodes, r#","JOINTS_0":4,"WEIGHTS_0":5,"_HEAT":0"#);
+    run("refine {} -o {} --tolerance 1%", &[&input, &output]).expect(0);
+    let mesh = first_mesh(&output);
+    assert_eq!(mesh.influences.len(), mesh.soup.positions.len());
+    let heat = &mesh.attributes[0];
+    for (face, corners) in mesh.soup.faces.iter().zip(&heat.corners) {
+        for (&v, &value) in face.iter().zip(corners) {
+            let up = 0.5 * (heat.values[3 * value as usize + 2] + 1.0);
+            let weight = |joint: u32| {
+                let own = mesh.influences[v as usize].iter().find(|(own, _)| *own == joint);
+                own.map_or(0.0, |&(_, weight)| weight)
+            };
+            assert!((weight(1) - up).abs() < 1e-6 && (weight(0) + weight(1) - 1.0).abs() < 1e-6);
+        }
+    }
+    // In its pose it is longer by as much as its second joint is away.
+    let soup = soup(&output);
+    let height = soup.positions.iter().fold(0.0f64, |most, p| most.max(p[2]));
+    assert!(height > 4.5, "{height}");
+}
+
 #[test]
 fn what_is_not_carried_along_is_told() {
     let folder = folder();
     let output = folder.path().join("out.glb");
-    let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, r#","_HEAT":0,"NORMAL":0"#);
-    let report =
-        run("refine {} -o {} --report -", &[&input, &output]).expect(0).saying("left out: _HEAT").json();
-    assert_eq!(report["left_out"], serde_json::json!(["_HEAT"]));
-    // A skin would lose its weights: the mesh stays.
-    let more = r#","JOINTS_0":0,"WEIGHTS_0":0"#;
-    let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, more);
-    run("refine {} -o {}", &[&input, &output]).expect(0).saying("meshes[0] 'Box': kept as it is");
+    let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, "");
+    let text = std::fs::read_to_string(&input).expect("text");
+    let input =
+        file(&folder, "in.gltf", &text.replace(r#""indices":"#, r#""targets":[{"POSITION":0}],"indices":"#));
+    run("refine {} -o {}", &[&input, &output])
+        .expect(0)
+        .saying("meshes[0] 'Box': kept as it is: morph targets");
     let found = run("info {} --json", &[&output]).expect(0).json();
     assert_eq!(found["asset"]["meshes"][0]["primitives"][0]["indices"], 30);
 }

@@ -14,6 +14,8 @@ pub(super) struct Numbers {
     pub(super) components: usize,
     /// One element after the other.
     pub(super) values: Vec<f64>,
+    /// Whether these are whole numbers as they stand, such as identities.
+    pub(super) is_integer: bool,
 }
 
 impl Numbers {
@@ -109,7 +111,8 @@ impl Source {
             }
             None => vec![0.0; count * components],
         };
-        let mut numbers = Numbers { components, values };
+        let is_integer = layout.component != Component::F32 && !layout.is_normalized;
+        let mut numbers = Numbers { components, values, is_integer };
         if let Some(sparse) = accessor.get("sparse") {
             self.replace(&sparse, layout, &mut numbers).map_err(place)?;
         }

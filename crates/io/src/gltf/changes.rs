@@ -47,8 +47,17 @@ impl Changes {
         let (buffer, start, bytes) = self.buffer(source, place, &top, &mut edits)?;
         let count = |key: &str| source.json.get(key).and_then(Value::as_array).map_or(0, Vec::len);
         let (views, accessors) = (count("bufferViews"), count("accessors"));
-        let new_views = self.appended.views.iter().map(|&(offset, length, target)| {
-            json!({"buffer": buffer, "byteOffset": start + offset, "byteLength": length, "target": target}).to_string()
+        let new_views = self.appended.views.iter().map(|view| {
+            let mut members = json!({
+                "buffer": buffer,
+                "byteOffset": start + view.start,
+                "byteLength": view.length,
+                "target": view.target,
+            });
+            if let Some(stride) = view.stride {
+                members["byteStride"] = Value::from(stride);
+            }
+            members.to_string()
         });
         append(&mut edits, text, &top, "bufferViews", new_views.collect())?;
         let new_accessors = self.appended.accessors.iter().enumerate().map(|(i, accessor)| {

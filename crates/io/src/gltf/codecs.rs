@@ -91,6 +91,7 @@ pub(super) fn draco(
         let component = Component::of(attribute.component_type().to_gltf() as usize)
             .ok_or_else(|| failed(&"numbers of a kind that glTF does not have"))?;
         let components = usize::from(attribute.components());
+        let is_integer = component != Component::F32 && !attribute.normalized();
         let values = accessor::decode(
             attribute.bytes(),
             attribute.count(),
@@ -98,7 +99,7 @@ pub(super) fn draco(
             components * component.size(),
             (component, attribute.normalized()),
         );
-        Ok((attribute.semantic().to_owned(), Numbers { components, values }))
+        Ok((attribute.semantic().to_owned(), Numbers { components, values, is_integer }))
     });
     let attributes = attributes.collect::<Result<_>>()?;
     let indices = geometry.indices().map_or(&[][..], |indices| indices.bytes());

@@ -6,6 +6,7 @@ use super::{Asset, Geometry};
 use crate::error::WriteError;
 use crate::format::Format;
 use crate::write::Output;
+use limitmesh::mesh::Triangles;
 use std::path::Path;
 
 macro_rules! document {
@@ -40,8 +41,8 @@ pub(crate) fn write_fresh(
     let mut asset = Asset { path: None, source, scene, changes: Changes::default() };
     // Where vertices have several normals, the writer is given a vertex for each.
     let normals = output.normals.filter(|_| output.corner_normals.is_none());
-    let geometry =
-        Geometry { positions: output.surface.positions, normals, triangles: output.surface.triangles };
+    let Triangles { positions, triangles } = output.surface;
+    let geometry = Geometry { positions, normals, triangles, attributes: &[] };
     if !geometry.triangles.is_empty() {
         asset.replace(0, 0, &geometry).map_err(flawed)?;
     }

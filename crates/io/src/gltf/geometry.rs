@@ -7,6 +7,7 @@ use super::flaw::{GltfFlaw, Result};
 use serde_json::json;
 
 const FLOAT: u32 = 5126;
+const BYTE: u32 = 5121;
 const SHORT: u32 = 5123;
 const INT: u32 = 5125;
 
@@ -23,16 +24,40 @@ pub struct Geometry<'a> {
     pub normals: Option<&'a [[f64; 3]]>,
     /// Vertex indices of each triangle, counter-clockwise seen from outside.
     pub triangles: &'a [[u32; 3]],
+    /// What else there is at the vertices.
+    pub attributes: &'a [VertexAttribute],
+}
+
+/// Values at vertices, such as texture coordinates.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct VertexAttribute {
+    /// Its name, such as `TEXCOORD_0`.
+    pub name: String,
+    /// Numbers of a value: 1 to 4.
+    pub width: usize,
+    /// A value for each vertex, one after the other.
+    pub values: Vec<f64>,
+    /// Whether they are whole numbers, which are written as such up to 65,535, and else as 32-bit floats.
+    pub is_integer: bool,
 }
 
 /// What is appended to a document: bytes, and views and accessors that name them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Appended {
     pub(super) bytes: Vec<u8>,
-    /// Start and length in the bytes, and what for.
-    pub(super) views: Vec<(usize, usize, u32)>,
+    pub(super) views: Vec<NewView>,
     /// By accessor all but its view, which has the accessor's number among these.
     pub(super) accessors: Vec<serde_json::Value>,
+}
+
+/// A part of the appended bytes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NewView {
+    pub(super) start: usize,
+    pub(super) length: usize,
+    pub(super) target: u32,
+    /// From one element to the next, where there is something between.
+    pub(super) stride: Option<usize>,
 }
 
 /// The numbers among the appended ones of a primitive's new accessors.
@@ -45,7 +70,7 @@ pub(super) struct NewPrimitive {
 impl Appended {
     /// Appends a primitive's geometry; `place` names it.
     pub(super) fn add(&mut self, geometry: &Geometry<'_>, place: &str) -> Result<NewPrimitive> {
-        let Geometry { positions, normals, triangles } = *geometry;
+        let Geometry { positions, normals, triangles, attributes: others } = *geometry;
         let normal_count = normals.map_or(positions.len(), <[_]>::len);
         if positions.is_empty() || triangles.is_empty() || normal_count != positions.len() {
             let (points, faces) = (positions.len(), triangles.len());
@@ -75,6 +100,9 @@ impl Appended {
             let plain = json!({"componentType": FLOAT, "count": directions.len(), "type": "VEC3"});
             attributes.push(("NORMAL".to_owned(), self.push(floats(&directions), OF_VERTICES, plain)));
         }
+        for other in others {
+            attributes.push((other.name.clone(), self.attribute(other, positions.len(), place)?));
+        }
         let corners = triangles.as_flattened();
         let is_short = positions.len() <= usize::from(u16::MAX);
         let bytes = match is_short {
@@ -87,9 +115,55 @@ impl Appended {
         Ok(NewPrimitive { attributes, indices })
     }
 
+    /// Appends values at vertices.
+    fn attribute(&mut self, attribute: &VertexAttribute, vertices: usize, place: &str) -> Result<usize> {
+        let VertexAttribute { name, width, values, is_integer } = attribute;
+        let place = || format!("{place}.attributes.{name}");
+        let Some(kind) = width.checked_sub(1).and_then(|at| ["SCALAR", "VEC2", "VEC3", "VEC4"].get(at))
+        else {
+            return Err(GltfFlaw::new(place(), format!("{width} numbers a value"), "1 to 4"));
+        };
+        if values.len() != vertices * width {
+            let met = format!("{} numbers for {vertices} vertices", values.len());
+            return Err(GltfFlaw::new(place(), met, format!("{width} for each")));
+        }
+        if let Some(x) = values.iter().find(|&&x| !(x as f32).is_finite()) {
+            return Err(GltfFlaw::new(place(), x.to_string(), "a number that 32-bit floats can hold"));
+        }
+        let most = values.iter().fold(0.0f64, |most, x| most.max(*x));
+        let is_whole = *is_integer && most <= 65_535.0 && values.iter().all(|x| *x >= 0.0);
+        let (component, size) = match is_whole {
+            true if most <= 255.0 => (BYTE, 1),
+            true => (SHORT, 2),
+            false => (FLOAT, 4),
+        };
+        // Vertices begin at multiples of four bytes.
+        let stride = (width * size).next_multiple_of(4);
+        let mut bytes = Vec::with_capacity(vertices * stride);
+        for value in values.chunks_exact(*width) {
+            let end = bytes.len() + stride;
+            for &x in value {
+                match size {
+                    1 => bytes.push(x as u8),
+                    2 => bytes.extend((x as u16).to_le_bytes()),
+                    _ => bytes.extend((x as f32).to_le_bytes()),
+                }
+            }
+            bytes.resize(end, 0);
+        }
+        let accessor = json!({"componentType": component, "count": vertices, "type": kind});
+        let number = self.push(bytes, OF_VERTICES, accessor);
+        if stride != width * size
+            && let Some(view) = self.views.last_mut()
+        {
+            view.stride = Some(stride);
+        }
+        Ok(number)
+    }
+
     fn push(&mut self, bytes: Vec<u8>, target: u32, accessor: serde_json::Value) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        self.views.push((self.bytes.len(), bytes.len(), target));
+        self.views.push(NewView { start: self.bytes.len(), length: bytes.len(), target, stride: None });
         self.bytes.extend(bytes);
         self.accessors.push(accessor);
         self.accessors.len() - 1

@@ -17,6 +17,7 @@
 
 mod accessor;
 mod affine;
+mod attributes;
 mod changes;
 mod codecs;
 mod container;
@@ -32,9 +33,10 @@ mod source;
 mod uri;
 mod write;
 
+pub use attributes::CornerAttribute;
 pub use flaw::GltfFlaw;
 pub(crate) use fresh::write_fresh;
-pub use geometry::Geometry;
+pub use geometry::{Geometry, VertexAttribute};
 pub use parts::{Joining, KeptApart, MeshSoup, Part};
 
 use crate::error::ReadError;
@@ -154,7 +156,7 @@ impl Asset {
     /// # Errors
     /// There is no such mesh, or an accessor breaks the rules; the flaw names it.
     pub fn mesh(&self, mesh: usize, joining: Joining) -> Result<MeshSoup, ReadError> {
-        self.read_mesh(mesh, joining).map_err(|flaw| self.told(flaw))
+        self.read_mesh(mesh, joining, true).map_err(|flaw| self.told(flaw))
     }
 
     /// A flaw as an error with the file's name.
@@ -162,7 +164,12 @@ impl Asset {
         ReadError::Gltf { path: self.path.clone(), flaw }
     }
 
-    fn read_mesh(&self, mesh: usize, joining: Joining) -> Flawed<MeshSoup> {
+    /// A mesh's shape alone.
+    fn shape(&self, mesh: usize) -> Result<MeshSoup, ReadError> {
+        self.read_mesh(mesh, Joining::Together, false).map_err(|flaw| self.told(flaw))
+    }
+
+    fn read_mesh(&self, mesh: usize, joining: Joining, with_attributes: bool) -> Flawed<MeshSoup> {
         let meshes = self.source.root().list("meshes")?;
         let Some(at) = meshes.get(mesh) else {
             return Err(GltfFlaw::new(
@@ -173,8 +180,11 @@ impl Asset {
         };
         let mut primitives = Vec::new();
         for (i, primitive) in at.require("primitives")?.items()?.enumerate() {
-            primitives
-                .extend(self.source.primitive(&primitive, i)?.filter(|found| !found.triangles.is_empty()));
+            primitives.extend(
+                self.source
+                    .primitive(&primitive, i, with_attributes)?
+                    .filter(|found| !found.triangles.is_empty()),
+            );
         }
         Ok(parts::join(primitives, joining))
     }
@@ -186,7 +196,7 @@ impl Asset {
     pub fn bounding_box(&self) -> Result<Option<[[f64; 3]; 2]>, ReadError> {
         let mut found: Option<[[f64; 3]; 2]> = None;
         for mesh in 0..self.mesh_count() {
-            let soup = self.mesh(mesh, Joining::Together)?;
+            let soup = self.shape(mesh)?;
             for placement in self.scene.shown(mesh) {
                 for v in 0..soup.soup.positions.len() {
                     let p = placement.apply(&soup, v);
@@ -206,7 +216,7 @@ impl Asset {
         let mut all = PolygonSoup::default();
         let mut names = BTreeSet::new();
         for mesh in 0..self.mesh_count() {
-            let own = self.mesh(mesh, Joining::Together)?;
+            let own = self.shape(mesh)?;
             names
                 .extend(own.parts.iter().flat_map(|part| &part.attributes).filter_map(|name| in_words(name)));
             for placement in self.scene.shown(mesh) {

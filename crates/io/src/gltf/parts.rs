@@ -5,6 +5,7 @@
 //! edges that are open in both and run oppositely, which a solid of several materials has; where they merely touch they
 //! are not.
 
+use super::attributes::{self, CornerAttribute};
 use super::primitive::Primitive;
 use limitmesh::PolygonSoup;
 use std::collections::HashMap;
@@ -51,12 +52,14 @@ pub struct MeshSoup {
     pub soup: PolygonSoup,
     /// Which faces are which primitive's.
     pub parts: Vec<Part>,
+    /// Texture coordinates, colours, and what has a name of its own.
+    pub attributes: Vec<CornerAttribute>,
     /// What stayed apart at one place.
     pub kept_apart: KeptApart,
-    /// By vertex, the joints that move it with their weights; empty without a skin.
-    pub(super) influences: Vec<Vec<(u32, f64)>>,
-    /// Whether morph targets or joints move the vertices.
-    pub is_deformed: bool,
+    /// By vertex of the soup, the joints that move it with their weights above 0, by joint; empty without a skin.
+    pub influences: Vec<Vec<(u32, f64)>>,
+    /// Whether there are morph targets.
+    pub has_targets: bool,
 }
 
 /// A vertex before primitives are joined: the primitive, and its number there among those that differ.
@@ -107,7 +110,9 @@ pub(super) fn join(primitives: Vec<Primitive>, joining: Joining) -> MeshSoup {
             attributes: primitive.names.clone(),
         });
     }
-    result.is_deformed = is_skinned || primitives.iter().any(|primitive| !primitive.displacements.is_empty());
+    result.attributes =
+        attributes::tables(&primitives, &names, |part, v| numbers[root(&mut roots, number((part, v)))]);
+    result.has_targets = primitives.iter().any(|primitive| !primitive.displacements.is_empty());
     if joining == Joining::Together {
         result.kept_apart = kept_apart(&primitives, &names, result.soup.positions.len());
     }
@@ -115,11 +120,11 @@ pub(super) fn join(primitives: Vec<Primitive>, joining: Joining) -> MeshSoup {
 }
 
 /// The vertices of a primitive that differ.
-struct Names {
+pub(super) struct Names {
     /// A vertex of the primitive for each.
     vertices: Vec<u32>,
     /// The number of each vertex that a triangle uses; `u32::MAX` for others.
-    of_vertex: Vec<u32>,
+    pub(super) of_vertex: Vec<u32>,
 }
 
 impl Names {

@@ -24,6 +24,8 @@ pub(super) struct Primitive {
     pub(super) displacements: Vec<Vec<[f64; 3]>>,
     /// By vertex, the joints that move it with their weights above 0, by joint; empty without a skin.
     pub(super) influences: Vec<Vec<(u32, f64)>>,
+    /// Attributes beside positions, normals, tangents, joints and weights, if these were asked for.
+    pub(super) attributes: Vec<(String, Numbers)>,
     /// Names of all attributes.
     pub(super) names: Vec<String>,
 }
@@ -51,8 +53,13 @@ pub(super) fn mode(primitive: &At<'_>) -> Result<Mode> {
 }
 
 impl Source {
-    /// The primitive at `at`, number `index` of its mesh; `None` if it has no triangles to be.
-    pub(super) fn primitive(&self, at: &At<'_>, index: usize) -> Result<Option<Primitive>> {
+    /// The primitive at `at`, number `index` of its mesh, perhaps with its attributes; `None` if it has no triangles to be.
+    pub(super) fn primitive(
+        &self,
+        at: &At<'_>,
+        index: usize,
+        with_attributes: bool,
+    ) -> Result<Option<Primitive>> {
         let mode = mode(at)?;
         let attributes = at.require("attributes")?;
         let names: Vec<String> = attributes.members()?.map(|(name, _)| name.to_owned()).collect();
@@ -84,6 +91,10 @@ impl Source {
             add_influences(&mut influences, &joints, &weights);
         }
         sort_influences(&mut influences);
+        let mut others = Vec::new();
+        for name in names.iter().filter(|name| with_attributes && is_carried(name)) {
+            others.extend(read(name, Some(count))?.map(|numbers| (name.clone(), numbers)));
+        }
         let displacements = self.displacements(at, count)?;
         let corners = match (compressed, at.get("indices")) {
             (Some(stream), _) => checked(stream.indices, count, at)?,
@@ -92,7 +103,15 @@ impl Source {
             (None, None) => (0..count as u32).collect(),
         };
         let triangles = triangles(&corners, mode);
-        Ok(Some(Primitive { index, positions, triangles, displacements, influences, names }))
+        Ok(Some(Primitive {
+            index,
+            positions,
+            triangles,
+            displacements,
+            influences,
+            attributes: others,
+            names,
+        }))
     }
 
     /// How morph targets move the vertices.
@@ -120,6 +139,12 @@ impl Source {
         let attributes = found.attributes.into_iter().collect();
         Ok(Some(Stream { attributes, indices: found.indices }))
     }
+}
+
+/// Whether an attribute is a value of its own: normals and tangents follow from the surface, joints and weights move it.
+fn is_carried(name: &str) -> bool {
+    let kind = name.split_once('_').map_or(name, |(kind, _)| kind);
+    !matches!(kind, "POSITION" | "NORMAL" | "TANGENT" | "JOINTS" | "WEIGHTS")
 }
 
 /// What a Draco stream held.

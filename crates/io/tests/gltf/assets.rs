@@ -96,7 +96,7 @@ fn edits_touch_only_what_may_change() {
                     .replace(
                         mesh,
                         part.primitive,
-                        &Geometry { positions, normals: None, triangles: &triangles },
+                        &Geometry { positions, normals: None, triangles: &triangles, attributes: &[] },
                     )
                     .unwrap();
                 changed += 1;
@@ -149,7 +149,16 @@ fn compressed_meshes_are_those_that_were_compressed() {
     let own = asset.mesh(0, Joining::Together).unwrap();
     let triangles: Vec<[u32; 3]> = own.soup.faces.iter().map(|face| face.try_into().unwrap()).collect();
     asset
-        .replace(0, 0, &Geometry { positions: &own.soup.positions, normals: None, triangles: &triangles })
+        .replace(
+            0,
+            0,
+            &Geometry {
+                positions: &own.soup.positions,
+                normals: None,
+                triangles: &triangles,
+                attributes: &[],
+            },
+        )
         .unwrap();
     let text = String::from_utf8(asset.to_bytes(Format::Gltf).unwrap()).unwrap();
     assert!(!text.contains("draco") && !text.contains("extensions"), "{text}");

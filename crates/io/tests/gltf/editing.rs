@@ -11,7 +11,7 @@ const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
 fn geometry() -> Geometry<'static> {
     const UP: [[f64; 3]; 4] = [[0.0, 0.0, 2.0], [0.0, 3.0, 4.0], [0.0; 3], [1.0, 0.0, 0.0]];
-    Geometry { positions: &SQUARE, normals: Some(&UP), triangles: &HALVES }
+    Geometry { positions: &SQUARE, normals: Some(&UP), triangles: &HALVES, attributes: &[] }
 }
 
 /// A triangle amid things that nobody knows, spelt in ways that no writer would.
@@ -64,7 +64,11 @@ fn short_indices_end_at_65535_vertices() {
         let triangles = [[0, 1, vertices as u32 - 1]];
         let mut asset = Asset::from_bytes(&bytes, None).unwrap();
         asset
-            .replace(0, 0, &Geometry { positions: &positions, normals: None, triangles: &triangles })
+            .replace(
+                0,
+                0,
+                &Geometry { positions: &positions, normals: None, triangles: &triangles, attributes: &[] },
+            )
             .unwrap();
         let written = asset.to_bytes(Format::Glb).unwrap();
         assert!(

@@ -72,7 +72,7 @@ fn what_morphs_apart_stays_apart() {
         r#"{{"attributes":{{"POSITION":{points}}},"targets":[{{"POSITION":{target}}},{{}}]}}"#
     ));
     let found = builder.read(Joining::Together);
-    assert!(found.is_deformed);
+    assert!(found.has_targets);
     assert_eq!((found.soup.positions.len(), found.kept_apart.moving, found.kept_apart.touching), (5, 1, 0));
 }
 

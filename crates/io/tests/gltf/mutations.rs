@@ -20,7 +20,12 @@ fn exercise(bytes: &[u8]) {
         for part in &own.parts {
             let triangles: Vec<[u32; 3]> =
                 part.faces.clone().filter_map(|face| own.soup.faces.get(face).try_into().ok()).collect();
-            let geometry = Geometry { positions: &own.soup.positions, normals: None, triangles: &triangles };
+            let geometry = Geometry {
+                positions: &own.soup.positions,
+                normals: None,
+                triangles: &triangles,
+                attributes: &[],
+            };
             let _ = asset.replace(mesh, part.primitive, &geometry);
         }
     }

@@ -7,10 +7,11 @@ use std::time::{Duration, Instant};
 
 use limitmesh::Mesh;
 use limitmesh::mesh::{BuildOptions, MeshError, Weld};
-use limitmesh_io::gltf::{Geometry, Joining, MeshSoup};
+use limitmesh_io::gltf::{CornerAttribute, Geometry, Joining, MeshSoup};
 use limitmesh_io::{Asset, Format};
 use limitmesh_render::Style;
 
+use super::carried::{Carried, Vertices};
 use super::channels::Channels;
 use super::control::Control;
 use super::exact::{self, Goals};
@@ -120,9 +121,15 @@ impl Job {
             return Ok(());
         }
         let name = asset.mesh_name(mesh);
-        if own.is_deformed {
-            progress
-                .note(format!("{name}: kept as it is: morph targets and skins are not carried along yet"));
+        let lost = if own.has_targets {
+            Some("morph targets are not carried along yet")
+        } else if !own.influences.is_empty() && !self.is_traced() {
+            Some("its skin is carried along with --method exact, without --optimize")
+        } else {
+            None
+        };
+        if let Some(what) = lost {
+            progress.note(format!("{name}: kept as it is: {what}"));
             return Ok(());
         }
         let stretch = asset.stretch(mesh);
@@ -137,9 +144,12 @@ impl Job {
         };
         self.notes(&name, &own, &built.1, progress);
         let (built, diagnosis, trace) = built;
+        let read = built.clone();
         let control = Control::new((built, diagnosis, trace.faces), Some(diagonal), arguments, progress)?;
         let arguments = self.of_mesh(&own, done)?;
         let goals = Goals::new(&arguments, &control.featured.mesh, diagonal)?;
+        // After collapses, triangles reach over several faces.
+        let goals = if self.is_traced() { goals.keeping_origins() } else { goals };
         let parameters = match arguments.method {
             Method::Exact => exact::parameters(&arguments, &goals),
             _ => stepwise::parameters(&arguments),
@@ -150,11 +160,12 @@ impl Job {
         }
         let Control { featured, before, bulk, diagnosis, interpolation, .. } = control;
         let start = Instant::now();
+        let control_faces = featured.mesh.triangles().to_vec();
         let mut refined = match arguments.method {
             Method::Exact => {
                 exact::run((&featured, &before, &Channels::default()), &goals, &arguments, progress)?
             }
-            _ => stepwise::run(featured.mesh, &arguments, self.output, progress)?,
+            _ => stepwise::run(featured.mesh.clone(), &arguments, self.output, progress)?,
         };
         let refining = start.elapsed();
         let after = Bulk::of(&refined.mesh);
@@ -163,16 +174,26 @@ impl Job {
         if let Some(note) = refined.inverted.and_then(turned_over) {
             progress.note(format!("{name}: {note}"));
         }
-        put_back(asset, mesh, &own, &refined, stretch)?;
+        let carried = Carried {
+            origins: &refined.origins,
+            parents: &refined.parents,
+            control: &control_faces,
+            parts: &featured.concave.parts,
+            read: read.as_triangles(),
+            faces: &before.faces,
+            soup: &own.soup,
+        };
+        put_back(asset, mesh, &own, (&refined, &carried), stretch)?;
         done.triangles += refined.mesh.face_count();
         done.refining += refining;
         if let Outcome::StoppedShort(why) = refined.outcome {
             done.short.push(format!("{name}: {why}"));
         }
-        let all = own.parts.iter().flat_map(|part| &part.attributes);
-        for attribute in all.filter(|name| !matches!(name.as_str(), "POSITION" | "NORMAL" | "TANGENT")) {
-            if !done.left_out.contains(attribute) {
-                done.left_out.push(attribute.clone());
+        for table in
+            own.attributes.iter().filter(|table| refined.parents.is_empty() || table.width > MOST_WIDE)
+        {
+            if !done.left_out.contains(&table.name) {
+                done.left_out.push(table.name.clone());
             }
         }
         done.reports.push(AssetMeshReport {
@@ -204,16 +225,20 @@ impl Job {
     fn of_mesh(&self, own: &MeshSoup, done: &Progressed) -> anyhow::Result<RefineArguments> {
         let mut arguments = self.arguments.clone();
         arguments.max_triangles = Some(arguments.max_triangles().saturating_sub(done.triangles).max(1));
-        if own.parts.len() > 1 {
-            if arguments.exact.optimize || arguments.method != Method::Exact {
-                return usage(
-                    "a mesh of several primitives keeps the borders between them with --method exact, without --optimize",
-                );
-            }
-            // A flat region has triangles across the borders.
-            arguments.exact.divide_flat = true;
+        if own.parts.len() > 1 && !self.is_traced() {
+            return usage(
+                "a mesh of several primitives keeps the borders between them with --method exact, without --optimize",
+            );
         }
+        // A flat region has triangles across borders, and across the faces that values belong to.
+        let has_values = !own.attributes.is_empty() || !own.influences.is_empty();
+        arguments.exact.divide_flat |= self.is_traced() && (own.parts.len() > 1 || has_values);
         Ok(arguments)
+    }
+
+    /// Whether it is known of triangles which face they came from, and where on it.
+    fn is_traced(&self) -> bool {
+        self.arguments.method == Method::Exact && !self.arguments.exact.optimize
     }
 
     fn input_report(&self, name: &str, own: &MeshSoup) -> InputReport {
@@ -299,41 +324,57 @@ impl Job {
     }
 }
 
-/// Replaces the primitives of a mesh by the triangles that came of them.
+/// Replaces the primitives of a mesh by the triangles that came of them, and attributes by their values there.
 fn put_back(
     asset: &mut Asset,
     mesh: usize,
     own: &MeshSoup,
-    refined: &Refined,
+    (refined, carried): (&Refined, &Carried<'_>),
     stretch: f64,
 ) -> anyhow::Result<()> {
     let Some(normals) = &refined.normals else { anyhow::bail!("no normals were found") };
     let (surface, normals) = normals.surface(&refined.mesh);
-    for part in &own.parts {
-        let mut numbers = vec![u32::MAX; surface.positions.len()];
+    for (number, part) in own.parts.iter().enumerate() {
+        let is_known = !carried.parents.is_empty();
+        let tables: Vec<&CornerAttribute> = own
+            .attributes
+            .iter()
+            .filter(|table| is_known && table.is_in[number] && table.width <= MOST_WIDE)
+            .collect();
+        let is_skinned = is_known && part.attributes.iter().any(|name| name == "JOINTS_0");
+        let influences = (is_skinned && !own.influences.is_empty()).then_some(&own.influences[..]);
+        let mut vertices = Vertices::new(&tables, influences, surface.positions.len());
         let (mut positions, mut directions) = (Vec::new(), Vec::new());
         let mut triangles = Vec::new();
         for (triangle, corners) in surface.triangles.iter().enumerate() {
-            let is_own = own.parts.len() == 1 || part.faces.contains(&(refined.inputs[triangle] as usize));
-            if !is_own {
+            if own.parts.len() > 1 && !part.faces.contains(&carried.input(triangle)) {
                 continue;
             }
-            triangles.push(corners.map(|v| {
-                let number = &mut numbers[v as usize];
-                if *number == u32::MAX {
-                    *number = positions.len() as u32;
+            let of_mesh = refined.mesh.triangles()[triangle];
+            triangles.push([0, 1, 2].map(|corner| {
+                let v = corners[corner];
+                let place = vertices.need_places().then(|| carried.place(triangle, of_mesh[corner]));
+                let number = vertices.number(v, place, &own.soup);
+                if number as usize == positions.len() {
                     positions.push(surface.positions[v as usize].map(|x| x / stretch));
                     directions.push(normals[v as usize]);
                 }
-                *number
+                number
             }));
         }
         // A primitive of which nothing is left, as it had no area, stays as it is.
         if !triangles.is_empty() {
-            let geometry =
-                Geometry { positions: &positions, normals: Some(&directions), triangles: &triangles };
-            asset.replace(mesh, part.primitive, &geometry)?;
+            let (positions, normals) = (&positions[..], Some(&directions[..]));
+            let attributes = &vertices.into_attributes()[..];
+            asset.replace(
+                mesh,
+                part.primitive,
+                &Geometry { positions, normals, triangles: &triangles, attributes },
+            )?;
         }
     }
     Ok(())
 }
+
+/// Numbers of a value at most that vertices of a file can have.
+const MOST_WIDE: usize = 4;

@@ -48,6 +48,8 @@ pub(super) struct Goals {
     cameras: Vec<Camera>,
     /// Whether triangles must not reach over several control faces.
     tells_faces_apart: bool,
+    /// Whether the result tells where vertices and triangles came from.
+    keeps_origins: bool,
 }
 
 impl Goals {
@@ -80,7 +82,14 @@ impl Goals {
             pixels: (!cameras.is_empty()).then(|| exact.pixels.unwrap_or(USUAL_PIXELS)),
             cameras,
             tells_faces_apart: false,
+            keeps_origins: false,
         })
+    }
+
+    /// The same, where the result is to tell where vertices and triangles came from.
+    pub(super) fn keeping_origins(mut self) -> Self {
+        self.keeps_origins = true;
+        self
     }
 
     pub(super) fn options(&self, arguments: &RefineArguments) -> ExactOptions {
@@ -92,7 +101,10 @@ impl Goals {
             .flat_regions(!arguments.exact.divide_flat && !self.tells_faces_apart)
             .unfold(arguments.features.concave_corners() == ConcaveCorners::Divided)
             .origins(
-                arguments.exact.provenance || !arguments.exact.no_input_distance || self.tells_faces_apart,
+                arguments.exact.provenance
+                    || !arguments.exact.no_input_distance
+                    || self.tells_faces_apart
+                    || self.keeps_origins,
             );
         if let Some(pixels) = self.pixels {
             options = options.pixels(pixels, self.cameras.clone());
@@ -188,13 +200,15 @@ pub(super) fn run(
     let normals = wanted.then(|| Normals::of_exact(&mut found));
     let Exact { mesh, origins, parents, pixels, open_cones, stop, levels, .. } = found;
     let places = (&before.faces[..], &concave.parts);
-    let inputs = parents.iter().map(|&face| before.faces[concave.parts.whole(face) as usize]).collect();
+    let provenance = arguments.exact.provenance.then(|| Provenance::new(&origins, parents.clone(), places));
+    let (origins, parents) = if goals.keeps_origins { (origins, parents) } else { Default::default() };
     Ok(Refined {
         mesh,
         normals,
-        inputs,
         channels,
-        provenance: arguments.exact.provenance.then(|| Provenance::new(&origins, parents, places)),
+        origins,
+        parents,
+        provenance,
         achieved,
         inverted: Some(inverted),
         how: counted(levels, "level", "levels"),

@@ -2,6 +2,7 @@
 
 mod asset;
 mod cameras;
+mod carried;
 mod channels;
 mod check;
 mod control;
@@ -20,6 +21,7 @@ use std::time::{Duration, Instant};
 use limitmesh::Mesh;
 use limitmesh::criterion::{View, Viewpoint};
 use limitmesh::mesh::Tags;
+use limitmesh::refine::Origin;
 use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
 
@@ -50,8 +52,9 @@ struct Refined {
     normals: Option<Normals>,
     channels: Channels,
     provenance: Option<Provenance>,
-    /// The input's face of each triangle; empty where that is not known.
-    inputs: Vec<u32>,
+    /// Where vertices came from, and the control face of each triangle, if that was to be kept and is known.
+    origins: Vec<Origin>,
+    parents: Vec<u32>,
     /// How near the mesh is to the limit surface: sentences of a line each.
     achieved: Vec<String>,
     /// Triangles that are turned over against the limit surface; not known of the stepwise methods.

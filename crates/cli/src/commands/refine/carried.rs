@@ -1,0 +1,226 @@
+//! Values at the corners of the input's faces at the corners of the triangles that came of these: linear on each face, so
+//! exact on every triangle, or those of the nearest corner.
+//!
+//! A vertex tells a face that it came from and its barycentric coordinates there. A triangle's own face may be another that
+//! shares the point: then the point is on an edge or corner of both, and the coordinates go by vertices.
+
+use limitmesh::mesh::FaceParts;
+use limitmesh::refine::Origin;
+use limitmesh::{PolygonSoup, Triangles};
+use limitmesh_io::gltf::{CornerAttribute, VertexAttribute};
+
+use crate::vector::{cross, length, minus};
+
+/// Triangles' corners as points of the input's faces.
+pub(super) struct Carried<'a> {
+    /// Of the vertices of the refined mesh.
+    pub(super) origins: &'a [Origin],
+    /// The control face of each triangle.
+    pub(super) parents: &'a [u32],
+    /// The control mesh's faces, and where these are in those of the mesh that was read.
+    pub(super) control: &'a [[u32; 3]],
+    pub(super) parts: &'a FaceParts,
+    /// The mesh that was read.
+    pub(super) read: Triangles<'a>,
+    /// The input's face of each of its faces.
+    pub(super) faces: &'a [u32],
+    /// What it was built from.
+    pub(super) soup: &'a PolygonSoup,
+}
+
+impl Carried<'_> {
+    /// The input's face of a triangle.
+    pub(super) fn input(&self, triangle: usize) -> usize {
+        self.faces[self.parts.whole(self.parents[triangle]) as usize] as usize
+    }
+
+    /// The input's face of a triangle, and the barycentric coordinates there of its corner at a vertex.
+    pub(super) fn place(&self, triangle: usize, vertex: u32) -> (usize, [f64; 3]) {
+        let parent = self.parents[triangle];
+        let Origin { face, barycentric } = self.origins[vertex as usize];
+        let own = self.control[parent as usize];
+        let mut here = [0.0; 3];
+        for (v, weight) in self.control[face as usize].into_iter().zip(barycentric) {
+            if let Some(corner) = own.iter().position(|&other| other == v) {
+                here[corner] += weight;
+            }
+        }
+        let (whole, barycentric) = self.parts.on_whole(parent, here);
+        let input = self.faces[whole as usize] as usize;
+        let corners = self.soup.faces.get(input);
+        let mut there = [0.0; 3];
+        for (v, weight) in self.read.triangles[whole as usize].into_iter().zip(barycentric) {
+            // Building turns faces and numbers vertices anew; it never moves them.
+            let position = self.read.positions[v as usize];
+            let is_here = |&&corner: &&u32| self.soup.positions[corner as usize] == position;
+            match corners.iter().position(|corner| is_here(&corner)) {
+                Some(corner) => there[corner] += weight,
+                // A vertex that building put into an edge.
+                None => self.add_inside(input, position, weight, &mut there),
+            }
+        }
+        (input, there)
+    }
+
+    /// Adds a point of the input's face by its areal coordinates.
+    fn add_inside(&self, face: usize, point: [f64; 3], weight: f64, there: &mut [f64; 3]) {
+        let corners = self.soup.faces.get(face);
+        let corner = |i: usize| self.soup.positions[corners[i % 3] as usize];
+        let areas =
+            [0, 1, 2].map(|i| length(cross(minus(corner(i + 1), point), minus(corner(i + 2), point))));
+        let whole: f64 = areas.iter().sum();
+        if whole > 0.0 {
+            (0..3).for_each(|i| there[i] += weight * areas[i] / whole);
+        }
+    }
+}
+
+/// The vertices of a file: one for each vertex of a surface and each combination of values there.
+pub(super) struct Vertices<'a> {
+    tables: &'a [&'a CornerAttribute],
+    /// By vertex of the surface, the first of the file's; and by these the next of the same.
+    first: Vec<u32>,
+    next: Vec<u32>,
+    /// By vertex of the input's soup, what moves it, if that is carried along.
+    influences: Option<&'a [Vec<(u32, f64)>]>,
+    /// What the file's vertices have.
+    attributes: Vec<VertexAttribute>,
+    joints: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+/// Joints at most that move a vertex of a file: more are not read by everyone.
+const MOST_JOINTS: usize = 4;
+
+/// No vertex.
+const NONE: u32 = u32::MAX;
+
+impl<'a> Vertices<'a> {
+    /// None yet, for a surface with so many vertices.
+    pub(super) fn new(
+        tables: &'a [&'a CornerAttribute],
+        influences: Option<&'a [Vec<(u32, f64)>]>,
+        count: usize,
+    ) -> Self {
+        let empty = |table: &&CornerAttribute| VertexAttribute {
+            name: table.name.clone(),
+            width: table.width,
+            values: Vec::new(),
+            is_integer: table.is_integer,
+        };
+        let attributes = tables.iter().map(empty).collect();
+        let (joints, weights) = (Vec::new(), Vec::new());
+        Self { tables, first: vec![NONE; count], next: Vec::new(), influences, attributes, joints, weights }
+    }
+
+    /// Whether places are asked for.
+    pub(super) fn need_places(&self) -> bool {
+        !self.tables.is_empty() || self.influences.is_some()
+    }
+
+    /// All attributes, when there are no more vertices.
+    pub(super) fn into_attributes(self) -> Vec<VertexAttribute> {
+        let mut all = self.attributes;
+        if self.influences.is_some() {
+            let width = MOST_JOINTS;
+            let joints =
+                VertexAttribute { name: "JOINTS_0".to_owned(), width, values: self.joints, is_integer: true };
+            let weights = VertexAttribute {
+                name: "WEIGHTS_0".to_owned(),
+                width,
+                values: self.weights,
+                is_integer: false,
+            };
+            all.extend([joints, weights]);
+        }
+        all
+    }
+
+    /// The file's vertex for a vertex of the surface that is at a place of the input's; a new one has the next number.
+    pub(super) fn number(&mut self, v: u32, place: Option<(usize, [f64; 3])>, soup: &PolygonSoup) -> u32 {
+        let new = self.next.len() as u32;
+        // As if it were new, until a vertex with these values is found.
+        if let Some((face, weights)) = place {
+            let corners = soup.faces.get(face);
+            for (table, attribute) in self.tables.iter().zip(&mut self.attributes) {
+                value(table, face, corners, weights, &mut attribute.values);
+            }
+        }
+        let mut known = self.first[v as usize];
+        let mut last = NONE;
+        while known != NONE {
+            if self.attributes.iter().all(|attribute| is_same(attribute, known, new)) {
+                for attribute in &mut self.attributes {
+                    attribute.values.truncate(new as usize * attribute.width);
+                }
+                return known;
+            }
+            (last, known) = (known, self.next[known as usize]);
+        }
+        match last {
+            NONE => self.first[v as usize] = new,
+            last => self.next[last as usize] = new,
+        }
+        self.next.push(NONE);
+        if let (Some(influences), Some((face, weights))) = (self.influences, place) {
+            for (joint, weight) in mixed(influences, soup.faces.get(face), weights) {
+                self.joints.push(f64::from(joint));
+                self.weights.push(weight);
+            }
+        }
+        new
+    }
+}
+
+/// The joints that move a point of a face most, with weights that are linear between those of its corners and then add up to 1; ties by
+/// joint.
+fn mixed(influences: &[Vec<(u32, f64)>], vertices: &[u32], weights: [f64; 3]) -> [(u32, f64); MOST_JOINTS] {
+    let mut order = [0, 1, 2];
+    order.sort_unstable_by_key(|&corner| vertices[corner]);
+    let mut all: Vec<(u32, f64)> = Vec::new();
+    for corner in order.into_iter().filter(|&corner| weights[corner] > 0.0) {
+        for &(joint, weight) in &influences[vertices[corner] as usize] {
+            let share = weights[corner] * weight;
+            match all.iter_mut().find(|(own, _)| *own == joint) {
+                Some((_, sum)) => *sum += share,
+                None => all.push((joint, share)),
+            }
+        }
+    }
+    all.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    all.truncate(MOST_JOINTS);
+    let total: f64 = all.iter().map(|&(_, weight)| weight).sum();
+    let mut result = [(0, 0.0); MOST_JOINTS];
+    for (place, (joint, weight)) in result.iter_mut().zip(all) {
+        *place = (joint, weight / total);
+    }
+    result
+}
+
+/// Whether two vertices have the same value in a file.
+fn is_same(attribute: &VertexAttribute, a: u32, b: u32) -> bool {
+    let width = attribute.width;
+    let of = |v: u32| attribute.values[v as usize * width..][..width].iter().map(|&x| x as f32);
+    of(a).eq(of(b))
+}
+
+/// Adds the value at a point of a face: linear between those of its corners, or where there is nothing between them, that of the
+/// nearest. Terms are added in the order of the vertices, so that faces that share a point and its values agree to the bit.
+fn value(table: &CornerAttribute, face: usize, vertices: &[u32], weights: [f64; 3], into: &mut Vec<f64>) {
+    let mut order = [0, 1, 2];
+    order.sort_unstable_by_key(|&corner| vertices[corner]);
+    let of =
+        |corner: usize| &table.values[table.corners[face][corner] as usize * table.width..][..table.width];
+    if table.is_integer {
+        let nearest = order
+            .into_iter()
+            .reduce(|best, corner| if weights[corner] > weights[best] { corner } else { best });
+        into.extend(of(nearest.unwrap_or(0)));
+        return;
+    }
+    let start = into.len();
+    into.resize(start + table.width, 0.0);
+    for corner in order.into_iter().filter(|&corner| weights[corner] != 0.0) {
+        into[start..].iter_mut().zip(of(corner)).for_each(|(sum, value)| *sum += weights[corner] * value);
+    }
+}
