@@ -198,7 +198,7 @@ fn linear_channels_are_exact() {
     for (name, mesh) in samples() {
         let fine = exact(&mesh, &Loop, &ExactOptions::default().tolerance(1e-2).flat_regions(false)).unwrap();
         let channel = with_seams(&mesh, 3, 7).interpolated(Interpolation::Linear);
-        let found = carried(&[channel.clone()], &mesh, &Loop, &fine).unwrap().remove(0);
+        let found = carried(core::slice::from_ref(&channel), &mesh, &Loop, &fine).unwrap().remove(0);
         for (face, &parent) in fine.parents.iter().enumerate() {
             for corner in 0..3 {
                 let vertex = fine.mesh.triangles()[face][corner];

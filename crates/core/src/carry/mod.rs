@@ -2,7 +2,7 @@
 //!
 //! Takes channels of the control mesh, and a refined mesh whose triangles each come from one control face and whose vertices know where
 //! on the control mesh they came from; gives the channels of the refined mesh. Linear ones are linear over each control face, so exact on
-//! every triangle; smooth ones take their values from the limit surface of a mesh of values with the same faces ([`seams`]), at the
+//! every triangle; smooth ones take their values from the limit surface of a mesh of values with the same faces (`seams`), at the
 //! same places as the vertices: a channel whose values are positions gives the vertices' positions. Where control faces meet, corners
 //! of the refined mesh have one value if the channel has one there, so seams run where they ran, and there alone.
 

@@ -2,7 +2,7 @@
 
 use limitmesh::Mesh;
 
-use super::exact::Before;
+use super::exact::{Before, BeforeSurface};
 use super::interpolation;
 use crate::arguments::{Featured, Method, RefineArguments};
 use crate::bulk::Bulk;
@@ -36,7 +36,10 @@ impl Control {
     ) -> anyhow::Result<Self> {
         let bulk = Bulk::of(&mesh);
         let is_compared = arguments.method == Method::Exact && !arguments.exact.no_input_distance;
-        let surface = is_compared.then(|| (mesh.positions().to_vec(), mesh.triangles().to_vec()));
+        let surface = is_compared.then(|| BeforeSurface {
+            positions: mesh.positions().to_vec(),
+            triangles: mesh.triangles().to_vec(),
+        });
         let featured = arguments.features.apply(mesh)?;
         if let Some(note) = divided_corners(&featured) {
             progress.note(note);

@@ -266,12 +266,18 @@ const STAND_IN: f64 = 5e-4;
 
 /// The mesh that was read, before corners were divided and control points moved.
 pub(super) struct Before {
-    /// Positions and triangles, where somebody asks how far the result is from them.
-    pub(super) surface: Option<(Vec<[f64; 3]>, Vec<[u32; 3]>)>,
+    /// Where somebody asks how far the result is from it.
+    pub(super) surface: Option<BeforeSurface>,
     /// The input's face of each face.
     pub(super) faces: Vec<u32>,
     /// How far the limits of the control points are from its vertices at most, where they were moved for that.
     pub(super) residual: Option<f64>,
+}
+
+/// Positions and triangles of the mesh that was read.
+pub(super) struct BeforeSurface {
+    pub(super) positions: Vec<[f64; 3]>,
+    pub(super) triangles: Vec<[u32; 3]>,
 }
 
 /// How far the result is from the mesh that was read.
@@ -282,7 +288,7 @@ fn moved(
     arguments: &RefineArguments,
     progress: &Progress,
 ) -> anyhow::Result<Option<InputDistance>> {
-    let Some((positions, triangles)) = &before.surface else { return Ok(None) };
+    let Some(BeforeSurface { positions, triangles }) = &before.surface else { return Ok(None) };
     let input = Triangles { positions, triangles };
     let residual = before.residual.unwrap_or(0.0);
     let on_whole = |found: &Exact| -> Vec<Origin> {
