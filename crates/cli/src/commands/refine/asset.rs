@@ -6,7 +6,7 @@
 use std::time::{Duration, Instant};
 
 use limitmesh::Mesh;
-use limitmesh::mesh::{BuildOptions, MeshError, Weld};
+use limitmesh::mesh::{BuildOptions, Channel, Domain, MeshError, Semantic, Weld};
 use limitmesh_io::gltf::{CornerAttribute, Geometry, Joining, MeshSoup};
 use limitmesh_io::{Asset, Format};
 use limitmesh_render::Style;
@@ -145,6 +145,11 @@ impl Job {
         self.notes(&name, &own, &built.1, progress);
         let (built, diagnosis, trace) = built;
         let read = built.clone();
+        own.soup.channels = own.attributes.iter().map(channel).collect();
+        let on_mesh = |channel: &Channel| channel.on_mesh(&own.soup, &built, &trace);
+        let narrow =
+            own.soup.channels.iter().filter(|channel| channel.arity <= MOST_WIDE && self.is_traced());
+        let channels = narrow.map(on_mesh).collect::<Result<_, _>>()?;
         let control = Control::new((built, diagnosis, trace.faces), Some(diagonal), arguments, progress)?;
         let arguments = self.of_mesh(&own, done)?;
         let goals = Goals::new(&arguments, &control.featured.mesh, diagonal)?;
@@ -159,12 +164,12 @@ impl Job {
             return estimate::run(&control.featured.mesh, &goals, &arguments, told, progress);
         }
         let Control { featured, before, bulk, diagnosis, interpolation, .. } = control;
+        let mut channels = Channels::of_asset(channels, &arguments);
+        channels.on_parts(&featured.concave.parts, &featured.mesh);
         let start = Instant::now();
         let control_faces = featured.mesh.triangles().to_vec();
         let mut refined = match arguments.method {
-            Method::Exact => {
-                exact::run((&featured, &before, &Channels::default()), &goals, &arguments, progress)?
-            }
+            Method::Exact => exact::run((&featured, &before, &channels), &goals, &arguments, progress)?,
             _ => stepwise::run(featured.mesh.clone(), &arguments, self.output, progress)?,
         };
         let refining = start.elapsed();
@@ -336,14 +341,14 @@ fn put_back(
     let (surface, normals) = normals.surface(&refined.mesh);
     for (number, part) in own.parts.iter().enumerate() {
         let is_known = !carried.parents.is_empty();
-        let tables: Vec<&CornerAttribute> = own
-            .attributes
-            .iter()
-            .filter(|table| is_known && table.is_in[number] && table.width <= MOST_WIDE)
-            .collect();
+        let is_own = |channel: &&Channel| {
+            let table = own.attributes.iter().find(|table| table.name == channel.name);
+            table.is_some_and(|table| table.is_in[number])
+        };
+        let channels: Vec<&Channel> = refined.channels.all().iter().filter(is_own).collect();
         let is_skinned = is_known && part.attributes.iter().any(|name| name == "JOINTS_0");
         let influences = (is_skinned && !own.influences.is_empty()).then_some(&own.influences[..]);
-        let mut vertices = Vertices::new(&tables, influences, surface.positions.len());
+        let mut vertices = Vertices::new(&channels, influences, surface.positions.len());
         let (mut positions, mut directions) = (Vec::new(), Vec::new());
         let mut triangles = Vec::new();
         for (triangle, corners) in surface.triangles.iter().enumerate() {
@@ -354,7 +359,7 @@ fn put_back(
             triangles.push([0, 1, 2].map(|corner| {
                 let v = corners[corner];
                 let place = vertices.need_places().then(|| carried.place(triangle, of_mesh[corner]));
-                let number = vertices.number(v, place, &own.soup);
+                let number = vertices.number(v, 3 * triangle + corner, place, &own.soup);
                 if number as usize == positions.len() {
                     positions.push(surface.positions[v as usize].map(|x| x / stretch));
                     directions.push(normals[v as usize]);
@@ -374,6 +379,18 @@ fn put_back(
         }
     }
     Ok(())
+}
+
+/// An attribute as a channel of the mesh's soup.
+fn channel(attribute: &CornerAttribute) -> Channel {
+    let semantic = match attribute.name.as_str() {
+        name if name.starts_with("TEXCOORD_") => Semantic::TextureCoordinates,
+        name if name.starts_with("COLOR_") => Semantic::Colour,
+        _ if attribute.is_integer => Semantic::Label,
+        _ => Semantic::Other,
+    };
+    Channel::new(attribute.name.clone(), semantic, Domain::Corner, attribute.width)
+        .with(attribute.values.clone(), attribute.corners.concat())
 }
 
 /// Numbers of a value at most that vertices of a file can have.

@@ -1,13 +1,12 @@
-//! Values at the corners of the input's faces at the corners of the triangles that came of these: linear on each face, so
-//! exact on every triangle, or those of the nearest corner.
+//! The vertices of an asset's file: what they carry, and what moves them, which is linear on each face of the input.
 //!
 //! A vertex tells a face that it came from and its barycentric coordinates there. A triangle's own face may be another that
 //! shares the point: then the point is on an edge or corner of both, and the coordinates go by vertices.
 
-use limitmesh::mesh::FaceParts;
+use limitmesh::mesh::{Channel, FaceParts, Semantic};
 use limitmesh::refine::Origin;
 use limitmesh::{PolygonSoup, Triangles};
-use limitmesh_io::gltf::{CornerAttribute, VertexAttribute};
+use limitmesh_io::gltf::VertexAttribute;
 
 use crate::vector::{cross, length, minus};
 
@@ -77,7 +76,7 @@ impl Carried<'_> {
 
 /// The vertices of a file: one for each vertex of a surface and each combination of values there.
 pub(super) struct Vertices<'a> {
-    tables: &'a [&'a CornerAttribute],
+    channels: &'a [&'a Channel],
     /// By vertex of the surface, the first of the file's; and by these the next of the same.
     first: Vec<u32>,
     next: Vec<u32>,
@@ -98,24 +97,24 @@ const NONE: u32 = u32::MAX;
 impl<'a> Vertices<'a> {
     /// None yet, for a surface with so many vertices.
     pub(super) fn new(
-        tables: &'a [&'a CornerAttribute],
+        channels: &'a [&'a Channel],
         influences: Option<&'a [Vec<(u32, f64)>]>,
         count: usize,
     ) -> Self {
-        let empty = |table: &&CornerAttribute| VertexAttribute {
-            name: table.name.clone(),
-            width: table.width,
+        let empty = |channel: &&Channel| VertexAttribute {
+            name: channel.name.clone(),
+            width: channel.arity,
             values: Vec::new(),
-            is_integer: table.is_integer,
+            is_integer: channel.semantic == Semantic::Label,
         };
-        let attributes = tables.iter().map(empty).collect();
+        let attributes = channels.iter().map(empty).collect();
         let (joints, weights) = (Vec::new(), Vec::new());
-        Self { tables, first: vec![NONE; count], next: Vec::new(), influences, attributes, joints, weights }
+        Self { channels, first: vec![NONE; count], next: Vec::new(), influences, attributes, joints, weights }
     }
 
     /// Whether places are asked for.
     pub(super) fn need_places(&self) -> bool {
-        !self.tables.is_empty() || self.influences.is_some()
+        self.influences.is_some()
     }
 
     /// All attributes, when there are no more vertices.
@@ -136,15 +135,18 @@ impl<'a> Vertices<'a> {
         all
     }
 
-    /// The file's vertex for a vertex of the surface that is at a place of the input's; a new one has the next number.
-    pub(super) fn number(&mut self, v: u32, place: Option<(usize, [f64; 3])>, soup: &PolygonSoup) -> u32 {
+    /// The file's vertex for a corner of the surface at a vertex, which is at a place of the input's; a new one has the next number.
+    pub(super) fn number(
+        &mut self,
+        v: u32,
+        corner: usize,
+        place: Option<(usize, [f64; 3])>,
+        soup: &PolygonSoup,
+    ) -> u32 {
         let new = self.next.len() as u32;
         // As if it were new, until a vertex with these values is found.
-        if let Some((face, weights)) = place {
-            let corners = soup.faces.get(face);
-            for (table, attribute) in self.tables.iter().zip(&mut self.attributes) {
-                value(table, face, corners, weights, &mut attribute.values);
-            }
+        for (channel, attribute) in self.channels.iter().zip(&mut self.attributes) {
+            attribute.values.extend_from_slice(channel.value(corner));
         }
         let mut known = self.first[v as usize];
         let mut last = NONE;
@@ -202,25 +204,4 @@ fn is_same(attribute: &VertexAttribute, a: u32, b: u32) -> bool {
     let width = attribute.width;
     let of = |v: u32| attribute.values[v as usize * width..][..width].iter().map(|&x| x as f32);
     of(a).eq(of(b))
-}
-
-/// Adds the value at a point of a face: linear between those of its corners, or where there is nothing between them, that of the
-/// nearest. Terms are added in the order of the vertices, so that faces that share a point and its values agree to the bit.
-fn value(table: &CornerAttribute, face: usize, vertices: &[u32], weights: [f64; 3], into: &mut Vec<f64>) {
-    let mut order = [0, 1, 2];
-    order.sort_unstable_by_key(|&corner| vertices[corner]);
-    let of =
-        |corner: usize| &table.values[table.corners[face][corner] as usize * table.width..][..table.width];
-    if table.is_integer {
-        let nearest = order
-            .into_iter()
-            .reduce(|best, corner| if weights[corner] > weights[best] { corner } else { best });
-        into.extend(of(nearest.unwrap_or(0)));
-        return;
-    }
-    let start = into.len();
-    into.resize(start + table.width, 0.0);
-    for corner in order.into_iter().filter(|&corner| weights[corner] != 0.0) {
-        into[start..].iter_mut().zip(of(corner)).for_each(|(sum, value)| *sum += weights[corner] * value);
-    }
 }

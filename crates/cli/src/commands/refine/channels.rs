@@ -44,6 +44,17 @@ impl Channels {
         Self { channels, material_libraries }
     }
 
+    /// Those of a mesh of an asset.
+    pub(super) fn of_asset(channels: Vec<Channel>, arguments: &RefineArguments) -> Self {
+        let channels = channels.into_iter().map(|channel| arguments.channels.applied(channel)).collect();
+        Self { channels, material_libraries: Vec::new() }
+    }
+
+    /// All of them.
+    pub(super) fn all(&self) -> &[Channel] {
+        &self.channels
+    }
+
     /// Those of a mesh some of whose faces were divided.
     pub(super) fn on_parts(&mut self, parts: &FaceParts, mesh: &Mesh) {
         if !parts.is_empty() {
