@@ -12,7 +12,7 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::large_rings::LargeRings;
 use crate::patch::{LimitPoint, Patch, Quartic, Rules, child_corners, root_patch};
 use crate::scheme::Scheme;
-use crate::vector::vector;
+use crate::vector::{DVec3, vector};
 
 /// Levels after which a place counts as the nearest corner of its part, which is 2⁻⁴⁰ as large as the face.
 const DEEPEST: u32 = 40;
@@ -51,7 +51,8 @@ pub struct LimitSurface<'a> {
     large: LargeRings,
     rules: Rules<'a>,
     positions: Vec<[f64; 3]>,
-    normals: SidedNormals,
+    /// `None` where nobody asks for normals: they are zero then.
+    normals: Option<SidedNormals>,
 }
 
 impl<'a> LimitSurface<'a> {
@@ -60,22 +61,21 @@ impl<'a> LimitSurface<'a> {
     /// # Errors
     /// The scheme has no limit at the shape of some ring.
     pub fn new(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Result<Self, LimitError> {
-        let rules = Rules::of(scheme);
-        let positions = rules.table().positions(mesh)?;
-        let normals = rules.table().sided_normals(mesh)?;
-        Ok(Self {
-            mesh,
-            sharpness: Sharpness::of(mesh),
-            large: LargeRings::of(mesh),
-            rules,
-            positions,
-            normals,
-        })
+        let mut surface = Self::without_normals(mesh, scheme)?;
+        surface.normals = Some(surface.rules.table().sided_normals(mesh)?);
+        Ok(surface)
     }
 
-    /// The point over a place of a control face, given by barycentric coordinates, which are not negative and whose sum is one; others
-    /// are taken for the nearest such place along each, and what is not a number for a corner. A face that there is not has its points
-    /// at zero.
+    /// [`Self::new`] for positions alone.
+    pub(crate) fn without_normals(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Result<Self, LimitError> {
+        let rules = Rules::of(scheme);
+        let positions = rules.table().positions(mesh)?;
+        let (sharpness, large) = (Sharpness::of(mesh), LargeRings::of(mesh));
+        Ok(Self { mesh, sharpness, large, rules, positions, normals: None })
+    }
+
+    /// The point over a place of a control face, given by barycentric coordinates; the second and third count, cut off so that none
+    /// is below 0 and their sum not above 1. A face that there is not has its points at zero.
     pub fn at(&self, face: FaceId, barycentric: [f64; 3]) -> SurfacePoint {
         self.over(face, &[barycentric]).pop().unwrap_or(NOWHERE)
     }
@@ -90,7 +90,8 @@ impl<'a> LimitSurface<'a> {
         let corners = [0, 1, 2].map(|corner| {
             let h = HalfEdgeId::of(face, corner);
             let position = vector(self.positions[topology.origin(h).index()]);
-            LimitPoint { position, normal: vector(self.normals.at(topology, h)) }
+            let normal = self.normals.as_ref().map_or([0.0; 3], |normals| normals.at(topology, h));
+            LimitPoint { position, normal: vector(normal) }
         });
         let mut left: Vec<Place> = places
             .iter()
@@ -133,7 +134,8 @@ impl<'a> LimitSurface<'a> {
         if let Patch::Regular(points) = patch {
             let piece = Quartic::of(&BezierTriangle::of(points), 0);
             for Place { at, weights: [_, u, v] } in left {
-                let (position, normal) = (piece.point(u, v), piece.normal(u, v));
+                let position = piece.point(u, v);
+                let normal = if self.normals.is_some() { piece.normal(u, v) } else { DVec3::ZERO };
                 found[at] = LimitPoint { position, normal }.into();
             }
             return;

@@ -7,11 +7,13 @@ mod support;
 use std::collections::{HashMap, HashSet};
 
 use limitmesh::carry::carried;
+use limitmesh::limit::LimitTable;
+use limitmesh::measure::Bvh;
 use limitmesh::mesh::{
     BuildOptions, Channel, CreaseTag, Domain, INFINITELY_SHARP, Interpolation, PolygonFaces, PolygonSoup,
     SeamRule, Semantic, Tags,
 };
-use limitmesh::refine::{Exact, ExactOptions, Origin, exact};
+use limitmesh::refine::{Exact, ExactOptions, Origin, UniformOptions, exact, uniform};
 use limitmesh::scheme::Loop;
 use limitmesh::{FaceId, LimitSurface, Mesh};
 use opensubdiv_rs::{far, sdc};
@@ -24,15 +26,6 @@ const RULES: [(SeamRule, sdc::FVarLinearInterpolation); 5] = [
     (SeamRule::CornersPlus2, sdc::FVarLinearInterpolation::CornersPlus2),
     (SeamRule::Boundaries, sdc::FVarLinearInterpolation::Boundaries),
 ];
-
-fn samples() -> Vec<(&'static str, Mesh)> {
-    vec![
-        ("octahedron", octahedron()),
-        ("torus", torus(5, 4)),
-        ("sheet", sheet(4, 5, 3)),
-        ("lumpy", lumpy(12, 7)),
-    ]
-}
 
 /// A channel with seams: around some vertices the faces are parted in two or three fans that have values of their own, so that seams end
 /// in the vertices beside them or go on there.
@@ -258,15 +251,48 @@ fn affine_coordinates_of_a_disc_stay_affine() {
     }
 }
 
-/// The surface at any place: against refinement by steps and its vertices' limit stencils.
+/// The surface at a place: against refinement by the masks and its vertices' limit stencils.
 #[test]
 fn the_surface_at_a_place_is_the_limit_of_its_vertex() {
     for (name, mesh) in samples() {
-        let fine = twice_divided(&mesh);
+        let stepped = uniform(&mesh, &Loop, &UniformOptions::default().levels(2)).unwrap().mesh;
+        let limits = LimitTable::new(&Loop).positions(&stepped).unwrap();
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
-        for (vertex, origin) in fine.origins.iter().enumerate() {
-            let point = surface.at(FaceId(origin.face), origin.barycentric);
-            assert!(distance(point.position, fine.mesh.positions()[vertex]) < 1e-13, "{name}");
+        let mut met = vec![false; limits.len()];
+        for face in 0..mesh.face_count() as u32 {
+            for (i, j) in (0..=4u32).flat_map(|i| (0..=4 - i).map(move |j| (i, j))) {
+                let place = [4 - i - j, i, j].map(|weight| f64::from(weight) / 4.0);
+                let point = surface.at(FaceId(face), place).position;
+                let off = |v: &usize| distance(limits[*v], point);
+                let nearest = (0..limits.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+                assert!(off(&nearest) < 1e-12, "{name}, {place:?} of face {face}: {}", off(&nearest));
+                met[nearest] = true;
+            }
+        }
+        assert!(met.iter().all(|&is_met| is_met), "{name}");
+    }
+}
+
+/// Places that no refinement has a vertex at lie as near to a certified mesh as that is to the surface.
+#[test]
+fn the_surface_between_vertices_is_near_a_certified_mesh() {
+    for (name, mesh) in samples() {
+        let fine = exact(&mesh, &Loop, &ExactOptions::default().tolerance(1e-4)).unwrap();
+        let tree = Bvh::new(fine.mesh.as_triangles()).unwrap();
+        let surface = LimitSurface::new(&mesh, &Loop).unwrap();
+        let mut random = Random::new(11);
+        for face in 0..mesh.face_count() as u32 {
+            for _ in 0..20 {
+                let [a, b] = [0, 1].map(|_| 0.5 * (random.signed() + 1.0));
+                let [u, v] = if a + b > 1.0 { [1.0 - a, 1.0 - b] } else { [a, b] };
+                let point = surface.at(FaceId(face), [1.0 - u - v, u, v]);
+                assert!(
+                    tree.closest(point.position).distance <= fine.error.upper,
+                    "{name}, {u} {v} of {face}"
+                );
+                let length = point.normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+                assert!((length - 1.0).abs() < 1e-12);
+            }
         }
     }
 }

@@ -37,15 +37,6 @@ impl Criterion for Arbitrary {
     }
 }
 
-fn samples() -> Vec<(&'static str, Mesh)> {
-    vec![
-        ("octahedron", octahedron()),
-        ("torus", torus(5, 4)),
-        ("sheet", sheet(4, 5, 3)),
-        ("lumpy", lumpy(12, 7)),
-    ]
-}
-
 fn refined(mesh: &Mesh, levels: usize) -> Mesh {
     uniform(mesh, &Loop, &UniformOptions::default().levels(levels)).unwrap().mesh
 }

@@ -37,7 +37,7 @@ pub fn holds(format: Format, channel: &Channel) -> bool {
     }
 }
 
-/// By vertex, the number of its value, of several corners the first's; and how many vertices have several.
+/// By vertex, the number of its value, of several corners the first's; and how many vertices have several. The channel must have values.
 pub(crate) fn by_vertex(channel: &Channel, vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, usize) {
     const NONE: u32 = u32::MAX;
     if channel.domain == Domain::Vertex {

@@ -174,6 +174,18 @@ pub enum WriteError {
         /// Number of vertices.
         vertices: usize,
     },
+    /// A channel has no value at all, and there are vertices.
+    #[error("channel {name} has no values, expected one at least")]
+    NoValues {
+        /// The channel.
+        name: String,
+    },
+    /// A name would end its line in an OBJ file.
+    #[error("the name {name:?} has a line break, expected one line")]
+    LineBreak {
+        /// The name.
+        name: String,
+    },
     /// A channel does not fit the triangles.
     #[error(transparent)]
     Channel(#[from] limitmesh::mesh::ChannelError),

@@ -3,7 +3,7 @@
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
 
-use limitmesh::mesh::{Channel, CornerTag, CreaseTag, PolygonSoup, Triangles};
+use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Domain, PolygonSoup, Semantic, Triangles};
 use limitmesh_io::{
     Format, Output, Property, WriteError, WriteOptions, read_bytes, rounding, write, write_to, write_whole,
 };
@@ -380,6 +380,27 @@ fn properties_are_columns_of_ply_files_and_channels_when_read() {
             }
         }
     }
+}
+
+#[test]
+fn channels_that_do_not_fit_are_refused() {
+    let lone = Triangles { positions: &POSITIONS, triangles: &[] };
+    let refused = |surface, channel: Channel, format| {
+        let channels = [channel];
+        let output = Output::new(surface).channels(&channels);
+        write_to(&mut Vec::new(), format, &output, &WriteOptions::default()).unwrap_err().to_string()
+    };
+    let empty = || Channel::new("c", Semantic::Colour, Domain::Corner, 3);
+    for format in [Format::Obj, Format::Ply] {
+        assert!(refused(lone, empty(), format).contains("no values"));
+        let few = Channel::new("c", Semantic::Colour, Domain::Vertex, 3).with(vec![0.5; 3], vec![0]);
+        assert!(refused(lone, few, format).contains("expected one for each"));
+    }
+    let surface = Triangles { positions: &POSITIONS, triangles: &TRIANGLES };
+    let mut named = Channel::new("materials", Semantic::Label, Domain::Face, 1);
+    named = named.with(vec![0.0], vec![0; TRIANGLES.len()]);
+    named.labels = vec!["red\nf 1 2 3".to_owned()];
+    assert!(refused(surface, named, Format::Obj).contains("line break"));
 }
 
 #[test]

@@ -192,7 +192,8 @@ fn smooth(
         };
         let positions = values.iter().map(coordinates).collect();
         mesh = mesh.with_positions(positions).map_err(|error| limit(error.to_string()))?;
-        let surface = LimitSurface::new(&mesh, scheme).map_err(|error| limit(error.to_string()))?;
+        let surface =
+            LimitSurface::without_normals(&mesh, scheme).map_err(|error| limit(error.to_string()))?;
         let points = surface.over_all(&faces, |at_face| &at[starts[at_face]..starts[at_face + 1]]);
         if let Some(error) = surface.failure() {
             return Err(limit(error.to_string()));

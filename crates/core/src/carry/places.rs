@@ -1,7 +1,6 @@
 //! Where the corners of refined triangles are in their own control faces.
 //!
-//! A vertex knows one face that it came from; a triangle that has it may be in another beside that one. Both faces then share the
-//! control vertex or edge on which the vertex is, so its barycentric coordinates there are found by the vertices' names.
+//! A vertex knows one face that it came from; a triangle that has it may be in another beside that one.
 
 use super::Key;
 use crate::geometry::NONE;
@@ -49,38 +48,31 @@ impl<'a> Places<'a> {
         if is_by_face {
             return Ok(places);
         }
-        let mut is_whole = true;
-        places.for_each_corner(|_, origin| is_whole &= origin.face != NONE);
-        if is_whole { Ok(places) } else { unknown("a triangle reaches over several control faces") }
+        let mut corners = places
+            .triangles
+            .iter()
+            .zip(places.parents)
+            .flat_map(|(triangle, &parent)| triangle.iter().map(move |&vertex| (vertex, parent)));
+        match corners.all(|(vertex, parent)| places.place(vertex, parent).is_some()) {
+            true => Ok(places),
+            false => unknown("a triangle reaches over several control faces"),
+        }
     }
 
-    /// Calls `visit` with the vertex and the place of each corner, triangle by triangle; the place's face is [`NONE`] where the vertex
-    /// is not on the triangle's.
+    /// The place of a vertex in a face.
+    fn place(&self, vertex: u32, face: u32) -> Option<Origin> {
+        self.origins[vertex as usize].in_face(self.control.triangles(), face)
+    }
+
+    /// Calls `visit` with the vertex and the place of each corner, triangle by triangle.
     pub(super) fn for_each_corner(&self, mut visit: impl FnMut(u32, Origin)) {
         for (triangle, &parent) in self.triangles.iter().zip(self.parents) {
             for &vertex in triangle {
-                visit(vertex, self.in_face(&self.origins[vertex as usize], parent));
+                if let Some(place) = self.place(vertex, parent) {
+                    visit(vertex, place);
+                }
             }
         }
-    }
-
-    /// The same place seen from another face.
-    fn in_face(&self, origin: &Origin, face: u32) -> Origin {
-        if origin.face == face {
-            return *origin;
-        }
-        let [from, to] = [origin.face, face].map(|face| self.control.triangles()[face as usize]);
-        let mut barycentric = [0.0; 3];
-        for (vertex, &weight) in from.iter().zip(&origin.barycentric) {
-            if weight == 0.0 {
-                continue;
-            }
-            match to.iter().position(|other| other == vertex) {
-                Some(corner) => barycentric[corner] = weight,
-                None => return Origin { face: NONE, barycentric },
-            }
-        }
-        Origin { face, barycentric }
     }
 
     /// The numbers of the values that a place depends on, in the order of their control vertices.

@@ -52,6 +52,22 @@ pub struct Origin {
     pub barycentric: [f64; 3],
 }
 
+impl Origin {
+    /// The same point in another face of the control mesh, whose triangles these are; `None` where that face hasn't it. A point of
+    /// two faces is on a vertex or an edge of both, so its coordinates go by the names of vertices.
+    pub fn in_face(&self, triangles: &[[u32; 3]], face: u32) -> Option<Self> {
+        if self.face == face {
+            return Some(*self);
+        }
+        let (from, to) = (triangles.get(self.face as usize)?, triangles.get(face as usize)?);
+        let mut barycentric = [0.0; 3];
+        for (vertex, &weight) in from.iter().zip(&self.barycentric).filter(|&(_, &weight)| weight != 0.0) {
+            barycentric[to.iter().position(|other| other == vertex)?] = weight;
+        }
+        Some(Self { face, barycentric })
+    }
+}
+
 /// A mesh within known bounds of a limit surface.
 #[derive(Clone, Debug)]
 #[non_exhaustive]

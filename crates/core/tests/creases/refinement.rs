@@ -8,15 +8,6 @@ use limitmesh::scheme::{Loop, ModifiedButterfly, Scheme};
 use crate::plain::{Plain, randomly_tagged};
 use crate::support::*;
 
-fn samples() -> Vec<(&'static str, Mesh)> {
-    vec![
-        ("octahedron", octahedron()),
-        ("torus", torus(5, 4)),
-        ("sheet", sheet(4, 5, 3)),
-        ("lumpy", lumpy(12, 7)),
-    ]
-}
-
 fn refined(mesh: &Mesh, scheme: &dyn Scheme, levels: usize) -> Mesh {
     uniform(mesh, scheme, &UniformOptions::default().levels(levels)).unwrap().mesh
 }

@@ -36,6 +36,16 @@ impl Random {
     }
 }
 
+/// Closed and open meshes, even and uneven.
+pub fn samples() -> Vec<(&'static str, Mesh)> {
+    vec![
+        ("octahedron", octahedron()),
+        ("torus", torus(5, 4)),
+        ("sheet", sheet(4, 5, 3)),
+        ("lumpy", lumpy(12, 7)),
+    ]
+}
+
 pub fn octahedron() -> Mesh {
     let positions = vec![
         [1.0, 0.0, 0.0],

@@ -8,9 +8,6 @@ pub(super) enum Kind {
     Colours,
     Weights,
     Materials,
-    Groups,
-    Objects,
-    SmoothingGroups,
     Lines,
     Points,
     Parameters,
@@ -18,15 +15,12 @@ pub(super) enum Kind {
 }
 
 /// All kinds with their words.
-const KINDS: [(Kind, &str); 12] = [
+const KINDS: [(Kind, &str); 9] = [
     (Kind::TextureCoordinates, "texture coordinates"),
     (Kind::Normals, "normals"),
     (Kind::Colours, "colours"),
     (Kind::Weights, "weights of vertices"),
     (Kind::Materials, "materials"),
-    (Kind::Groups, "groups"),
-    (Kind::Objects, "names of objects"),
-    (Kind::SmoothingGroups, "smoothing groups"),
     (Kind::Lines, "lines"),
     (Kind::Points, "points"),
     (Kind::Parameters, "points in parameter space"),

@@ -284,6 +284,13 @@ fn check(output: &Output<'_>, format: Format, options: &WriteOptions) -> Result<
     }
     for channel in output.channels.iter().filter(|channel| crate::holds(format, channel)) {
         channel.check(vertices, 3 * triangles.len(), triangles.len())?;
+        if channel.value_count() == 0 && vertices > 0 {
+            return Err(WriteError::NoValues { name: channel.name.clone() });
+        }
+    }
+    let names = output.channels.iter().flat_map(|channel| &channel.labels).chain(output.material_libraries);
+    if let Some(name) = names.filter(|_| format == Format::Obj).find(|name| name.contains(['\n', '\r'])) {
+        return Err(WriteError::LineBreak { name: name.clone() });
     }
     if format == Format::Ply { property::check(output) } else { Ok(()) }
 }

@@ -1,5 +1,7 @@
 //! Channels as numbers of a PLY file's vertices and faces: what `read::ply` makes channels of.
 
+use std::rc::Rc;
+
 use limitmesh::mesh::{Channel, Domain, Semantic, Storage};
 
 use super::Output;
@@ -15,7 +17,7 @@ pub(super) struct Column<'a> {
     /// Which number of a value.
     part: usize,
     /// By element, its value.
-    values: std::rc::Rc<Vec<u32>>,
+    values: Rc<Vec<u32>>,
 }
 
 /// What an output's channels become.
@@ -34,7 +36,7 @@ impl<'a> Columns<'a> {
         let (vertices, triangles) = (output.surface.positions.len(), output.surface.triangles);
         for channel in output.channels.iter().filter(|channel| crate::holds(Format::Ply, channel)) {
             if channel.domain == Domain::Face {
-                let values = std::rc::Rc::new(channel.indices.clone());
+                let values = Rc::new(channel.indices.clone());
                 let is_taken = |name: &str| {
                     output.face_properties.iter().any(|p| p.name == name) || name == "vertex_indices"
                 };
@@ -55,7 +57,7 @@ impl<'a> Columns<'a> {
                     || has_quality
                     || output.vertex_properties.iter().any(|p| p.name == name)
             };
-            add(&mut found.vertices, channel, std::rc::Rc::new(values), is_taken);
+            add(&mut found.vertices, channel, Rc::new(values), is_taken);
         }
         found
     }
@@ -64,7 +66,7 @@ impl<'a> Columns<'a> {
 fn add<'a>(
     columns: &mut Vec<Column<'a>>,
     channel: &'a Channel,
-    values: std::rc::Rc<Vec<u32>>,
+    values: Rc<Vec<u32>>,
     is_taken: impl Fn(&str) -> bool,
 ) {
     for (part, name) in names(channel).into_iter().enumerate() {

@@ -144,12 +144,13 @@ impl Job {
         };
         self.notes(&name, &own, &built.1, progress);
         let (built, diagnosis, trace) = built;
-        let read = built.clone();
         own.soup.channels = own.attributes.iter().map(channel).collect();
         let on_mesh = |channel: &Channel| channel.on_mesh(&own.soup, &built, &trace);
         let narrow =
             own.soup.channels.iter().filter(|channel| channel.arity <= MOST_WIDE && self.is_traced());
         let channels = narrow.map(on_mesh).collect::<Result<_, _>>()?;
+        let of_corners: Vec<u32> = own.soup.faces.iter().flatten().copied().collect();
+        let vertices: Vec<u32> = trace.corners.iter().map(|&corner| of_corners[corner as usize]).collect();
         let control = Control::new((built, diagnosis, trace.faces), Some(diagonal), arguments, progress)?;
         let arguments = self.of_mesh(&own, done)?;
         let goals = Goals::new(&arguments, &control.featured.mesh, diagonal)?;
@@ -167,7 +168,6 @@ impl Job {
         let mut channels = Channels::of_asset(channels, &arguments);
         channels.on_parts(&featured.concave.parts, &featured.mesh);
         let start = Instant::now();
-        let control_faces = featured.mesh.triangles().to_vec();
         let mut refined = match arguments.method {
             Method::Exact => exact::run((&featured, &before, &channels), &goals, &arguments, progress)?,
             _ => stepwise::run(featured.mesh.clone(), &arguments, self.output, progress)?,
@@ -182,11 +182,10 @@ impl Job {
         let carried = Carried {
             origins: &refined.origins,
             parents: &refined.parents,
-            control: &control_faces,
+            control: featured.mesh.triangles(),
             parts: &featured.concave.parts,
-            read: read.as_triangles(),
             faces: &before.faces,
-            soup: &own.soup,
+            vertices: &vertices,
         };
         put_back(asset, mesh, &own, (&refined, &carried), stretch)?;
         done.triangles += refined.mesh.face_count();
@@ -358,8 +357,9 @@ fn put_back(
             let of_mesh = refined.mesh.triangles()[triangle];
             triangles.push([0, 1, 2].map(|corner| {
                 let v = corners[corner];
-                let place = vertices.need_places().then(|| carried.place(triangle, of_mesh[corner]));
-                let number = vertices.number(v, 3 * triangle + corner, place, &own.soup);
+                let place =
+                    vertices.need_places().then(|| carried.place(triangle, of_mesh[corner])).flatten();
+                let number = vertices.number(v, 3 * triangle + corner, place);
                 if number as usize == positions.len() {
                     positions.push(surface.positions[v as usize].map(|x| x / stretch));
                     directions.push(normals[v as usize]);

@@ -1,14 +1,8 @@
 //! The vertices of an asset's file: what they carry, and what moves them, which is linear on each face of the input.
-//!
-//! A vertex tells a face that it came from and its barycentric coordinates there. A triangle's own face may be another that
-//! shares the point: then the point is on an edge or corner of both, and the coordinates go by vertices.
 
 use limitmesh::mesh::{Channel, FaceParts, Semantic};
 use limitmesh::refine::Origin;
-use limitmesh::{PolygonSoup, Triangles};
 use limitmesh_io::gltf::VertexAttribute;
-
-use crate::vector::{cross, length, minus};
 
 /// Triangles' corners as points of the input's faces.
 pub(super) struct Carried<'a> {
@@ -19,13 +13,13 @@ pub(super) struct Carried<'a> {
     /// The control mesh's faces, and where these are in those of the mesh that was read.
     pub(super) control: &'a [[u32; 3]],
     pub(super) parts: &'a FaceParts,
-    /// The mesh that was read.
-    pub(super) read: Triangles<'a>,
-    /// The input's face of each of its faces.
+    /// By face of the mesh that was read, the input's face, and by corner, the input's vertex.
     pub(super) faces: &'a [u32],
-    /// What it was built from.
-    pub(super) soup: &'a PolygonSoup,
+    pub(super) vertices: &'a [u32],
 }
+
+/// Vertices of the input with the weights that a point has of them.
+pub(super) type Mixture = [(u32, f64); 3];
 
 impl Carried<'_> {
     /// The input's face of a triangle.
@@ -33,44 +27,12 @@ impl Carried<'_> {
         self.faces[self.parts.whole(self.parents[triangle]) as usize] as usize
     }
 
-    /// The input's face of a triangle, and the barycentric coordinates there of its corner at a vertex.
-    pub(super) fn place(&self, triangle: usize, vertex: u32) -> (usize, [f64; 3]) {
+    /// What a triangle's corner at a vertex is of the vertices of the input's face.
+    pub(super) fn place(&self, triangle: usize, vertex: u32) -> Option<Mixture> {
         let parent = self.parents[triangle];
-        let Origin { face, barycentric } = self.origins[vertex as usize];
-        let own = self.control[parent as usize];
-        let mut here = [0.0; 3];
-        for (v, weight) in self.control[face as usize].into_iter().zip(barycentric) {
-            if let Some(corner) = own.iter().position(|&other| other == v) {
-                here[corner] += weight;
-            }
-        }
-        let (whole, barycentric) = self.parts.on_whole(parent, here);
-        let input = self.faces[whole as usize] as usize;
-        let corners = self.soup.faces.get(input);
-        let mut there = [0.0; 3];
-        for (v, weight) in self.read.triangles[whole as usize].into_iter().zip(barycentric) {
-            // Building turns faces and numbers vertices anew; it never moves them.
-            let position = self.read.positions[v as usize];
-            let is_here = |&&corner: &&u32| self.soup.positions[corner as usize] == position;
-            match corners.iter().position(|corner| is_here(&corner)) {
-                Some(corner) => there[corner] += weight,
-                // A vertex that building put into an edge.
-                None => self.add_inside(input, position, weight, &mut there),
-            }
-        }
-        (input, there)
-    }
-
-    /// Adds a point of the input's face by its areal coordinates.
-    fn add_inside(&self, face: usize, point: [f64; 3], weight: f64, there: &mut [f64; 3]) {
-        let corners = self.soup.faces.get(face);
-        let corner = |i: usize| self.soup.positions[corners[i % 3] as usize];
-        let areas =
-            [0, 1, 2].map(|i| length(cross(minus(corner(i + 1), point), minus(corner(i + 2), point))));
-        let whole: f64 = areas.iter().sum();
-        if whole > 0.0 {
-            (0..3).for_each(|i| there[i] += weight * areas[i] / whole);
-        }
+        let own = self.origins[vertex as usize].in_face(self.control, parent)?;
+        let (whole, weights) = self.parts.on_whole(parent, own.barycentric);
+        Some([0, 1, 2].map(|corner| (self.vertices[3 * whole as usize + corner], weights[corner])))
     }
 }
 
@@ -136,13 +98,8 @@ impl<'a> Vertices<'a> {
     }
 
     /// The file's vertex for a corner of the surface at a vertex, which is at a place of the input's; a new one has the next number.
-    pub(super) fn number(
-        &mut self,
-        v: u32,
-        corner: usize,
-        place: Option<(usize, [f64; 3])>,
-        soup: &PolygonSoup,
-    ) -> u32 {
+    /// Without a place nothing moves it.
+    pub(super) fn number(&mut self, v: u32, corner: usize, place: Option<Mixture>) -> u32 {
         let new = self.next.len() as u32;
         // As if it were new, until a vertex with these values is found.
         for (channel, attribute) in self.channels.iter().zip(&mut self.attributes) {
@@ -164,8 +121,8 @@ impl<'a> Vertices<'a> {
             last => self.next[last as usize] = new,
         }
         self.next.push(NONE);
-        if let (Some(influences), Some((face, weights))) = (self.influences, place) {
-            for (joint, weight) in mixed(influences, soup.faces.get(face), weights) {
+        if let Some(influences) = self.influences {
+            for (joint, weight) in mixed(influences, place.unwrap_or_default()) {
                 self.joints.push(f64::from(joint));
                 self.weights.push(weight);
             }
@@ -176,16 +133,15 @@ impl<'a> Vertices<'a> {
 
 /// The joints that move a point of a face most, with weights that are linear between those of its corners and then add up to 1; ties by
 /// joint.
-fn mixed(influences: &[Vec<(u32, f64)>], vertices: &[u32], weights: [f64; 3]) -> [(u32, f64); MOST_JOINTS] {
-    let mut order = [0, 1, 2];
-    order.sort_unstable_by_key(|&corner| vertices[corner]);
+fn mixed(influences: &[Vec<(u32, f64)>], mut place: Mixture) -> [(u32, f64); MOST_JOINTS] {
+    // By vertices, so that faces that share a point agree to the bit.
+    place.sort_unstable_by_key(|&(vertex, _)| vertex);
     let mut all: Vec<(u32, f64)> = Vec::new();
-    for corner in order.into_iter().filter(|&corner| weights[corner] > 0.0) {
-        for &(joint, weight) in &influences[vertices[corner] as usize] {
-            let share = weights[corner] * weight;
+    for (vertex, share) in place.into_iter().filter(|&(_, share)| share > 0.0) {
+        for &(joint, weight) in &influences[vertex as usize] {
             match all.iter_mut().find(|(own, _)| *own == joint) {
-                Some((_, sum)) => *sum += share,
-                None => all.push((joint, share)),
+                Some((_, sum)) => *sum += share * weight,
+                None => all.push((joint, share * weight)),
             }
         }
     }

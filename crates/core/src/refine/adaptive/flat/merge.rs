@@ -42,8 +42,8 @@ struct Covering {
 }
 
 impl FlatRegions {
-    /// Triangulates the regions anew; gives how many of them were folded, too. `starts` has the first triangle of each control face and one more, `sharp` the half-edges
-    /// along sharp edges, and `corners` is the number of control vertices, which all stay.
+    /// Triangulates the regions anew; gives how many of them were folded, too. `starts` has the first triangle of each control face
+    /// and one more, `sharp` the half-edges along sharp edges, and `corners` is the number of control vertices, which all stay.
     pub(in super::super) fn merge(
         &self,
         whole: Assembled,
@@ -166,12 +166,13 @@ impl FlatRegions {
     /// The mesh with the coverings that there are.
     fn replaced(
         &self,
-        whole: Assembled,
+        mut whole: Assembled,
         starts: &[u32],
         coverings: &[Option<Covering>],
         corners: usize,
         watch: &SharedWatch<'_>,
     ) -> Result<Assembled, Cancelled> {
+        self.unfold_normals(&mut whole, coverings);
         let covering = |face: u32| self.region(face).and_then(|region| coverings[region as usize].as_ref());
         let (mut triangles, mut parents) = (Vec::new(), Vec::new());
         let mut first_new = vec![NONE; whole.triangles.len()];
@@ -220,7 +221,6 @@ impl FlatRegions {
             }
         })?;
         let sides = self.sides(&whole, (&triangles, &parents), coverings, &first_new, watch)?;
-        let normals = self.unfolded_normals(&whole, coverings);
         let mut renamed = vec![NONE; whole.positions.len()];
         renamed[..corners].fill(0);
         watch.each(triangles.as_flattened(), |&vertex| renamed[vertex as usize] = 0)?;
@@ -237,7 +237,7 @@ impl FlatRegions {
         let origins = if whole.origins.is_empty() { &[][..] } else { &kept[..] };
         Ok(Assembled {
             positions: kept.iter().map(|&vertex| whole.positions[vertex]).collect(),
-            normals: kept.iter().map(|&vertex| normals[vertex]).collect(),
+            normals: kept.iter().map(|&vertex| whole.normals[vertex]).collect(),
             origins: origins.iter().map(|&vertex| whole.origins[vertex]).collect(),
             triangles,
             twins,
@@ -248,27 +248,25 @@ impl FlatRegions {
         })
     }
 
-    /// The normals of vertices; where a region was folded those that are not on sharp edges have its plane's: limit normals
-    /// are turned over where the surface is.
-    fn unfolded_normals(&self, whole: &Assembled, coverings: &[Option<Covering>]) -> Vec<[f64; 3]> {
-        let mut normals = whole.normals.clone();
+    /// Where a region was folded, gives its vertices that are not on sharp edges the normal of its plane: limit normals are turned
+    /// over where the surface is.
+    fn unfold_normals(&self, whole: &mut Assembled, coverings: &[Option<Covering>]) {
         let folded = self.regions.iter().zip(coverings).filter_map(|((_, plane), covering)| {
             covering.as_ref().filter(|covering| covering.was_folded).map(|covering| (plane, covering))
         });
         let mut folded = folded.peekable();
         if folded.peek().is_none() {
-            return normals;
+            return;
         }
-        let corner = |h: u32| whole.triangles[h as usize / 3][h as usize % 3];
-        let is_sided: HashSet<u32> = whole.sides.iter().map(|&(h, _)| corner(h)).collect();
+        let corner = |&(h, _): &(u32, [f64; 3])| whole.triangles[h as usize / 3][h as usize % 3];
+        let is_sided: HashSet<u32> = whole.sides.iter().map(corner).collect();
         for (plane, covering) in folded {
             for &vertex in covering.triangles.iter().flat_map(|(triangle, _)| triangle) {
                 if !is_sided.contains(&vertex) {
-                    normals[vertex as usize] = plane.normal.to_array();
+                    whole.normals[vertex as usize] = plane.normal.to_array();
                 }
             }
         }
-        normals
     }
 
     /// The normals of corners at sharp edges: a region has one for each of its vertices that is on one.
