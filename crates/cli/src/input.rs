@@ -29,8 +29,8 @@ pub(crate) struct Soup {
     pub(crate) format: &'static str,
     /// Positions, polygons and tags.
     pub(crate) soup: PolygonSoup,
-    /// What else a glTF document holds.
-    pub(crate) contents: Option<Contents>,
+    /// The glTF document, if it was one, and what else that holds.
+    pub(crate) asset: Option<(Asset, Contents)>,
     /// Time taken to read or generate it.
     pub(crate) reading: Duration,
 }
@@ -53,6 +53,8 @@ pub(crate) struct Input {
     pub(crate) channels: Vec<Channel>,
     /// Files that describe the materials that channels name.
     pub(crate) material_libraries: Vec<String>,
+    /// The glTF document, if it was one.
+    pub(crate) asset: Option<Asset>,
     /// Time taken to read or generate it.
     pub(crate) reading: Duration,
     /// Time taken to repair and connect it.
@@ -67,13 +69,14 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
     let name = display_name(path);
     progress.stage(format!("reading {name}"));
     let start = Instant::now();
-    let (soup, contents, format) = match builtin_name(path) {
+    let (soup, asset, format) = match builtin_name(path) {
         Some(model) => (builtin(model)?, None, "builtin"),
         None => {
             let format = format_of(path, build.from)?;
-            let (soup, contents) = if format.is_gltf() {
+            let (soup, asset) = if format.is_gltf() {
                 let asset = asset(path)?;
-                (asset.scene_soup()?, Some(asset.contents()?))
+                let contents = asset.contents()?;
+                (asset.scene_soup()?, Some((asset, contents)))
             } else if path.as_os_str() == STANDARD_INPUT {
                 let bytes = standard_input()?;
                 let soup = limitmesh_io::read_bytes(&bytes, format);
@@ -81,10 +84,10 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
             } else {
                 (limitmesh_io::read_as(path, format)?, None)
             };
-            (soup, contents, format.extension())
+            (soup, asset, format.extension())
         }
     };
-    Ok(Soup { name, format, soup, contents, reading: start.elapsed() })
+    Ok(Soup { name, format, soup, asset, reading: start.elapsed() })
 }
 
 /// Opens a glTF document: a file, or standard input for `-`.
@@ -162,7 +165,7 @@ pub(crate) fn load_keeping(
     progress: &Progress,
 ) -> anyhow::Result<Input> {
     let options = &build.options()?;
-    let Soup { name, format, mut soup, reading, .. } = read(path, build, progress)?;
+    let Soup { name, format, mut soup, asset, reading } = read(path, build, progress)?;
     progress.stage(format!("connecting {}", counted(soup.faces.len(), "face", "faces")));
     let start = Instant::now();
     let (mesh, diagnosis, trace) =
@@ -195,6 +198,7 @@ pub(crate) fn load_keeping(
         face_inputs,
         channels,
         material_libraries,
+        asset: asset.map(|(asset, _)| asset),
         reading,
         building,
     })

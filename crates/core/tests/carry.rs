@@ -7,15 +7,18 @@ mod support;
 use std::collections::{HashMap, HashSet};
 
 use limitmesh::carry::carried;
+use limitmesh::criterion::LimitNormal;
 use limitmesh::limit::LimitTable;
 use limitmesh::measure::Bvh;
 use limitmesh::mesh::{
     BuildOptions, Channel, CreaseTag, Domain, INFINITELY_SHARP, Interpolation, PolygonFaces, PolygonSoup,
     SeamRule, Semantic, Tags,
 };
-use limitmesh::refine::{Exact, ExactOptions, Origin, UniformOptions, exact, uniform};
+use limitmesh::refine::{
+    Exact, ExactOptions, Origin, StepwiseOptions, Traced, UniformOptions, exact, stepwise, uniform,
+};
 use limitmesh::scheme::Loop;
-use limitmesh::{FaceId, LimitSurface, Mesh};
+use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
 use opensubdiv_rs::{far, sdc};
 use support::*;
 
@@ -315,4 +318,46 @@ fn channels_of_a_soup_reach_the_mesh() {
         assert_eq!(channel.value(corner), &position[..2]);
     }
     assert_eq!(channel.value_count(), 4);
+}
+
+/// A smooth channel whose values are the positions has the limits that refinement step by step moves its vertices to.
+#[test]
+fn uniform_refinement_carries_channels() {
+    for (name, mesh) in samples() {
+        let indices = mesh.triangles().as_flattened().to_vec();
+        let places = Channel::new("places", Semantic::Displacement, Domain::Corner, 3)
+            .with(mesh.positions().as_flattened().to_vec(), indices);
+        let options = UniformOptions::default().levels(2).limit(true).origins(true);
+        let fine = uniform(&mesh, &Loop, &options).unwrap();
+        let carried = &carried(&[places], &mesh, &Loop, &fine).unwrap()[0];
+        for (corner, &v) in fine.mesh.triangles().as_flattened().iter().enumerate() {
+            let value = carried.value(corner).try_into().unwrap();
+            let off = distance(value, fine.mesh.positions()[v as usize]);
+            assert!(off < 1e-9 * mesh.diagonal(), "{name}: {off}");
+        }
+    }
+}
+
+/// The triangles of an adaptive refinement step by step cover each control face once.
+#[test]
+fn stepwise_refinement_knows_where_its_triangles_are() {
+    for (name, mesh) in samples() {
+        let options = StepwiseOptions::default().levels(3).origins(true);
+        let criterion = LimitNormal::new(10f64.to_radians());
+        let fine = stepwise(&mesh, &Loop, &criterion, &options).unwrap();
+        let mut covered = vec![0.0; mesh.face_count()];
+        for (face, &parent) in fine.parents.iter().enumerate() {
+            let [a, b, c] = [0, 1, 2].map(|corner| {
+                let h = HalfEdgeId::of(FaceId(face as u32), corner);
+                fine.corner_origin(mesh.triangles(), h)
+                    .filter(|origin| origin.face == parent)
+                    .unwrap()
+                    .barycentric
+            });
+            let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+            assert!(area > 0.0, "{name}: triangle {face} is turned over");
+            covered[parent as usize] += area;
+        }
+        assert!(covered.iter().all(|area| *area == 1.0), "{name}");
+    }
 }

@@ -4,16 +4,16 @@ use limitmesh::mesh::{Channel, Domain, Semantic};
 
 use crate::format::Format;
 
-/// Texture coordinates where a format gives them no name.
-pub(crate) const TEXTURE: &str = "texture coordinates";
+/// The channel of texture coordinates where a format gives them no name of their own.
+pub const TEXTURE: &str = "texture coordinates";
 /// Colours where a format gives them no name.
 pub(crate) const COLOUR: &str = "colours";
 /// Names of objects.
 pub(crate) const OBJECT: &str = "names of objects";
 /// Groups.
 pub(crate) const GROUP: &str = "groups";
-/// Materials.
-pub(crate) const MATERIAL: &str = "materials";
+/// The channel of materials, by face.
+pub const MATERIAL: &str = "materials";
 /// Smoothing groups.
 pub(crate) const SMOOTHING_GROUP: &str = "smoothing groups";
 

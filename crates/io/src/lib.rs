@@ -11,7 +11,7 @@
 //! | PLY | ASCII and binary of both byte orders, triangle strips; numbers of vertices and faces, texture coordinates by corner | `f64`, binary (or ASCII), normals, colours, quality, named properties, and all of these |
 //! | STL | ASCII and binary, several solids; three vertices a facet, not merged | `f32` binary (or ASCII with `f64` digits) |
 //! | OFF | polygons; extra columns are skipped | `f64` digits, normals, colours |
-//! | glTF | what the scene shows, all instances, in its coordinates; Draco and meshopt | `f32`, normals: one mesh |
+//! | glTF | what the scene shows, all instances, in its coordinates, with attributes and names of materials; Draco and meshopt | `f32`, normals: one mesh |
 //!
 //! A glTF [`Asset`] can be edited, too: its meshes are taken out one by one and replaced, and everything else stays.
 //!
@@ -36,7 +36,7 @@ mod read;
 mod scan;
 mod write;
 
-pub use channels::{holds, values_lost};
+pub use channels::{MATERIAL, TEXTURE, holds, values_lost};
 pub use error::{Flaw, Place, ReadError, WriteError};
 pub use format::{Format, UnknownFormat};
 pub use gltf::Asset;

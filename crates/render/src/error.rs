@@ -37,8 +37,8 @@ pub enum RenderError {
         /// The value met.
         value: f64,
     },
-    /// An array given for each vertex has the wrong length.
-    #[error("{met} {what} for {expected} vertices: one for each is needed")]
+    /// An array given for each vertex, triangle or corner has the wrong length.
+    #[error("{met} {what}, expected {expected}: one for each is needed")]
     Count {
         /// What is counted.
         what: &'static str,
@@ -64,6 +64,12 @@ pub enum RenderError {
         value: f64,
         /// What it may be.
         expected: &'static str,
+    },
+    /// A texture's file could not be read.
+    #[error("the texture could not be read: {reason}; PNG and JPEG files can be")]
+    Decode {
+        /// The decoder's own words.
+        reason: String,
     },
     /// The PNG encoder failed.
     #[error("the picture could not be encoded as PNG: {reason}")]

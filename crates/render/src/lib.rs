@@ -1,7 +1,7 @@
 //! Pictures of triangle meshes without a GPU: a camera, a rasteriser with anti-aliasing, smooth and flat
 //! shading, wireframes, heat maps, text, PNG; and plots and drawings as SVG.
 //!
-//! [`render`] and [`render_scalar`] take [`limitmesh::Triangles`] and give an [`Image`]; [`grid`] and
+//! [`render`], [`render_scalar`] and [`render_textured`] take [`limitmesh::Triangles`] and give an [`Image`]; [`grid`] and
 //! [`ColourBar`] compose images into figures; [`plot`] and [`svg`] write vector graphics. Everything is computed on the CPU in the same order
 //! whatever the number of threads, so a picture is the same bytes on every run.
 //!
@@ -36,6 +36,8 @@ mod shade;
 mod style;
 pub mod svg;
 mod text;
+mod texture;
+mod textured;
 mod ticks;
 mod wire;
 
@@ -49,3 +51,5 @@ pub use image::Image;
 pub use picture::{MAX_SIDE, render};
 pub use style::{Lighting, Shading, Style};
 pub use text::{Align, TextStyle, text_width};
+pub use texture::Texture;
+pub use textured::{Covering, Material, render_textured};

@@ -12,6 +12,7 @@ use crate::project::{Projected, STEPS, project};
 use crate::raster::{Bins, NOTHING, Rectangle, Tile, sample_places};
 use crate::shade::shade;
 use crate::style::{Shading, Style};
+use crate::textured::Covering;
 use crate::wire::{self, Ink, Lines};
 use crate::{RenderError, parallel};
 
@@ -55,6 +56,8 @@ pub(crate) enum Paint<'a> {
     Vertex(&'a [[u8; 3]]),
     /// A number at each vertex, looked up in a table of the scale's colours.
     Scalar { values: &'a [f64], scale: &'a Scale, table: Vec<Linear> },
+    /// Materials, perhaps with textures.
+    Materials { covering: &'a Covering<'a>, outside: Linear, inside: Linear },
 }
 
 pub(crate) fn check_size(width: u64, height: u64) -> Result<(), RenderError> {
@@ -290,17 +293,19 @@ impl Scene<'_> {
             normal = in_frame((corners[1] - corners[0]).cross(corners[2] - corners[0]));
         }
         let normal = normal.normalize_or(viewer) * if lines.front { 1.0 } else { -1.0 };
-        shade(&self.style.lighting, self.albedo(triangle, weights, lines.front), normal, viewer)
+        let albedo = self.albedo(face, weights, lines, [x, y]);
+        shade(&self.style.lighting, albedo, normal, viewer)
     }
 
-    fn albedo(&self, triangle: [u32; 3], weights: [f64; 3], front: bool) -> Linear {
+    /// What part of the light the surface sends back where `face` is seen at a point of the picture.
+    fn albedo(&self, face: u32, weights: [f64; 3], lines: &Lines, [x, y]: [f64; 2]) -> Linear {
+        let triangle = self.surface.triangles[face as usize];
+        let side = |outside: &Linear, inside: &Linear| if lines.front { *outside } else { *inside };
         match self.paint {
-            Paint::Sides(outside, inside) => {
-                if front {
-                    *outside
-                } else {
-                    *inside
-                }
+            Paint::Sides(outside, inside) => side(outside, inside),
+            Paint::Materials { covering, outside, inside } => {
+                let own = covering.colour(face, weights, lines.steps(x, y));
+                own.unwrap_or_else(|| side(outside, inside))
             }
             Paint::Vertex(colours) => {
                 let mut mixed = [0.0; 3];

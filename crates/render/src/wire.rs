@@ -54,6 +54,18 @@ impl Lines {
         if sum > 0.0 && sum.is_finite() { weights.map(|w| w / sum) } else { [1.0 / 3.0; 3] }
     }
 
+    /// How barycentric coordinates change from a point of the picture to the next pixel to the right and below, on the triangle's
+    /// plane: the derivatives of a quotient of linear functions.
+    pub(crate) fn steps(&self, x: f64, y: f64) -> [[f64; 3]; 2] {
+        let values = self.lines.map(|[a, b, c]| a * x + b * y + c);
+        let sum = values[0] + values[1] + values[2];
+        [0, 1].map(|axis| {
+            let slopes = self.lines.map(|line| line[axis]);
+            let slope = slopes[0] + slopes[1] + slopes[2];
+            [0, 1, 2].map(|i| (slopes[i] * sum - values[i] * slope) / (sum * sum))
+        })
+    }
+
     /// The lines scaled so that their values are distances in pixels.
     #[inline]
     pub(crate) fn distances(&self) -> [[f32; 3]; 3] {

@@ -87,7 +87,7 @@ pub(crate) struct ExactArguments {
     /// Say where each vertex and triangle came from, as properties of a PLY file
     ///
     /// Vertices have parent_face and the barycentric coordinates parent_a, parent_b and parent_c there, triangles
-    /// have parent_face (not with --optimize): faces of the control mesh, counted from 0. Both have input_face, that face's
+    /// have parent_face (with --optimize one of several): faces of the control mesh, counted from 0. Both have input_face, that face's
     /// polygon in the input, as the diagnosis counts them.
     #[arg(long)]
     pub(crate) provenance: bool,

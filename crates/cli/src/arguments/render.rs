@@ -10,6 +10,8 @@ use super::{BuildArguments, Size};
 const EXAMPLES: &str = "\
 Examples:
   limitmesh render refined.ply -o refined.png --wireframe
+  limitmesh render duck.glb -o duck.png
+  limitmesh render chair.obj -o chair.png --texture wood.jpg
   limitmesh render builtin:cup -o cup.png --flat --view 1,-2,-1 --size 1600x1200";
 
 /// Draw a mesh as a PNG picture; needs no graphics card
@@ -40,6 +42,13 @@ pub(crate) struct RenderArguments {
     /// Edges that the file tags as sharp for ever are shaded so in any case.
     #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
     pub(crate) crease_angle: Option<f64>,
+
+    /// What lies on the surface by its texture coordinates: a PNG or JPEG file, checker for a pattern that shows stretching and seams, or
+    /// none
+    ///
+    /// Without it a glTF file's own materials are drawn, with their base colours and textures in plain light, and other files in one colour.
+    #[arg(long, value_name = "IMAGE|checker|none")]
+    pub(crate) texture: Option<PathBuf>,
 
     /// Direction of sight, from the viewer into the scene
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]

@@ -20,7 +20,7 @@ use crate::report::{
 
 /// Examines a file and prints what it holds.
 pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    let input::Soup { name, format, soup, contents, .. } =
+    let input::Soup { name, format, soup, asset, .. } =
         input::read(&arguments.input, &arguments.build, progress)?;
     let options = arguments.build.options()?;
     let mut corners = BTreeMap::<usize, usize>::new();
@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         input,
         polygons,
         tags,
-        asset: contents.map(AssetInformation::from),
+        asset: asset.map(|(_, contents)| contents.into()),
         diagnosis: (&diagnosis).into(),
         mesh: mesh_info::examine(&mesh),
     };

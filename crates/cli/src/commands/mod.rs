@@ -3,6 +3,7 @@
 mod certified;
 mod certified_limit;
 pub(crate) mod compare;
+mod covering;
 mod heatmap;
 pub(crate) mod info;
 mod interpolation;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use limitmesh::Triangles;
-use limitmesh_render::{Camera, Style, ViewDirection, render};
+use limitmesh_render::{Camera, Covering, Style, ViewDirection, render, render_textured};
 
 use crate::arguments::Size;
 use crate::failure::usage;
@@ -39,5 +39,18 @@ pub(super) fn draw(
 ) -> anyhow::Result<()> {
     let camera = Camera::fit_tightly(surface, view, width, height)?;
     let image = render(surface, normals, None, &camera, style, width, height)?;
+    output::write_file(path, &image.encode_png()?)
+}
+
+/// Draws a surface with its materials and writes the picture.
+pub(super) fn draw_covered(
+    path: &Path,
+    (surface, normals, covering): (Triangles<'_>, Option<&[[f64; 3]]>, &Covering<'_>),
+    view: ViewDirection,
+    style: &Style,
+    Size { width, height }: Size,
+) -> anyhow::Result<()> {
+    let camera = Camera::fit_tightly(surface, view, width, height)?;
+    let image = render_textured(surface, normals, covering, &camera, style, (width, height))?;
     output::write_file(path, &image.encode_png()?)
 }

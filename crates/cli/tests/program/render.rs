@@ -45,3 +45,31 @@ fn wrong_pictures_are_refused() {
     run("render builtin:head -o {}", &[&path.with_extension("gif")]).expect(2).saying(".png");
     assert!(!path.exists());
 }
+
+#[test]
+fn textures_lie_on_surfaces_with_texture_coordinates() {
+    let folder = folder();
+    let (mesh, path) = (folder.path().join("square.obj"), folder.path().join("out.png"));
+    let plain = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\n";
+    std::fs::write(&mesh, format!("{plain}f 1 2 3 4\n")).expect("written");
+    let bare = run("render {} -o {} --size 160x120 --texture checker", &[&mesh, &path]);
+    bare.expect(2).saying("no texture coordinates");
+    std::fs::write(&mesh, format!("{plain}vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"))
+        .expect("written");
+    let mut drawn = |options: &str| {
+        run(&format!("render {{}} -o {{}} --size 160x120 {options}"), &[&mesh, &path]).expect(0);
+        std::fs::read(&path).expect("a picture")
+    };
+    let none = drawn("");
+    let checker = drawn("--texture checker");
+    assert!(none == drawn("--texture none") && none != checker);
+    // A picture of a picture has the same colours all over its side.
+    let picture = folder.path().join("texture.png");
+    std::fs::write(&picture, &checker).expect("written");
+    run("render {} -o {} --texture {}", &[&mesh, &path, &picture]).expect(0);
+    std::fs::write(&picture, "no picture").expect("written");
+    let broken = run("render {} -o {} --texture {}", &[&mesh, &path, &picture]);
+    broken.expect(1).saying("texture.png").saying("PNG and JPEG");
+    let missing = run("render {} -o {} --texture {}", &[&mesh, &path, &folder.path().join("none.png")]);
+    missing.expect(1).saying("none.png");
+}

@@ -6,14 +6,17 @@
 //! same places as the vertices: a channel whose values are positions gives the vertices' positions. Where control faces meet, corners
 //! of the refined mesh have one value if the channel has one there, so seams run where they ran, and there alone.
 
+mod borders;
 mod places;
 mod seams;
+
+pub use borders::borders;
 
 use std::collections::HashMap;
 
 use crate::limit_surface::LimitSurface;
 use crate::mesh::{Channel, ChannelError, Domain, Interpolation, Mesh, SeamRule};
-use crate::refine::{Exact, Origin};
+use crate::refine::{Origin, Traced};
 use crate::scheme::Scheme;
 use places::Places;
 use seams::value_mesh;
@@ -23,9 +26,11 @@ const TOGETHER: usize = 3;
 
 /// The channels of a refined mesh: of its corners, or of its faces, in the order of the control mesh's.
 ///
-/// `result` must have origins ([`ExactOptions::origins`](crate::refine::ExactOptions::origins)) and parents, and each of its triangles
-/// must lie in one control face, unless all channels are of faces: neither be optimised nor have flat regions triangulated from their rims
-/// ([`ExactOptions::flat_regions`](crate::refine::ExactOptions::flat_regions)).
+/// `result` must have origins and parents
+/// ([`ExactOptions::origins`](crate::refine::ExactOptions::origins), [`UniformOptions::origins`](crate::refine::UniformOptions::origins)), and no flat regions
+/// that were triangulated from their rims ([`ExactOptions::flat_regions`](crate::refine::ExactOptions::flat_regions)), unless all channels
+/// are of faces. If it is optimised, [`borders`] must have been kept; its triangles reach over several control faces, so values are exact at
+/// its corners, and linear channels bend at control edges inside of triangles where these do not.
 ///
 /// ```
 /// use limitmesh::carry::carried;
@@ -53,7 +58,7 @@ pub fn carried(
     channels: &[Channel],
     control: &Mesh,
     scheme: &dyn Scheme,
-    result: &Exact,
+    result: &dyn Traced,
 ) -> Result<Vec<Channel>, ChannelError> {
     let is_by_face = channels.iter().all(|channel| channel.domain == Domain::Face);
     let places = Places::of(control, result, is_by_face)?;

@@ -4,14 +4,14 @@
 
 use super::Key;
 use crate::geometry::NONE;
+use crate::index::HalfEdgeId;
 use crate::mesh::{Channel, ChannelError, Mesh};
-use crate::refine::{Exact, Origin};
+use crate::refine::{Origin, Traced};
 
 /// A refined mesh's places on its control mesh.
 pub(super) struct Places<'a> {
     control: &'a Mesh,
-    triangles: &'a [[u32; 3]],
-    origins: &'a [Origin],
+    result: &'a dyn Traced,
     /// By triangle, its control face.
     pub(super) parents: &'a [u32],
     pub(super) vertex_count: usize,
@@ -22,55 +22,47 @@ impl<'a> Places<'a> {
     ///
     /// # Errors
     /// Origins or parents are missing, or a triangle reaches over several control faces.
-    pub(super) fn of(control: &'a Mesh, result: &'a Exact, is_by_face: bool) -> Result<Self, ChannelError> {
-        let mesh = &result.mesh;
+    pub(super) fn of(
+        control: &'a Mesh,
+        result: &'a dyn Traced,
+        is_by_face: bool,
+    ) -> Result<Self, ChannelError> {
+        let mesh = result.mesh();
         let unknown = |why| Err(ChannelError::Unknown { why });
-        if result.parents.len() != mesh.face_count() {
+        if result.parents().len() != mesh.face_count() {
             return unknown("the triangles have no control faces");
         }
-        if !is_by_face && result.origins.len() != mesh.vertex_count() {
+        if !is_by_face && result.origins().len() != mesh.vertex_count() {
             return unknown("the vertices have no origins");
         }
-        let places = Self {
-            control,
-            triangles: mesh.triangles(),
-            origins: &result.origins,
-            parents: &result.parents,
-            vertex_count: mesh.vertex_count(),
-        };
+        let places = Self { control, result, parents: result.parents(), vertex_count: mesh.vertex_count() };
         let faces = control.face_count();
         let is_known = |face: u32| (face as usize) < faces;
         if !places.parents.iter().all(|&face| is_known(face))
-            || !places.origins.iter().all(|origin| is_known(origin.face))
+            || !result.origins().iter().all(|origin| is_known(origin.face))
         {
             return unknown("they come from another control mesh");
         }
         if is_by_face {
             return Ok(places);
         }
-        let mut corners = places
-            .triangles
-            .iter()
-            .zip(places.parents)
-            .flat_map(|(triangle, &parent)| triangle.iter().map(move |&vertex| (vertex, parent)));
-        match corners.all(|(vertex, parent)| places.place(vertex, parent).is_some()) {
+        let corners = 0..3 * mesh.face_count() as u32;
+        match corners.into_iter().all(|corner| places.place(corner).is_some()) {
             true => Ok(places),
             false => unknown("a triangle reaches over several control faces"),
         }
     }
 
-    /// The place of a vertex in a face.
-    fn place(&self, vertex: u32, face: u32) -> Option<Origin> {
-        self.origins[vertex as usize].in_face(self.control.triangles(), face)
+    /// The place of a corner.
+    fn place(&self, corner: u32) -> Option<Origin> {
+        self.result.corner_origin(self.control.triangles(), HalfEdgeId(corner))
     }
 
     /// Calls `visit` with the vertex and the place of each corner, triangle by triangle.
     pub(super) fn for_each_corner(&self, mut visit: impl FnMut(u32, Origin)) {
-        for (triangle, &parent) in self.triangles.iter().zip(self.parents) {
-            for &vertex in triangle {
-                if let Some(place) = self.place(vertex, parent) {
-                    visit(vertex, place);
-                }
+        for (corner, &vertex) in self.result.mesh().triangles().as_flattened().iter().enumerate() {
+            if let Some(place) = self.place(corner as u32) {
+                visit(vertex, place);
             }
         }
     }

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use super::junctions::join_copies;
+use super::lineage::Lineage;
 use super::split::SplitEdges;
 use super::step::advance;
 use super::{RefineError, Refinement, StepReport, Stop};
@@ -17,6 +18,7 @@ pub(super) struct Driver<'a> {
     pub(super) levels: usize,
     pub(super) limit: bool,
     pub(super) normals: bool,
+    pub(super) origins: bool,
     pub(super) max_triangles: Option<usize>,
 }
 
@@ -30,6 +32,7 @@ impl Driver<'_> {
         moves: impl Fn(&Mesh, &SplitEdges) -> Option<Vec<bool>>,
     ) -> Result<Refinement, RefineError> {
         let mut refined: Option<Mesh> = None;
+        let mut lineage = self.origins.then(|| Lineage::of(control));
         let mut steps = Vec::new();
         let mut stop = Stop::Levels;
         let mut watch = Watch::new(observer, Stage::Refining);
@@ -54,7 +57,10 @@ impl Driver<'_> {
             let closure = split.closure_cases(&divisible);
             drop(divisible);
             let moving = moves(mesh, &split);
-            let next = advance(mesh, self.scheme, split, moving.as_deref(), &mut watch)?;
+            let (next, numbered) = advance(mesh, self.scheme, split, moving.as_deref(), &mut watch)?;
+            if let Some(lineage) = &mut lineage {
+                lineage.advance(mesh, &numbered);
+            }
             steps.push(StepReport {
                 step,
                 faces_before: mesh.face_count(),
@@ -79,7 +85,8 @@ impl Driver<'_> {
         let mesh = if self.limit { at_limit(mesh, &table, &mut watch)? } else { mesh };
         // Coordinates near the greatest number may overflow in a weighted sum.
         check_finite(mesh.positions())?;
-        Ok(Refinement { mesh, normals, steps, stop })
+        let (origins, parents) = lineage.map(Lineage::finish).unwrap_or_default();
+        Ok(Refinement { mesh, normals, origins, parents, steps, stop })
     }
 }
 

@@ -36,6 +36,9 @@ pub struct ExactOptions {
     /// Collapses edges of a finer mesh as long as the goals allow ([`mod@crate::simplify`]): slower, and fewer triangles for
     /// the same distance. For a tolerance, a number of triangles, or both; not with [`Self::balance`]. Default: no.
     pub optimize: bool,
+    /// Edges of the control mesh, by their ends, along which edges stay when they are collapsed ([`Self::optimize`]), as they do along
+    /// creases and boundaries: seams of textures, borders of materials ([`crate::carry::borders`]). Default: none.
+    pub kept_edges: Vec<[u32; 2]>,
     /// Tells where each vertex came from, [`Exact::origins`](super::Exact::origins), which is a quarter of what a result takes.
     /// Default: yes.
     pub origins: bool,
@@ -78,6 +81,7 @@ impl Default for ExactOptions {
             triangles: None,
             balance: false,
             optimize: false,
+            kept_edges: Vec::new(),
             origins: true,
             flat_regions: true,
             unfold: false,
@@ -128,6 +132,12 @@ impl ExactOptions {
     /// Sets [`Self::optimize`].
     pub fn optimize(mut self, optimize: bool) -> Self {
         self.optimize = optimize;
+        self
+    }
+
+    /// Sets [`Self::kept_edges`].
+    pub fn kept_edges(mut self, edges: Vec<[u32; 2]>) -> Self {
+        self.kept_edges = edges;
         self
     }
 

@@ -1,5 +1,6 @@
 //! Results of exact refinement.
 
+use super::Traced;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::{Mesh, SplitSurface};
 use crate::parallel;
@@ -77,7 +78,7 @@ pub struct Exact {
     /// Unit limit normals of the vertices; zero where the surface has none, an average of the sides at sharp edges.
     pub normals: Vec<[f64; 3]>,
     /// The limit normals of triangles' corners at sharp edges, each of its own side, by the half-edge that leaves the corner,
-    /// ascending; see [`Self::corner_normal`]. Empty without sharp edges, and after optimisation.
+    /// ascending; see [`Self::corner_normal`]. Empty without sharp edges.
     pub sides: Vec<(u32, [f64; 3])>,
     /// Where each vertex came from; empty unless [`ExactOptions::origins`](super::ExactOptions::origins) asks for it.
     pub origins: Vec<Origin>,
@@ -87,8 +88,14 @@ pub struct Exact {
     /// Flat regions that the scheme's rules fold over, inside or beyond their rims, as they do where a fan of slivers meets
     /// a hole: what the rim encloses stands in their place, and is the surface that [`Self::error`] is about.
     pub unfolded: usize,
-    /// The control face of each triangle; empty after optimisation, whose triangles reach over several.
+    /// The control face of each triangle; after optimisation, whose triangles reach over several, one of these.
     pub parents: Vec<u32>,
+    /// Whether edges were collapsed ([`ExactOptions::optimize`](super::ExactOptions::optimize)): triangles reach over several control
+    /// faces then.
+    pub is_optimized: bool,
+    /// After optimisation, where triangles' corners on sharp and [kept](super::ExactOptions::kept_edges) edges came from, each on its own
+    /// side, by the half-edge that leaves the corner, ascending; see [`Traced::corner_origin`].
+    pub side_origins: Vec<(u32, Origin)>,
     /// How far mesh and limit surface can be from each other.
     pub error: ErrorBounds,
     /// The greatest distance between mesh and limit surface as the cameras see it, in pixels at most: each point of one
@@ -122,30 +129,45 @@ impl Exact {
     }
 
     /// Triangles that are turned over: their normal is more than 90° from the limit normal at one of their corners, on their
-    /// own side of sharp edges. There the surface folds, or is not regular. After optimisation corners on sharp edges are
-    /// left aside.
+    /// own side of sharp edges. There the surface folds, or is not regular.
     pub fn inverted_triangles(&self) -> usize {
-        let is_left_aside = self.on_unsided_creases();
         let is_inverted = |face: usize| {
             let normal = self.mesh.unit_face_normal(face);
             (0..3).any(|corner| {
                 let h = HalfEdgeId::of(FaceId(face as u32), corner);
-                let v = self.mesh.topology().origin(h).0;
-                is_left_aside.binary_search(&v).is_err() && normal.dot(vector(self.corner_normal(h))) < 0.0
+                normal.dot(vector(self.corner_normal(h))) < 0.0
             })
         };
         let pieces =
             parallel::pieces(self.mesh.face_count(), |faces| faces.filter(|&f| is_inverted(f)).count());
         pieces.iter().sum()
     }
+}
 
-    /// The vertices on creases where no normals by side are known, ascending.
-    fn on_unsided_creases(&self) -> Vec<u32> {
-        let creases = if self.sides.is_empty() { &self.mesh.tags().creases[..] } else { &[] };
-        let mut vertices: Vec<u32> = creases.iter().flat_map(|crease| crease.vertices).collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        vertices
+/// Corners are known in their own control faces, and after optimisation in one on the same side of sharp and kept edges; not where a
+/// [flat region](super::ExactOptions::flat_regions) was triangulated from its rim.
+impl Traced for Exact {
+    fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    fn origins(&self) -> &[Origin] {
+        &self.origins
+    }
+
+    fn parents(&self) -> &[u32] {
+        &self.parents
+    }
+
+    fn corner_origin(&self, control: &[[u32; 3]], corner: HalfEdgeId) -> Option<Origin> {
+        let origin = self.origins.get(self.mesh.topology().origin(corner).index())?;
+        if !self.is_optimized {
+            return origin.in_face(control, *self.parents.get(corner.face().index())?);
+        }
+        match self.side_origins.binary_search_by_key(&corner.0, |&(h, _)| h) {
+            Ok(place) => Some(self.side_origins[place].1),
+            Err(_) => Some(*origin),
+        }
     }
 }
 

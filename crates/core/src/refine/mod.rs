@@ -3,12 +3,14 @@
 //! Takes a control mesh, a scheme and what decides (levels, a criterion); gives a finer mesh and a report.
 
 mod adaptive;
+mod corner_sources;
 mod driver;
 mod exact;
 mod exact_options;
 mod exact_result;
 mod junctions;
 mod limit_reference;
+mod lineage;
 mod simplified;
 mod split;
 mod step;
@@ -20,6 +22,7 @@ pub use exact::{exact, exact_estimate, exact_estimate_observed, exact_observed, 
 pub use exact_options::ExactOptions;
 pub use exact_result::{ErrorBounds, Estimate, Exact, ExactStop, Origin};
 pub use limit_reference::limit_reference;
+pub use lineage::Traced;
 pub use stepwise::{SeamRule, StepwiseOptions, stepwise, stepwise_observed};
 pub use uniform::{UniformOptions, uniform, uniform_observed};
 
@@ -106,8 +109,26 @@ pub struct Refinement {
     pub mesh: Mesh,
     /// Unit limit normals, where they were asked for.
     pub normals: Option<SidedNormals>,
+    /// Where each vertex came from, in the control face of one of its triangles; empty unless options ask for it.
+    pub origins: Vec<Origin>,
+    /// The control face of each triangle; empty unless options ask for it.
+    pub parents: Vec<u32>,
     /// What each step did.
     pub steps: Vec<StepReport>,
     /// Why there were no more steps.
     pub stop: Stop,
+}
+
+impl Traced for Refinement {
+    fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    fn origins(&self) -> &[Origin] {
+        &self.origins
+    }
+
+    fn parents(&self) -> &[u32] {
+        &self.parents
+    }
 }

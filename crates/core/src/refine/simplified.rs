@@ -4,12 +4,15 @@
 //! it; both distances add up.
 
 use super::adaptive::adaptive;
-use super::{ErrorBounds, Exact, ExactOptions, ExactStop, RefineError};
+use super::corner_sources::{SharpLines, corner_sources, features};
+use super::{ErrorBounds, Exact, ExactOptions, ExactStop, Origin, RefineError, Traced};
+use crate::index::{HalfEdgeId, VertexId};
 use crate::measure::{MeasureError, distances_to_observed};
 use crate::mesh::{Mesh, MeshError};
 use crate::progress::{Cancelled, Observer};
 use crate::scheme::Scheme;
 use crate::simplify::{Features, Simplified, SimplifyOptions, simplify_observed};
+use std::collections::HashSet;
 
 /// The part of the tolerance that the fine mesh takes: less leaves more to the collapse and costs more triangles to
 /// collapse.
@@ -34,6 +37,8 @@ pub(super) fn simplified(
     let most = |count: Option<usize>| count.map(|count| count.saturating_mul(FINE_TIMES));
     let fine_options = ExactOptions {
         optimize: false,
+        // Edges that are kept are edges of the fine mesh.
+        flat_regions: options.flat_regions && options.kept_edges.is_empty(),
         tolerance: options.tolerance.map(|tolerance| FINE_SHARE * tolerance),
         triangles: if options.tolerance.is_some() { None } else { most(options.triangles) },
         // What is capped is the result.
@@ -42,22 +47,25 @@ pub(super) fn simplified(
             .map(|cap| cap.saturating_mul(FINE_TIMES).min(AFFORDABLE).max(cap)),
         ..options.clone()
     };
+    let kept = KeptFaces::of(control, &options.kept_edges)?;
     let fine = adaptive(control, scheme, &fine_options, observer)?;
+    let features = features(kept.edges(&fine));
     let allowance =
         options.tolerance.map(|tolerance| tolerance - fine.error.upper).filter(|&left| left > 0.0);
     let fewest = [options.triangles, options.max_triangles].into_iter().flatten().min();
     let mut collapsed = match (allowance, options.tolerance, fewest) {
-        (Some(_), ..) => collapse(&fine.mesh, allowance, options.triangles, observer)?,
+        (Some(_), ..) => collapse((&fine.mesh, &features), allowance, options.triangles, observer)?,
         // A cap ended the refinement before the tolerance left anything to collapse.
         (None, Some(_), None) => return Ok(fine),
-        (None, ..) => collapse(&fine.mesh, None, fewest, observer)?,
+        (None, ..) => collapse((&fine.mesh, &features), None, fewest, observer)?,
     };
     let over =
         |collapsed: &Simplified| options.max_triangles.is_some_and(|cap| collapsed.mesh.face_count() > cap);
     if over(&collapsed) {
-        collapsed = collapse(&fine.mesh, None, options.max_triangles, observer)?;
+        collapsed = collapse((&fine.mesh, &features), None, options.max_triangles, observer)?;
     }
-    let unoptimised = ExactOptions { optimize: false, ..options.clone() };
+    let unoptimised =
+        ExactOptions { optimize: false, flat_regions: fine_options.flat_regions, ..options.clone() };
     // Where no more edges can go, refinement alone keeps the number of triangles; where nothing is proven, it proves.
     let asked = options.triangles.filter(|_| options.tolerance.is_none());
     let most = asked.into_iter().chain(options.max_triangles).min().unwrap_or(usize::MAX);
@@ -78,6 +86,7 @@ pub(super) fn simplified(
             return Ok(plain);
         }
     }
+    let Inherited { sides, side_origins, parents } = Inherited::new(control, &fine, &features, &collapsed);
     let count = collapsed.mesh.face_count();
     let stop = match options.triangles {
         _ if is_met => ExactStop::Met,
@@ -92,10 +101,12 @@ pub(super) fn simplified(
             [] => Vec::new(),
             origins => collapsed.vertices.iter().map(|&v| origins[v as usize]).collect(),
         },
-        sides: Vec::new(),
+        sides,
         off_planes: fine.off_planes,
         unfolded: fine.unfolded,
-        parents: Vec::new(),
+        parents,
+        is_optimized: true,
+        side_origins,
         error,
         pixels: None,
         open_cones: 0,
@@ -109,13 +120,87 @@ pub(super) fn simplified(
 
 /// Collapses edges of the fine mesh.
 fn collapse(
-    fine: &Mesh,
+    (fine, features): (&Mesh, &Features),
     tolerance: Option<f64>,
     triangles: Option<usize>,
     observer: &mut Observer<'_>,
 ) -> Result<Simplified, RefineError> {
     let goals = SimplifyOptions::default().tolerance(tolerance).triangles(triangles);
-    Ok(simplify_observed(fine, &Features::default(), &goals, observer)?)
+    Ok(simplify_observed(fine, features, &goals, observer)?)
+}
+
+/// Pairs of control faces that meet in edges that are kept.
+struct KeptFaces(HashSet<[u32; 2]>);
+
+impl KeptFaces {
+    fn of(control: &Mesh, kept: &[[u32; 2]]) -> Result<Self, RefineError> {
+        let topology = control.topology();
+        let exists = |v: u32| (v as usize) < topology.vertex_count();
+        let mut pairs = HashSet::new();
+        for &[a, b] in kept {
+            let edge = (exists(a) && exists(b)).then(|| topology.edge_between(VertexId(a), VertexId(b)));
+            let Some(edge) = edge.flatten() else {
+                let place = format!("edge from vertex {a} to vertex {b}");
+                return Err(MeshError::Broken {
+                    place,
+                    what: "an edge that is kept is one of the control mesh",
+                }
+                .into());
+            };
+            if let Some(twin) = topology.twin(edge) {
+                pairs.insert(ordered(edge.face().0, twin.face().0));
+            }
+        }
+        Ok(Self(pairs))
+    }
+
+    /// The edges of a refined mesh along those.
+    fn edges(&self, fine: &Exact) -> Vec<[u32; 2]> {
+        if self.0.is_empty() {
+            return Vec::new();
+        }
+        let topology = fine.mesh.topology();
+        let is_kept = |h: HalfEdgeId| {
+            let Some(twin) = topology.twin(h).filter(|twin| h.0 < twin.0) else { return false };
+            let [one, other] = [h, twin].map(|h| fine.parents[h.face().index()]);
+            one != other && self.0.contains(&ordered(one, other))
+        };
+        topology.half_edges().filter(|&h| is_kept(h)).map(|h| topology.ends(h).map(|v| v.0)).collect()
+    }
+}
+
+fn ordered(a: u32, b: u32) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// What the corners and triangles of the collapsed mesh have of the fine one's, each on its side of sharp edges.
+struct Inherited {
+    sides: Vec<(u32, [f64; 3])>,
+    side_origins: Vec<(u32, Origin)>,
+    parents: Vec<u32>,
+}
+
+impl Inherited {
+    fn new(control: &Mesh, fine: &Exact, features: &Features, collapsed: &Simplified) -> Self {
+        let lines = SharpLines::new(&fine.mesh, &features.edges);
+        let sources = corner_sources(&fine.mesh, &lines, &collapsed.mesh, &collapsed.vertices);
+        let normal = |&(corner, own): &(u32, u32)| (corner, fine.corner_normal(HalfEdgeId(own)));
+        let sides = if fine.sides.is_empty() { Vec::new() } else { sources.iter().map(normal).collect() };
+        let origin = |&(corner, own): &(u32, u32)| {
+            Some((corner, fine.corner_origin(control.triangles(), HalfEdgeId(own))?))
+        };
+        let side_origins: Vec<(u32, Origin)> = sources.iter().filter_map(origin).collect();
+        // Where no side is to be told, any triangle around a corner will do.
+        let topology = fine.mesh.topology();
+        let any =
+            |triangle: &[u32; 3]| topology.outgoing(VertexId(collapsed.vertices[triangle[0] as usize])).0;
+        let mut own: Vec<u32> = collapsed.mesh.triangles().iter().map(any).collect();
+        for &(corner, source) in &sources {
+            own[corner as usize / 3] = source;
+        }
+        let parents = own.into_iter().map(|h| fine.parents[HalfEdgeId(h).face().index()]).collect();
+        Self { sides, side_origins, parents }
+    }
 }
 
 /// How far the collapsed mesh can be from the limit surface, on which the fine mesh's vertices lie.

@@ -26,8 +26,8 @@ pub(super) struct SplitTopology {
     pub(super) edges: Vec<HalfEdgeId>,
     /// The new vertex on each half-edge; meaningless where it is not split.
     vertex_on: Vec<u32>,
-    /// Start of each face's triangles.
-    starts: Vec<u32>,
+    /// Start of each face's triangles, and their end.
+    pub(super) starts: Vec<u32>,
 }
 
 impl SplitEdges {

@@ -13,14 +13,14 @@ use crate::parallel;
 use crate::progress::{Cancelled, Watch};
 use crate::scheme::Scheme;
 
-/// The mesh after one step. `moves` says which old vertices take their new position; `None` means all.
+/// The mesh after one step, and how its elements were numbered. `moves` says which old vertices take their new position; `None` means all.
 pub(super) fn advance(
     mesh: &Mesh,
     scheme: &dyn Scheme,
     mut split: SplitEdges,
     moves: Option<&[bool]>,
     watch: &mut Watch<'_>,
-) -> Result<Mesh, RefineError> {
+) -> Result<(Mesh, SplitTopology), RefineError> {
     let numbered = SplitTopology::number(mesh, &split, watch)?;
     let mut positions = new_positions(mesh, scheme, &numbered, moves, watch)?;
     let vertices = vertex_groups(mesh, &split, &numbered);
@@ -29,7 +29,7 @@ pub(super) fn advance(
     let junctions = Junctions { vertices, edges: edge_groups(mesh, &split, &numbered) };
     let topology = numbered.connect(mesh, &split, watch)?;
     let tags = refined_tags(mesh, &split, &numbered, moves);
-    Ok(Mesh::from_parts(topology, positions, tags, junctions))
+    Ok((Mesh::from_parts(topology, positions, tags, junctions), numbered))
 }
 
 /// Old vertices, moved or not, and then the new ones.

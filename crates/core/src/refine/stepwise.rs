@@ -35,6 +35,8 @@ options! {
         pub seam: SeamRule = SeamRule::All,
         /// Move the vertices to the limit surface of the last mesh at the end.
         pub limit: bool = false,
+        /// Tells where vertices and triangles came from ([`Refinement::origins`](crate::refine::Refinement::origins)).
+        pub origins: bool = false,
         /// Stop before the step that would give more triangles.
         pub max_triangles: Option<usize> = None,
     }
@@ -75,6 +77,7 @@ pub fn stepwise_observed(
         levels: options.levels,
         limit: options.limit,
         normals: false,
+        origins: options.origins,
         max_triangles: options.max_triangles,
     };
     driver.run(mesh, observer, flags, |mesh, split| moving_vertices(mesh, split, options.seam))

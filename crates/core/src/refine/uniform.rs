@@ -33,13 +33,15 @@ pub struct UniformOptions {
     pub limit: bool,
     /// Give the limit normals of the vertices, too ([`Refinement::normals`]).
     pub normals: bool,
+    /// Tells where vertices and triangles came from ([`Refinement::origins`]).
+    pub origins: bool,
     /// Stop before the level that would have more triangles.
     pub max_triangles: Option<usize>,
 }
 
 impl Default for UniformOptions {
     fn default() -> Self {
-        Self { levels: 3, limit: false, normals: false, max_triangles: None }
+        Self { levels: 3, limit: false, normals: false, origins: false, max_triangles: None }
     }
 }
 
@@ -59,6 +61,12 @@ impl UniformOptions {
     /// Sets [`Self::normals`].
     pub fn normals(mut self, normals: bool) -> Self {
         self.normals = normals;
+        self
+    }
+
+    /// Sets [`Self::origins`].
+    pub fn origins(mut self, origins: bool) -> Self {
+        self.origins = origins;
         self
     }
 
@@ -95,10 +103,11 @@ pub fn uniform_observed(
     observer: &mut Observer<'_>,
 ) -> Result<Refinement, RefineError> {
     let all = |mesh: &Mesh| Ok(vec![true; mesh.face_count()]);
-    let UniformOptions { levels, limit, normals, max_triangles } = *options;
+    let UniformOptions { levels, limit, normals, origins, max_triangles } = *options;
     let steps =
         |driver: Driver<'_>, observer: &mut Observer<'_>| driver.run(mesh, observer, all, |_, _| None);
-    if limit {
+    // Levels that are done together leave no trace.
+    if limit && !origins {
         let rules = Rules::of(scheme);
         let end = End::of(mesh.face_count(), options);
         let together = levels_together(mesh, &rules, end.levels);
@@ -113,13 +122,14 @@ pub fn uniform_observed(
                 levels: first,
                 limit: false,
                 normals: false,
+                origins: false,
                 max_triangles: None,
             };
             let refined = steps(driver, observer)?;
             return finish(refined, &rules, &end, together, normals, observer);
         }
     }
-    steps(Driver { scheme, levels, limit, normals, max_triangles }, observer)
+    steps(Driver { scheme, levels, limit, normals, origins, max_triangles }, observer)
 }
 
 /// How uniform refinement will end.
@@ -191,5 +201,5 @@ fn finish(
     watch.triangles(faces);
     watch.done(end.levels)?;
     check_finite(mesh.positions())?;
-    Ok(Refinement { mesh, normals, steps, stop: end.stop })
+    Ok(Refinement { mesh, normals, origins: Vec::new(), parents: Vec::new(), steps, stop: end.stop })
 }

@@ -26,9 +26,11 @@ mod flaw;
 mod fresh;
 mod geometry;
 mod json;
+mod materials;
 mod parts;
 mod primitive;
 mod scene;
+mod scene_channels;
 mod source;
 mod uri;
 mod write;
@@ -37,6 +39,7 @@ pub use attributes::CornerAttribute;
 pub use flaw::GltfFlaw;
 pub(crate) use fresh::write_fresh;
 pub use geometry::{Geometry, VertexAttribute};
+pub use materials::{BaseColour, BaseTexture};
 pub use parts::{Joining, KeptApart, MeshSoup, Part};
 
 use crate::error::ReadError;
@@ -45,6 +48,7 @@ use changes::Changes;
 use flaw::Result as Flawed;
 use limitmesh::PolygonSoup;
 use scene::Scene;
+use scene_channels::SceneChannels;
 use source::Source;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -208,17 +212,20 @@ impl Asset {
         Ok(found)
     }
 
-    /// Everything that the scene shows as one soup in the scene's coordinates, and in words what else its meshes have.
+    /// Everything that the scene shows as one soup in the scene's coordinates, with texture coordinates, colours, names of materials
+    /// and other attributes as its channels, and in words what else its meshes have. Texture coordinates run upwards.
     ///
     /// # Errors
     /// As for [`Self::mesh`]; or there are more vertices than can be counted.
     pub fn scene_soup(&self) -> Result<PolygonSoup, ReadError> {
         let mut all = PolygonSoup::default();
         let mut names = BTreeSet::new();
+        let mut channels = SceneChannels::default();
         for mesh in 0..self.mesh_count() {
-            let own = self.shape(mesh)?;
+            let own = self.mesh(mesh, Joining::Together)?;
+            let materials = self.materials_of(mesh).map_err(|flaw| self.told(flaw))?;
             names
-                .extend(own.parts.iter().flat_map(|part| &part.attributes).filter_map(|name| in_words(name)));
+                .extend(own.parts.iter().flat_map(|part| &part.attributes).filter_map(|name| left_out(name)));
             for placement in self.scene.shown(mesh) {
                 let first = all.positions.len();
                 if own.soup.positions.len() + first > MOST || own.soup.faces.len() + all.faces.len() > MOST {
@@ -233,13 +240,27 @@ impl Asset {
                     }
                     all.faces.push(&corners);
                 }
+                channels.add(&own, &materials, placement.mirrors());
             }
         }
-        all.left_out = names.into_iter().collect();
+        all.channels = channels.into_channels(&self.source).map_err(|flaw| self.told(flaw))?;
+        all.left_out = names.into_iter().map(str::to_owned).collect();
         if self.source.json.get("materials").is_some() {
-            all.left_out.push("materials".to_owned());
+            all.left_out.push("materials but for their names".to_owned());
         }
         Ok(all)
+    }
+
+    /// By primitive of a mesh, the number of its material.
+    fn materials_of(&self, mesh: usize) -> Flawed<Vec<Option<usize>>> {
+        let root = self.source.root();
+        let meshes = root.list("meshes")?;
+        let Some(mesh) = meshes.get(mesh) else { return Ok(Vec::new()) };
+        let of = |primitive: &json::At<'_>| match primitive.get("material") {
+            None => Ok(None),
+            Some(material) => Ok(Some(material.item_of(&root, "materials")?.0)),
+        };
+        mesh.list("primitives")?.iter().map(of).collect()
     }
 
     /// What the document holds.
@@ -316,19 +337,14 @@ impl Asset {
     }
 }
 
-/// An attribute as it is called where it is left out; `None` for positions.
-fn in_words(attribute: &str) -> Option<String> {
-    let kind = attribute.split_once('_').map_or(attribute, |(kind, _)| kind);
-    let words = match kind {
-        "POSITION" => return None,
-        "NORMAL" => "normals",
-        "TANGENT" => "tangents",
-        "TEXCOORD" => "texture coordinates",
-        "COLOR" => "colours",
-        "JOINTS" | "WEIGHTS" => "joints and weights",
-        _ => attribute,
-    };
-    Some(words.to_owned())
+/// An attribute that a soup of the scene hasn't, in words.
+fn left_out(attribute: &str) -> Option<&'static str> {
+    match attribute.split_once('_').map_or(attribute, |(kind, _)| kind) {
+        "NORMAL" => Some("normals"),
+        "TANGENT" => Some("tangents"),
+        "JOINTS" | "WEIGHTS" => Some("joints and weights"),
+        _ => None,
+    }
 }
 
 /// Vertices or faces at most of a soup.

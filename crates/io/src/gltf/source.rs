@@ -108,6 +108,14 @@ impl Source {
         }
     }
 
+    /// The bytes of a picture that a `uri` names.
+    pub(super) fn picture(&self, at: &At<'_>) -> Result<Vec<u8>> {
+        match self.parse_uri(at)? {
+            Uri::Base64(data) => uri::from_base64(data, MOST_DECODED).ok_or_else(|| at.unexpected("base 64")),
+            Uri::File(file) => self.file_bytes(at, &file, MOST_DECODED),
+        }
+    }
+
     /// Understands a `uri`.
     pub(super) fn parse_uri<'a>(&self, at: &At<'a>) -> Result<Uri<'a>> {
         uri::parse(at.text()?).map_err(|expected| at.unexpected(expected))

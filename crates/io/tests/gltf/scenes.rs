@@ -1,6 +1,6 @@
 //! World matrices, instances and skins, against numbers worked out by hand.
 
-use super::support::{document, floats, glb};
+use super::support::{document, floats, glb, parts};
 use limitmesh_io::{Asset, Format, read_bytes};
 
 const TRIANGLE: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
@@ -79,4 +79,55 @@ fn meshes_without_nodes_are_as_they_are() {
     let bytes = asset(r#""extras":1"#, "", &[]);
     assert_eq!(opened(&bytes).stretch(0), 1.0);
     assert_eq!(read_bytes(&bytes, Format::Glb).unwrap().faces.len(), 1);
+}
+
+/// Everything that a scene shows carries its texture coordinates, upwards, and the names of its materials; mirrored faces run the other
+/// way round with their values.
+#[test]
+fn scenes_carry_attributes_and_names_of_materials() {
+    let nodes =
+        r#""nodes":[{"mesh":0},{"mesh":0,"scale":[-1,1,1]}],"materials":[{"name":"skin"},{"name":"wood"}]"#;
+    let accessors = r#",{"count":3,"type":"VEC2","componentType":5126,"bufferView":1}"#;
+    let coordinates = [0.0, 0.25, 0.5, 0.75, 1.0, 2.0];
+    let bytes = asset(nodes, accessors, &coordinates);
+    let bytes = with_primitive(&bytes, r#""attributes":{"POSITION":0,"TEXCOORD_0":1},"material":1"#);
+    let soup = read_bytes(&bytes, Format::Glb).unwrap();
+    assert_eq!(soup.faces.len(), 2);
+    let [texture, materials] = &soup.channels[..] else { panic!("{:?}", soup.channels) };
+    let values: Vec<&[f64]> = (0..6).map(|corner| texture.value(corner)).collect();
+    let expected = [[0.0, 0.75], [0.5, 0.25], [1.0, -1.0]];
+    assert_eq!(values, [expected[0], expected[1], expected[2], expected[2], expected[1], expected[0]]);
+    assert_eq!(materials.name, "materials");
+    let names: Vec<&str> = materials.indices.iter().map(|&i| &materials.labels[i as usize][..]).collect();
+    assert_eq!(names, ["wood", "wood"]);
+}
+
+/// Colours of materials and the pictures on them, moved as the document says.
+#[test]
+fn materials_have_base_colours() {
+    let nodes = r#""materials":[{},{"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,1],"baseColorTexture":{"index":0,
+        "texCoord":2,"extensions":{"KHR_texture_transform":{"offset":[0.1,0.2],"scale":[2,3],"rotation":1.5707963267948966}}}}},
+        {"pbrMetallicRoughness":{"baseColorTexture":{"index":1}}}],
+        "textures":[{"source":0},{}],"images":[{"uri":"data:image/png;base64,AQID"}]"#;
+    let colours = opened(&asset(nodes, "", &[])).base_colours().unwrap();
+    assert_eq!(colours.len(), 3);
+    assert_eq!((colours[0].factor, &colours[0].texture), ([1.0; 4], &None));
+    assert_eq!(colours[1].factor, [0.5, 0.25, 1.0, 1.0]);
+    let texture = colours[1].texture.as_ref().unwrap();
+    assert_eq!((&texture.file[..], texture.set), (&[1u8, 2, 3][..], 2));
+    // A quarter turn counter-clockwise with v downwards takes u to −v.
+    let expected = [[0.0, -2.0], [3.0, 0.0], [0.1, 0.2]];
+    for (column, expected) in texture.transform.iter().zip(expected) {
+        assert!((0..2).all(|i| (column[i] - expected[i]).abs() < 1e-12), "{:?}", texture.transform);
+    }
+    assert_eq!(colours[2].texture, None);
+    let broken = nodes.replace(r#""source":0"#, r#""source":7"#);
+    let why = opened(&asset(&broken, "", &[])).base_colours().unwrap_err().to_string();
+    assert!(why.contains("textures[0].source"), "{why}");
+}
+
+/// The same document with another primitive.
+fn with_primitive(bytes: &[u8], primitive: &str) -> Vec<u8> {
+    let (text, bin) = parts(bytes);
+    glb(&text.replace(r#""attributes":{"POSITION":0}"#, primitive), &bin)
 }

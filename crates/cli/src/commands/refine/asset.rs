@@ -170,7 +170,9 @@ impl Job {
         let start = Instant::now();
         let mut refined = match arguments.method {
             Method::Exact => exact::run((&featured, &before, &channels), &goals, &arguments, progress)?,
-            _ => stepwise::run(featured.mesh.clone(), &arguments, self.output, progress)?,
+            _ => {
+                stepwise::run(featured.mesh.clone(), &Channels::default(), &arguments, self.output, progress)?
+            }
         };
         let refining = start.elapsed();
         let after = Bulk::of(&refined.mesh);

@@ -3,10 +3,10 @@
 use limitmesh::Mesh;
 use limitmesh::carry::carried;
 use limitmesh::mesh::{Channel, Domain, FaceParts};
-use limitmesh::refine::Exact;
+use limitmesh::refine::Traced;
 use limitmesh_io::{Format, Output, holds, values_lost};
 
-use crate::arguments::{Method, RefineArguments};
+use crate::arguments::RefineArguments;
 use crate::format::counted;
 use crate::progress::Progress;
 
@@ -26,17 +26,12 @@ impl Channels {
         progress: &Progress,
     ) -> Self {
         let Some(format) = format else { return Self::default() };
-        let is_followed = arguments.method == Method::Exact && !arguments.exact.optimize;
-        let reaches = |channel: &Channel| is_followed && holds(format, channel);
+        let reaches = |channel: &Channel| holds(format, channel);
         let (kept, lost): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(reaches);
         if !lost.is_empty() {
             let names: Vec<&str> = lost.iter().map(|channel| channel.name.as_str()).collect();
-            let why = match (arguments.exact.optimize, arguments.method) {
-                (true, _) => "--optimize does not keep them",
-                (_, Method::Exact) => "the output's format has no place for them",
-                _ => "the stepwise methods do not keep them",
-            };
-            progress.note(format!("left out: {} ({why})", names.join("; ")));
+            let names = names.join("; ");
+            progress.note(format!("left out: {names} (the output's format has no place for them)"));
         }
         let channels: Vec<Channel> =
             kept.into_iter().map(|channel| arguments.channels.applied(channel)).collect();
@@ -77,7 +72,7 @@ impl Channels {
     pub(super) fn refined(
         &self,
         control: &Mesh,
-        found: &Exact,
+        found: &dyn Traced,
         arguments: &RefineArguments,
     ) -> anyhow::Result<Self> {
         if self.channels.is_empty() {

@@ -1,5 +1,6 @@
 //! Exact refinement: from the goals on the command line to the mesh, its certified distance, and what is said of it.
 
+use limitmesh::carry::borders;
 use limitmesh::criterion::Camera;
 use limitmesh::mesh::FaceParts;
 use limitmesh::progress::Stage;
@@ -48,14 +49,18 @@ pub(super) struct Goals {
     cameras: Vec<Camera>,
     /// Whether triangles must not reach over several control faces.
     tells_faces_apart: bool,
+    /// Edges of the control mesh along which edges stay when they are collapsed.
+    kept_edges: Vec<[u32; 2]>,
     /// Whether the result tells where vertices and triangles came from.
     keeps_origins: bool,
 }
 
 impl Goals {
-    /// The same where what faces carry is to be told apart.
-    pub(super) fn telling_faces_apart(self, tells_faces_apart: bool) -> Self {
-        Self { tells_faces_apart, ..self }
+    /// The same where the control mesh carries channels.
+    pub(super) fn carrying(mut self, channels: &Channels, control: &Mesh) -> Self {
+        self.tells_faces_apart = channels.tell_faces_apart();
+        self.kept_edges = borders(channels.all(), control);
+        self
     }
 
     /// `diagonal` is what lengths are given in per cent of.
@@ -82,6 +87,7 @@ impl Goals {
             pixels: (!cameras.is_empty()).then(|| exact.pixels.unwrap_or(USUAL_PIXELS)),
             cameras,
             tells_faces_apart: false,
+            kept_edges: Vec::new(),
             keeps_origins: false,
         })
     }
@@ -98,6 +104,7 @@ impl Goals {
             .max_memory(arguments.exact.max_memory)
             .balance(arguments.exact.balance)
             .optimize(arguments.exact.optimize)
+            .kept_edges(self.kept_edges.clone())
             .flat_regions(!arguments.exact.divide_flat && !self.tells_faces_apart)
             .unfold(arguments.features.concave_corners() == ConcaveCorners::Divided)
             .origins(

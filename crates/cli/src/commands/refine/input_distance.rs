@@ -45,7 +45,7 @@ impl InputDistance {
         residual: f64,
     ) -> Result<Option<Self>, MeasureError> {
         let is_known = origins.len() == found.mesh.vertex_count();
-        if !is_known || found.parents.len() != found.mesh.face_count() {
+        if !is_known || found.is_optimized {
             return Ok(None);
         }
         let moved = moves(input, found, origins);

@@ -112,7 +112,7 @@ fn refine(
     let goals = match arguments.method {
         Method::Exact => {
             let goals = Goals::new(arguments, &control.mesh, diagonal)?;
-            Some(goals.telling_faces_apart(channels.tell_faces_apart()))
+            Some(goals.carrying(&channels, &control.mesh))
         }
         _ => None,
     };
@@ -133,7 +133,7 @@ fn refine(
     let start = Instant::now();
     let mut refined = match &goals {
         Some(goals) => exact::run((&control, &read, &channels), goals, arguments, progress)?,
-        None => stepwise::run(control.mesh, arguments, Some(format), progress)?,
+        None => stepwise::run(control.mesh, &channels, arguments, Some(format), progress)?,
     };
     let refining = start.elapsed();
 

@@ -1,7 +1,7 @@
 //! The limit normals of a refined mesh, for files and pictures: one for each vertex, or, where edges are sharp, one for each side.
 
 use limitmesh::limit::SidedNormals;
-use limitmesh::mesh::{Sharpness, SplitSurface};
+use limitmesh::mesh::SplitSurface;
 use limitmesh::refine::Exact;
 use limitmesh::{Mesh, Triangles};
 use limitmesh_io::{Format, Output};
@@ -20,20 +20,7 @@ impl Normals {
         if !found.sides.is_empty() {
             return Self::BySide(found.split_surface());
         }
-        if found.mesh.tags().creases.is_empty() {
-            return Self::ByVertex(std::mem::take(&mut found.normals));
-        }
-        // Collapses leave no normals by side: there the faces' own have to do.
-        let mesh = &found.mesh;
-        let (sharp, faces) = (Sharpness::of(mesh).lasting(), SplitSurface::by_faces(mesh));
-        Self::BySide(SplitSurface::new(mesh, |h| {
-            let (vertex, face) = (mesh.topology().origin(h), h.face().index());
-            let corner = h.index() % 3;
-            match sharp.is_tagged(vertex) {
-                true => faces.normals[faces.triangles[face][corner] as usize],
-                false => found.normals[vertex.index()],
-            }
-        }))
+        Self::ByVertex(std::mem::take(&mut found.normals))
     }
 
     /// The limit normals of a mesh by side.

@@ -11,6 +11,7 @@ use limitmesh::refine::{
 };
 use limitmesh_io::Format;
 
+use super::channels::Channels;
 use super::normals::Normals;
 use super::{Refined, view, view_report};
 use crate::arguments::{Method, RefineArguments, Seam};
@@ -33,20 +34,24 @@ fn levels(arguments: &RefineArguments) -> usize {
 /// Refines, and moves the vertices to the limit if asked.
 pub(super) fn run(
     control: Mesh,
+    channels: &Channels,
     arguments: &RefineArguments,
     format: Option<Format>,
     progress: &Progress,
 ) -> anyhow::Result<Refined> {
-    let Refinement { mesh, steps, stop, .. } = refine(&control, arguments, progress)?;
+    let keeps_origins = !channels.all().is_empty();
+    let refined = refine(&control, keeps_origins, arguments, progress)?;
+    let channels = channels.refined(&control, &refined, arguments)?;
     drop(control);
+    let Refinement { mesh, steps, stop, origins, parents, .. } = refined;
     let (mesh, normals) = finish(mesh, arguments, format, progress)?;
     let early = if stop == Stop::Satisfied { ", no face is divisible any more" } else { "" };
     Ok(Refined {
         normals,
-        channels: super::channels::Channels::default(),
+        channels,
         provenance: None,
-        origins: Vec::new(),
-        parents: Vec::new(),
+        origins,
+        parents,
         achieved: Vec::new(),
         inverted: None,
         how: counted(steps.len(), "step", "steps") + early,
@@ -70,7 +75,12 @@ pub(super) fn run(
 }
 
 /// Runs the method asked for.
-fn refine(control: &Mesh, arguments: &RefineArguments, progress: &Progress) -> anyhow::Result<Refinement> {
+fn refine(
+    control: &Mesh,
+    keeps_origins: bool,
+    arguments: &RefineArguments,
+    progress: &Progress,
+) -> anyhow::Result<Refinement> {
     let levels = levels(arguments);
     let mut shown = None;
     let mut observer = |at: &limitmesh::progress::Progress| {
@@ -88,13 +98,14 @@ fn refine(control: &Mesh, arguments: &RefineArguments, progress: &Progress) -> a
         (Method::LimitNormal, Some(view)) => Box::new(LimitNormal::new(angle).view(view)),
         (Method::LimitNormal, None) => Box::new(LimitNormal::new(angle)),
         (Method::Uniform | Method::Exact, _) => {
-            let options = UniformOptions::default().levels(levels).max_triangles(cap);
+            let options = UniformOptions::default().levels(levels).origins(keeps_origins).max_triangles(cap);
             return Ok(uniform_observed(control, scheme, &options, &mut observer)?);
         }
     };
     let options = StepwiseOptions::default()
         .levels(levels)
         .seam(arguments.seam.unwrap_or_default().rule())
+        .origins(keeps_origins)
         .max_triangles(cap);
     Ok(stepwise_observed(control, scheme, criterion.as_ref(), &options, &mut observer)?)
 }

@@ -106,6 +106,8 @@ impl Outcome {
             off_planes: control.flat.off_planes(),
             unfolded,
             parents,
+            is_optimized: false,
+            side_origins: Vec::new(),
             error,
             pixels,
             open_cones: 0,
