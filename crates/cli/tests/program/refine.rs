@@ -397,10 +397,10 @@ fn what_is_left_out_is_told() {
     let stl = folder.path().join("out.stl");
     let words = "left out: texture coordinates; materials (the output's format has no place for them)";
     run("refine {} -o {}", &[&input, &stl]).expect(0).saying(words);
-    let words = "left out: texture coordinates; materials (--optimize does not keep them)";
-    run("refine {} -o {} --optimize", &[&input, &output]).expect(0).saying(words);
-    let words = "left out: texture coordinates; materials (the stepwise methods do not keep them)";
-    run("refine {} -o {} --method uniform --levels 1", &[&input, &output]).expect(0).saying(words);
+    for options in ["--optimize", "--method uniform --levels 1", "--method limit-normal"] {
+        let told = run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(0).stderr;
+        assert!(!told.contains("left out"), "{options}: {told}");
+    }
 }
 
 /// A cube's texture, a net of six squares: affine over each face, so with straight seams it is what it was everywhere, and each square
@@ -422,8 +422,16 @@ fn textures_come_out_as_they_went_in() {
         content += "\n";
     }
     let (input, output) = (file(&folder, "cube.obj", &content), folder.path().join("out.obj"));
-    run("refine {} -o {} --tolerance 1%", &[&input, &output]).expect(0);
-    let text = std::fs::read_to_string(&output).expect("it is there");
+    for options in
+        ["--tolerance 1%", "--tolerance 0.2% --optimize", "--method uniform", "--method limit-normal"]
+    {
+        run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(0);
+        check_net(&std::fs::read_to_string(&output).expect("it is there"));
+    }
+}
+
+/// Checks the texture of a refined cube.
+fn check_net(text: &str) {
     let mut places: Vec<[f64; 2]> = Vec::new();
     let (mut side, mut areas, mut count) = (0, [0.0; 6], 0);
     for line in text.lines() {

@@ -56,7 +56,7 @@ fn textures_lie_on_surfaces_with_texture_coordinates() {
     bare.expect(2).saying("no texture coordinates");
     std::fs::write(&mesh, format!("{plain}vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"))
         .expect("written");
-    let mut drawn = |options: &str| {
+    let drawn = |options: &str| {
         run(&format!("render {{}} -o {{}} --size 160x120 {options}"), &[&mesh, &path]).expect(0);
         std::fs::read(&path).expect("a picture")
     };
