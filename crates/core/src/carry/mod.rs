@@ -86,14 +86,14 @@ fn one(
         _ => channel.clone(),
     };
     match by_corner.interpolation {
-        Interpolation::Nearest => Ok(nearest(by_corner, places)),
+        Interpolation::Nearest => nearest(by_corner, places),
         Interpolation::Linear => {
-            let (indices, wanted) = wanted(&by_corner, places);
+            let (indices, wanted) = wanted(&by_corner, places)?;
             let values = linear(&by_corner, &wanted);
             Ok(Channel { indices, values, ..by_corner })
         }
         Interpolation::Smooth(rule) => {
-            let (indices, wanted) = wanted(&by_corner, places);
+            let (indices, wanted) = wanted(&by_corner, places)?;
             let values = smooth(&by_corner, rule, control, scheme, &wanted)?;
             Ok(Channel { indices, values, ..by_corner })
         }
@@ -101,7 +101,7 @@ fn one(
 }
 
 /// Each corner has the value of the nearest corner of its control face, the first of those that are as near.
-fn nearest(channel: Channel, places: &Places<'_>) -> Channel {
+fn nearest(channel: Channel, places: &Places<'_>) -> Result<Channel, ChannelError> {
     let mut indices = Vec::with_capacity(3 * places.parents.len());
     places.for_each_corner(|_, Origin { face, barycentric }| {
         let mut first = 0;
@@ -111,12 +111,12 @@ fn nearest(channel: Channel, places: &Places<'_>) -> Channel {
             }
         }
         indices.push(channel.indices[3 * face as usize + first]);
-    });
-    Channel { indices, ..channel }
+    })?;
+    Ok(Channel { indices, ..channel })
 }
 
 /// A value's number by corner, and where each value is to be found: in a face in which a corner has it.
-fn wanted(channel: &Channel, places: &Places<'_>) -> (Vec<u32>, Vec<Origin>) {
+fn wanted(channel: &Channel, places: &Places<'_>) -> Result<(Vec<u32>, Vec<Origin>), ChannelError> {
     /// Of a vertex, the value that was met first.
     #[derive(Clone, Copy)]
     struct First {
@@ -139,8 +139,8 @@ fn wanted(channel: &Channel, places: &Places<'_>) -> (Vec<u32>, Vec<Origin>) {
             none => none.insert(First { key, value: add() }).value,
         };
         indices.push(value);
-    });
-    (indices, wanted)
+    })?;
+    Ok((indices, wanted))
 }
 
 /// The numbers of the values at the control vertices of the face, edge or vertex that a place is in: what it depends on where

@@ -21,7 +21,7 @@ impl<'a> Places<'a> {
     /// If channels are by face only, where corners are need not be known.
     ///
     /// # Errors
-    /// Origins or parents are missing, or a triangle reaches over several control faces.
+    /// Origins or parents are missing, or are of another control mesh.
     pub(super) fn of(
         control: &'a Mesh,
         result: &'a dyn Traced,
@@ -43,14 +43,7 @@ impl<'a> Places<'a> {
         {
             return unknown("they come from another control mesh");
         }
-        if is_by_face {
-            return Ok(places);
-        }
-        let corners = 0..3 * mesh.face_count() as u32;
-        match corners.into_iter().all(|corner| places.place(corner).is_some()) {
-            true => Ok(places),
-            false => unknown("a triangle reaches over several control faces"),
-        }
+        Ok(places)
     }
 
     /// The place of a corner.
@@ -59,16 +52,25 @@ impl<'a> Places<'a> {
     }
 
     /// Calls `visit` with the vertex and the place of each corner, triangle by triangle.
-    pub(super) fn for_each_corner(&self, mut visit: impl FnMut(u32, Origin)) {
+    ///
+    /// # Errors
+    /// A triangle reaches over several control faces, of which nobody knows where.
+    pub(super) fn for_each_corner(&self, mut visit: impl FnMut(u32, Origin)) -> Result<(), ChannelError> {
         for (corner, &vertex) in self.result.mesh().triangles().as_flattened().iter().enumerate() {
-            if let Some(place) = self.place(corner as u32) {
-                visit(vertex, place);
-            }
+            let Some(place) = self.place(corner as u32) else {
+                return Err(ChannelError::Unknown { why: "a triangle reaches over several control faces" });
+            };
+            visit(vertex, place);
         }
+        Ok(())
     }
 
-    /// The numbers of the values that a place depends on, in the order of their control vertices.
+    /// The numbers of the values that a place depends on, in the order of their control vertices; of places inside a face, which all
+    /// corners at a vertex share, nothing needs to be told apart.
     pub(super) fn key(&self, channel: &Channel, Origin { face, barycentric }: Origin) -> Key {
+        if barycentric.iter().all(|&weight| weight != 0.0) {
+            return [NONE; 3];
+        }
         let vertices = self.control.triangles()[face as usize];
         let mut own = [(NONE, NONE); 3];
         for (corner, &vertex) in vertices.iter().enumerate() {
