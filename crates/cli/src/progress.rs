@@ -6,6 +6,7 @@ use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::time::Duration;
 
+use crate::embedded::Host;
 use crate::format::counted;
 use crate::interrupt;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -41,13 +42,20 @@ impl Phases {
 }
 
 /// The program's voice.
-pub(crate) struct Progress {
+pub(crate) struct Progress<'a> {
     spinner: ProgressBar,
     quiet: bool,
     moving: bool,
+    /// Another program that hears what there is to say.
+    host: Option<&'a dyn Host>,
 }
 
-impl Progress {
+impl<'a> Progress<'a> {
+    /// Tells another program.
+    pub(crate) fn to_host(host: &'a dyn Host) -> Self {
+        Self { host: Some(host), ..Self::new(true) }
+    }
+
     /// Silent if `quiet`; without the spinner if standard error is no terminal.
     pub(crate) fn new(quiet: bool) -> Self {
         let moving = !quiet && std::io::stderr().is_terminal();
@@ -56,7 +64,7 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
             spinner.set_style(style);
         }
-        Self { spinner, quiet, moving }
+        Self { spinner, quiet, moving, host: None }
     }
 
     /// Shows what is being done now.
@@ -93,12 +101,20 @@ impl Progress {
                     phase.map_or_else(String::new, |phase| format!("phase {phase} of {}, ", Phases::COUNT));
                 self.stage(format!("{phase}{}: {far}", at.stage));
             }
-            ControlFlow::Continue(())
+            self.answer(at)
         }
+    }
+
+    /// What another program says to that, if one hears it.
+    pub(crate) fn answer(&self, at: &limitmesh::progress::Progress) -> ControlFlow<()> {
+        self.host.map_or(ControlFlow::Continue(()), |host| host.observe(at))
     }
 
     /// Prints a line that stays, above the spinner.
     pub(crate) fn note(&self, line: impl AsRef<str>) {
+        if let Some(host) = self.host {
+            host.note(line.as_ref());
+        }
         if !self.quiet {
             // Nobody is left to tell if standard error is closed.
             self.spinner.suspend(|| writeln!(std::io::stderr(), "{}", line.as_ref()).unwrap_or_default());

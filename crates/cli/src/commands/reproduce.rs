@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &ReproduceArguments, progress: &Progress) -> anyhow
 
 /// How this program reads, writes and says what it does.
 struct Program<'a> {
-    progress: &'a Progress,
+    progress: &'a Progress<'a>,
 }
 
 impl Host for Program<'_> {

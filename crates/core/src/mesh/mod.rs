@@ -293,6 +293,11 @@ impl Mesh {
         self.topology.face_count()
     }
 
+    /// Positions and triangles without copying them; all else is given up.
+    pub fn into_positions_and_triangles(self) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+        (self.positions, self.topology.into_triangles())
+    }
+
     /// Positions and triangles alone.
     #[inline]
     pub fn as_triangles(&self) -> Triangles<'_> {

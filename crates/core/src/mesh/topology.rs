@@ -75,6 +75,11 @@ impl Topology {
         (0..self.outgoing.len() as u32).map(VertexId)
     }
 
+    /// The same without the connections.
+    pub(crate) fn into_triangles(self) -> Vec<[u32; 3]> {
+        self.triangles
+    }
+
     /// Vertex indices of each face.
     #[inline]
     pub fn triangles(&self) -> &[[u32; 3]] {

@@ -1,7 +1,5 @@
 //! Refinement step by step: uniform, by limit normals, by neighbouring normals.
 
-use std::ops::ControlFlow;
-
 use limitmesh::Mesh;
 use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal};
 use limitmesh::limit::LimitTable;
@@ -88,7 +86,7 @@ fn refine(
             let faces = counted(at.triangles, "triangle", "triangles");
             progress.stage(format!("{}: step {} of at most {levels}, from {faces}", at.stage, at.done + 1));
         }
-        ControlFlow::Continue(())
+        progress.answer(at)
     };
     let scheme = arguments.scheme.scheme();
     let cap = Some(arguments.max_triangles());

@@ -1,0 +1,101 @@
+//! Commands for other programs, in their process: arguments as on the command line in, what is said of the work back.
+
+use std::ffi::OsString;
+use std::fmt;
+use std::ops::ControlFlow;
+
+use clap::Parser;
+use limitmesh::Mesh;
+use limitmesh::progress::Progress as At;
+
+use crate::arguments::{Arguments, Command};
+use crate::commands;
+use crate::failure::{Outcome, UsageError};
+use crate::mesh_info;
+use crate::output;
+use crate::progress::Progress;
+
+/// A program that runs a command, and hears how it goes on.
+pub trait Host {
+    /// Told by long functions of the library; may stop the command.
+    fn observe(&self, at: &At) -> ControlFlow<()>;
+    /// A line that the program would print on standard error.
+    fn note(&self, line: &str);
+}
+
+/// Why a command failed.
+#[derive(Debug)]
+pub enum Failure {
+    /// The arguments make no sense.
+    Usage(String),
+    /// A file is at fault, or what it holds.
+    Input(String),
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Self::Usage(what) | Self::Input(what)) = self;
+        f.write_str(what)
+    }
+}
+
+impl std::error::Error for Failure {}
+
+/// How a command ended.
+#[derive(Debug)]
+pub struct Refined {
+    /// Where a cap was reached before what was asked for: which.
+    pub stopped_short: Option<String>,
+}
+
+/// `limitmesh refine` with these arguments, on the current thread pool. Files are written whole or not at all, a report where
+/// `--report` says.
+///
+/// # Errors
+/// As the program's; the host stopped it.
+pub fn refine_files(
+    arguments: impl IntoIterator<Item = OsString>,
+    host: &dyn Host,
+) -> Result<Refined, Failure> {
+    let words = ["limitmesh", "refine"].into_iter().map(OsString::from).chain(arguments);
+    let parsed =
+        Arguments::try_parse_from(words).map_err(|why| Failure::Usage(first_line(&why.to_string())))?;
+    let Command::Refine(arguments) = &parsed.command else {
+        return Err(Failure::Usage("that is not limitmesh refine".to_owned()));
+    };
+    match commands::refine::run(arguments, &Progress::to_host(host)) {
+        Ok(Outcome::Done) => Ok(Refined { stopped_short: None }),
+        Ok(Outcome::StoppedShort(why)) => Ok(Refined { stopped_short: Some(why) }),
+        Err(error) => Err(match error.downcast_ref::<UsageError>() {
+            Some(UsageError(what)) => Failure::Usage(what.clone()),
+            None => Failure::Input(in_words(&error)),
+        }),
+    }
+}
+
+/// What clap says, without what helps on a terminal only.
+fn first_line(text: &str) -> String {
+    let text = text.lines().next().unwrap_or_default();
+    text.strip_prefix("error: ").unwrap_or(text).to_owned()
+}
+
+/// An error and its causes in one line, each said once.
+fn in_words(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1) {
+        let words = cause.to_string();
+        if !text.ends_with(&words) {
+            text.push_str(": ");
+            text.push_str(&words);
+        }
+    }
+    text
+}
+
+/// What kind of mesh it is, as JSON: `mesh` of the report of `limitmesh info`.
+///
+/// # Errors
+/// A number that JSON cannot hold.
+pub fn examined(mesh: &Mesh) -> anyhow::Result<String> {
+    output::json(&mesh_info::examine(mesh))
+}

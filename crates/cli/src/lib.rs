@@ -1,0 +1,88 @@
+//! The `limitmesh` program: refine a triangle mesh within a distance of its limit surface, measure it, compare methods, draw it.
+//!
+//! Takes the command line, gives files, text on standard output and an exit code: 0 done, 1 bad input or
+//! output, 2 usage, 3 stopped short of what was asked. Messages go to standard error, so that a report or a
+//! measurement can be piped.
+//!
+//! The program is [`program`]; other programs, such as the Python package, run its commands on files through [`refine_files`] and
+//! look at meshes through [`examined`].
+
+mod arguments;
+mod bulk;
+mod commands;
+mod dihedral;
+mod embedded;
+mod failure;
+mod format;
+mod input;
+mod interrupt;
+mod mesh_info;
+mod output;
+mod progress;
+mod reference;
+mod report;
+mod vector;
+
+use std::ffi::OsString;
+
+use clap::{CommandFactory, Parser, error::ErrorKind};
+
+use arguments::{Arguments, Command};
+use failure::{Outcome, UsageError, is_broken_pipe};
+use progress::Progress;
+
+pub use embedded::{Failure, Host, Refined, examined, refine_files};
+
+/// The program with a command line, whose first word is the program's name; gives its exit code. Where the command line makes no sense, or
+/// asks for help, the process ends here.
+pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments = Arguments::parse_from(words);
+    let progress = Progress::new(arguments.global.quiet);
+    let result = prepare(&arguments).and_then(|()| run(&arguments.command, &progress));
+    progress.clear();
+    match result {
+        Ok(Outcome::Done) => 0,
+        Ok(Outcome::StoppedShort(why)) => {
+            failure::print_stopped_short(&why);
+            3
+        }
+        Err(error) if is_broken_pipe(&error) => 0,
+        Err(error) => match error.downcast_ref::<UsageError>() {
+            Some(UsageError(what)) => exit_with_usage(&arguments.command, what),
+            None => {
+                failure::print(&error);
+                1
+            }
+        },
+    }
+}
+
+/// Has clap word and format a usage error like those that it finds itself, and exit with code 2.
+fn exit_with_usage(command: &Command, what: &str) -> ! {
+    let mut whole = Arguments::command();
+    // Gives the commands their whole names.
+    whole.build();
+    match whole.find_subcommand_mut(command.name()) {
+        Some(own) => own.error(ErrorKind::ValueValidation, what).exit(),
+        None => whole.error(ErrorKind::ValueValidation, what).exit(),
+    }
+}
+
+/// Sets up what holds for the whole process: the thread pool and what Ctrl-C does.
+fn prepare(arguments: &Arguments) -> anyhow::Result<()> {
+    interrupt::install()?;
+    rayon::ThreadPoolBuilder::new().num_threads(arguments.global.threads).build_global()?;
+    Ok(())
+}
+
+fn run(command: &Command, progress: &Progress) -> anyhow::Result<Outcome> {
+    match command {
+        Command::Refine(arguments) => commands::refine::run(arguments, progress),
+        Command::Measure(arguments) => commands::measure::run(arguments, progress),
+        Command::Compare(arguments) => commands::compare::run(arguments, progress),
+        Command::Render(arguments) => commands::render::run(arguments, progress),
+        Command::Reproduce(arguments) => commands::reproduce::run(arguments, progress),
+        Command::Info(arguments) => commands::info::run(arguments, progress),
+        Command::Models(arguments) => commands::models::run(arguments),
+    }
+}

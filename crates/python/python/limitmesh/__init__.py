@@ -1,0 +1,73 @@
+"""Smooth any triangle mesh to a tolerance: adaptive subdivision with a proven distance to the limit surface.
+
+>>> import limitmesh
+>>> cup = limitmesh.load("builtin:cup")
+>>> smooth = limitmesh.refine(cup.vertices, cup.faces, tolerance="0.1%")
+>>> smooth.error.certified
+True
+
+Lengths are in the mesh's unit, or as ``"0.1%"`` parts of the diagonal of its bounding box; angles are in degrees. Nothing is
+changed in place. Everything raises `Error`, a ``ValueError``, where its arguments are at fault.
+"""
+
+from ._errors import Error, MeshError, OptionError, ReadError, StoppedShort, ToleranceNotMet
+from ._files import load, models, refine_file, save
+from ._interop import (
+    from_meshio,
+    from_open3d,
+    from_pyvista,
+    from_trimesh,
+    to_meshio,
+    to_pyvista,
+    to_trimesh,
+)
+from ._limitmesh import __version__
+from ._measure import Distance, Limit, OneSided, info, limit, measure
+from ._mesh import Channel, Mesh
+from ._options import Camera, Progress
+from ._refine import Estimate, estimate, refine
+from ._refined import Diagnosis, ErrorBounds, Finding, Refined, Split
+from ._simplify import Repaired, Simplified, repair, simplify
+
+__all__ = [
+    "Camera",
+    "Channel",
+    "Diagnosis",
+    "Distance",
+    "Error",
+    "ErrorBounds",
+    "Estimate",
+    "Finding",
+    "Limit",
+    "Mesh",
+    "MeshError",
+    "OneSided",
+    "OptionError",
+    "Progress",
+    "ReadError",
+    "Refined",
+    "Repaired",
+    "Simplified",
+    "Split",
+    "StoppedShort",
+    "ToleranceNotMet",
+    "__version__",
+    "estimate",
+    "from_meshio",
+    "from_open3d",
+    "from_pyvista",
+    "from_trimesh",
+    "info",
+    "limit",
+    "load",
+    "measure",
+    "models",
+    "refine",
+    "refine_file",
+    "repair",
+    "save",
+    "simplify",
+    "to_meshio",
+    "to_pyvista",
+    "to_trimesh",
+]

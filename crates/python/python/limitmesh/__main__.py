@@ -1,0 +1,16 @@
+"""The program ``limitmesh``, also as ``python -m limitmesh``."""
+
+from __future__ import annotations
+
+import sys
+
+from ._limitmesh import program
+
+
+def main() -> int:
+    """Runs the program with the arguments of this process; its exit code."""
+    return program(["limitmesh", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

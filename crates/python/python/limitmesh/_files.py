@@ -1,0 +1,277 @@
+"""Files and built-in models."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _limitmesh, _options
+from ._errors import StoppedShort, ToleranceNotMet
+from ._limitmesh import OptionError
+from ._mesh import Channel, Mesh, MeshLike, as_mesh
+from ._options import Boundary, Length, Method, ProgressCallback, Scheme
+
+if TYPE_CHECKING:
+    from ._refined import Refined
+
+
+def models() -> dict[str, str]:
+    """The built-in models, each with a line about it; `load` takes them as ``"builtin:cup"``.
+
+    >>> import limitmesh
+    >>> "cup" in limitmesh.models()
+    True
+    """
+    return dict(_limitmesh.models())
+
+
+def load(path: str | os.PathLike[str]) -> Mesh:
+    """Reads a file, whatever is in it: OBJ, PLY, STL, OFF or glTF (what its scene shows), or a built-in model.
+
+    Parameters
+    ----------
+    path
+        The file, whose extension tells the format; or ``"builtin:NAME"``.
+
+    Raises
+    ------
+    ReadError
+        It cannot be read; the message names the line or the place.
+
+    Examples
+    --------
+    >>> import limitmesh
+    >>> limitmesh.load("builtin:cube").vertices.shape
+    (8, 3)
+    """
+    told = _limitmesh.load(os.fspath(path))
+    corners, starts = told["corners"], told["starts"]
+    sizes = np.diff(starts)
+    faces: Any
+    if len(sizes) and (sizes == sizes[0]).all():
+        faces = corners.reshape(-1, sizes[0])
+    elif not len(sizes):
+        faces = np.zeros((0, 3), dtype=np.int64)
+    else:
+        faces = np.split(corners, starts[1:-1])
+    return Mesh(
+        told["vertices"],
+        faces,
+        {one["name"]: Channel._of_native(one, triangles=False) for one in told["channels"]},
+        told["creases"] or None,
+        told["corner_tags"] or None,
+        tuple(told["material_libraries"]),
+        tuple(told["left_out"]),
+    )
+
+
+def save(path: str | os.PathLike[str], mesh: Refined | MeshLike, *, ascii: bool = False) -> None:
+    """Writes triangles and what they carry to a file, whole or not at all.
+
+    What its format has no place for is left out: STL holds triangles alone, OBJ and PLY texture coordinates and colours, too, and
+    PLY any other channel.
+
+    Parameters
+    ----------
+    path
+        The file, whose extension (.obj, .ply, .stl, .off, .gltf, .glb) chooses the format.
+    mesh
+        A result, with its limit normals; or a mesh, which is mended first where that is needed.
+    ascii
+        Text where the format has a binary form as well.
+
+    Raises
+    ------
+    ReadError
+        It cannot be written.
+
+    Examples
+    --------
+    >>> import limitmesh, os, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = os.path.join(folder, "cube.obj")
+    ...     limitmesh.save(path, "builtin:cube")
+    ...     limitmesh.info(path)["triangles"]
+    12
+    """
+    from ._refined import Refined
+
+    if isinstance(mesh, Refined):
+        vertices, faces, channels = mesh.vertices, mesh.faces, dict(mesh.channels)
+        has_sides = len(mesh._sides[0]) > 0
+        # One normal a vertex would be an average over the sides of sharp edges.
+        normals = None if has_sides else mesh.normals
+        libraries: tuple[str, ...] = ()
+    else:
+        from ._simplify import repair
+
+        given = as_mesh(mesh)
+        mended = repair(given)
+        vertices, faces, channels, normals = mended.vertices, mended.faces, dict(mended.channels), None
+        libraries = tuple(given.material_libraries)
+    counts = {"vertex": len(vertices), "corner": 3 * len(faces), "face": len(faces)}
+    _limitmesh.save(
+        os.fspath(path),
+        np.ascontiguousarray(vertices, dtype=np.float64),
+        np.ascontiguousarray(faces, dtype=np.uint32),
+        None if normals is None else np.ascontiguousarray(normals),
+        [channel._native(name, counts) for name, channel in channels.items()],
+        list(libraries),
+        bool(ascii),
+    )
+
+
+def refine_file(
+    source: str | os.PathLike[str],
+    target: str | os.PathLike[str],
+    *,
+    tolerance: Length | None = None,
+    triangles: int | None = None,
+    angle: float | None = None,
+    interpolate: bool | Length = False,
+    crease_angle: float | None = None,
+    boundary: Boundary = "smooth",
+    concave_corners: str | None = None,
+    scheme: Scheme = "loop",
+    method: Method = "exact",
+    levels: int | None = None,
+    optimize: bool = False,
+    balance: bool = False,
+    uv: str = "boundaries",
+    weld: float | None = 0.0,
+    repair: bool = True,
+    split_normals: bool = False,
+    provenance: bool = False,
+    ascii: bool = False,
+    max_triangles: int | None = None,
+    max_levels: int | None = None,
+    max_memory: float | str | None = "50%",
+    strict: bool = False,
+    threads: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> dict[str, Any]:
+    """Refines a file as the program ``limitmesh refine`` does, with all that the file carries, and gives its report.
+
+    From glTF to glTF the asset is edited: its triangles are replaced, and everything else stays to the byte. Files are written
+    whole or not at all.
+
+    Parameters
+    ----------
+    source
+        OBJ, PLY, STL, OFF or glTF, or ``"builtin:NAME"``.
+    target
+        The file to write, whose extension chooses the format.
+    uv
+        How texture coordinates follow the surface: "boundaries" (seams stay), "none", "corners-only", "corners-plus1",
+        "corners-plus2", or "linear".
+    split_normals, provenance
+        In PLY files: a vertex for each side of sharp edges, and where vertices and triangles came from.
+    ascii
+        PLY and STL as text.
+    tolerance, triangles, angle, interpolate, crease_angle, boundary, concave_corners, scheme, method, levels, optimize, balance, \
+weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
+        As for `refine`.
+
+    Returns
+    -------
+    dict
+        The report of the program, as the README describes it; and ``notes``, lines that the program would print.
+
+    Raises
+    ------
+    ReadError
+        A file cannot be read or written, or gives no mesh.
+    OptionError
+        An option is out of range, or does not go with another or with the file.
+
+    Examples
+    --------
+    >>> import limitmesh, os, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     report = limitmesh.refine_file("builtin:cup", os.path.join(folder, "cup.ply"), tolerance="0.2%")
+    >>> report["stop"], report["error"]["certified"]
+    ('met', True)
+    """
+    _options.control_of(
+        interpolate=interpolate,
+        crease_angle=crease_angle,
+        boundary=boundary,
+        concave_corners=concave_corners,
+        scheme=scheme,
+        weld=weld,
+    )
+    goals = _options.goals_of(
+        method=method,
+        levels=levels,
+        tolerance=tolerance,
+        triangles=triangles,
+        angle=angle,
+        pixels=None,
+        cameras=None,
+        view=None,
+        eye=None,
+        dilatation=1.0,
+        optimize=optimize,
+        balance=balance,
+        flat_regions=True,
+        origins=provenance,
+        max_triangles=max_triangles,
+        max_levels=max_levels,
+        max_memory=max_memory,
+    )
+    arguments = [_name(source, "source"), f"--output={_name(target, 'target')}", f"--method={method}", f"--uv={uv}"]
+    arguments += [f"--scheme={scheme}", f"--boundary={boundary}"]
+    arguments.append("--weld=none" if weld is None else f"--weld={weld!r}")
+    if interpolate is True:
+        arguments.append("--interpolate")
+    elif interpolate is not False and interpolate is not None:
+        arguments.append(f"--interpolate-within={interpolate}")
+    for name, value in (
+        ("tolerance", tolerance),
+        ("crease-angle", crease_angle),
+        ("angle", angle),
+        ("concave-corners", concave_corners),
+        ("triangles", goals["triangles"]),
+        ("max-triangles", goals["max_triangles"]),
+        ("max-levels", goals["max_levels"]),
+        ("levels", None if levels is None else goals["levels"]),
+        ("max-memory", goals["max_memory"] if method == "exact" else None),
+    ):
+        if value is not None:
+            arguments.append(f"--{name}={value}")
+    for name, flag in (
+        ("optimize", optimize),
+        ("balance", balance),
+        ("split-normals", split_normals),
+        ("provenance", provenance),
+        ("ascii", ascii),
+        ("strict", not repair),
+    ):
+        if flag:
+            arguments.append(f"--{name}")
+    with tempfile.TemporaryDirectory(prefix="limitmesh-") as folder:
+        path = os.path.join(folder, "report.json")
+        short, notes = _limitmesh.refine_file(
+            [*arguments, f"--report={path}"], _options.threads_of(threads), _options.callback_of(progress)
+        )
+        with open(path, encoding="utf-8") as file:
+            report: dict[str, Any] = json.load(file)
+    report["notes"] = notes
+    if short is not None:
+        if strict:
+            raise ToleranceNotMet(short, report)
+        warnings.warn(short, StoppedShort, stacklevel=2)
+    return report
+
+
+def _name(path: str | os.PathLike[str], what: str) -> str:
+    name = os.fspath(path)
+    if not isinstance(name, str) or not name or name == "-":
+        raise OptionError(f"{what} is {name!r}, expected the name of a file")
+    # A name that begins like an option is none.
+    return os.path.join(os.curdir, name) if name.startswith("-") else name

@@ -1,0 +1,69 @@
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+__version__: str
+
+class Error(ValueError): ...
+class MeshError(Error): ...
+class OptionError(Error): ...
+class ReadError(Error): ...
+
+_Callback = Callable[[str, int, int | None, int], object] | None
+
+def refine(
+    mesh: Any, control: dict[str, Any], goals: dict[str, Any], threads: int, progress: _Callback
+) -> dict[str, Any]: ...
+def estimate(
+    mesh: Any, control: dict[str, Any], goals: dict[str, Any], threads: int, progress: _Callback
+) -> tuple[int, int, bool]: ...
+def measure(
+    surface: Any, reference: Any, how: dict[str, Any], threads: int, progress: _Callback
+) -> dict[str, Any]: ...
+def measure_limit(
+    surface: Any,
+    reference: Any,
+    control: dict[str, Any],
+    how: dict[str, Any],
+    levels: int | None,
+    threads: int,
+    progress: _Callback,
+) -> dict[str, Any]: ...
+def limit(
+    mesh: Any, control: dict[str, Any], threads: int, progress: _Callback
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+def examine(mesh: Any, control: dict[str, Any], threads: int) -> tuple[str, dict[str, Any]]: ...
+def simplify(
+    mesh: Any,
+    control: dict[str, Any],
+    tolerance: tuple[float, bool] | None,
+    triangles: int | None,
+    certify: bool,
+    threads: int,
+    progress: _Callback,
+) -> dict[str, Any]: ...
+def repair(mesh: Any, control: dict[str, Any], threads: int) -> dict[str, Any]: ...
+def picture(
+    vertices: npt.NDArray[np.float64],
+    faces: npt.NDArray[np.uint32],
+    normals: npt.NDArray[np.float64] | None,
+    width: int,
+    height: int,
+    wireframe: bool,
+    threads: int,
+) -> bytes: ...
+def models() -> list[tuple[str, str]]: ...
+def load(path: str) -> dict[str, Any]: ...
+def save(
+    path: str,
+    vertices: npt.NDArray[np.float64],
+    faces: npt.NDArray[np.uint32],
+    normals: npt.NDArray[np.float64] | None,
+    channels: list[dict[str, Any]],
+    material_libraries: list[str],
+    ascii: bool,
+) -> list[str]: ...
+def program(arguments: list[str]) -> int: ...
+def refine_file(arguments: list[str], threads: int, progress: _Callback) -> tuple[str | None, list[str]]: ...

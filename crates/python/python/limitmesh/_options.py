@@ -1,0 +1,325 @@
+"""Options as people write them, checked, and completed for the native half."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ._limitmesh import OptionError
+
+Length: TypeAlias = float | str
+"""A length in the mesh's unit, or with ``"%"`` a part of the diagonal of the mesh's bounding box."""
+
+Boundary: TypeAlias = Literal["smooth", "corners", "fixed"]
+Scheme: TypeAlias = Literal["loop", "loop-warren", "butterfly"]
+Method: TypeAlias = Literal["exact", "limit-normal", "amresh", "uniform"]
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A perspective camera, for ``pixels``.
+
+    Parameters
+    ----------
+    eye, target
+        Where it stands, and a point in the middle of its picture, in the mesh's unit.
+    up
+        A direction that points up in its picture.
+    fov
+        Angle of view from the bottom to the top of the picture, in degrees: above 0, below 180.
+    width, height
+        Size of the picture in pixels.
+
+    Examples
+    --------
+    >>> import limitmesh
+    >>> camera = limitmesh.Camera(eye=(0, -4, 2), target=(0, 0, 0), up=(0, 0, 1))
+    >>> cup = limitmesh.load("builtin:cup")
+    >>> seen = limitmesh.refine(cup, pixels=1, cameras=[camera])
+    >>> seen.pixels <= 1
+    True
+    """
+
+    eye: tuple[float, float, float]
+    target: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    up: tuple[float, float, float] = (0.0, 1.0, 0.0)
+    fov: float = 45.0
+    width: int = 1920
+    height: int = 1080
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a call has come, as its ``progress`` is told.
+
+    Attributes
+    ----------
+    stage
+        What is being done, in words.
+    done, total
+        Units of this stage that are done, and that there will be where that is known.
+    triangles
+        Of the mesh that is being made, or looked at.
+    """
+
+    stage: str
+    done: int
+    total: int | None
+    triangles: int
+
+
+ProgressCallback: TypeAlias = Callable[[Progress], object]
+
+
+def number(value: Any, name: str, expected: str, fits: Callable[[float], bool]) -> float:
+    """A number, or an error that says what was expected."""
+    try:
+        if isinstance(value, (bool, np.bool_, str)):
+            raise TypeError
+        found = float(value)
+    except (TypeError, ValueError):
+        found = float("nan")
+    if not fits(found):
+        raise OptionError(f"{name} is {value!r}, expected {expected}")
+    return found
+
+
+def whole(value: Any, name: str, least: int) -> int:
+    """A whole number; counts may be written as floats are, such as 2e4."""
+    found = number(value, name, f"a whole number of at least {least}", lambda x: x >= least and x == np.floor(x) < 2**62)
+    return int(found)
+
+
+def extent(value: Length, name: str, *, zero: bool = False) -> tuple[float, bool]:
+    """A length, and whether it is a part of the diagonal."""
+    expected = f"a length {'of at least' if zero else 'above'} 0, or with % a part of the diagonal such as '0.1%'"
+
+    def fits(x: float) -> bool:
+        return np.isfinite(x) and (x > 0.0 or (zero and x == 0.0))
+
+    if isinstance(value, str):
+        text = value.strip()
+        try:
+            found = float(text.removesuffix("%"))
+        except ValueError:
+            found = float("nan")
+        if not fits(found):
+            raise OptionError(f"{name} is {value!r}, expected {expected}")
+        return (found / 100.0, True) if text.endswith("%") else (found, False)
+    return number(value, name, expected, fits), False
+
+
+def point(value: Any, name: str) -> list[float]:
+    """Three finite numbers."""
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (ValueError, TypeError):
+        array = np.zeros(0)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise OptionError(f"{name} is {value!r}, expected three numbers")
+    return [float(x) for x in array]
+
+
+_UNITS = {"": 1, "B": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
+
+
+def memory(value: float | str | None) -> int | None:
+    """Bytes: a number, such as "2GB", or a part of the machine's such as "50%"."""
+    if value is None:
+        return None
+    if isinstance(value, str):
+        text = value.strip()
+        found = re.fullmatch(r"([0-9.]+(?:e[0-9]+)?)\s*(%|[KMGT]?i?B?)", text, re.IGNORECASE)
+        try:
+            amount = float(found[1]) if found else float("nan")
+        except ValueError:
+            amount = float("nan")
+        if not found or not amount > 0.0:
+            raise OptionError(f"max_memory is {value!r}, expected bytes, such as '500MB', or '50%' of the machine's")
+        if found[2] == "%":
+            whole_memory = machine_memory()
+            return None if whole_memory is None else int(amount / 100.0 * whole_memory)
+        return int(amount * _UNITS[found[2].upper().rstrip("B").rstrip("I")])
+    return int(number(value, "max_memory", "bytes above 0", lambda x: 0.0 < x < 2**62))
+
+
+def machine_memory() -> int | None:
+    """Bytes that this process may have: the machine's, or fewer where its container has a limit."""
+    limits = []
+    try:
+        limits.append(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, ValueError, OSError):
+        pass
+    for path in ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"):
+        try:
+            with open(path, encoding="ascii") as file:
+                limits.append(int(file.read()))
+        except (OSError, ValueError):
+            pass
+    return min(limits) if limits else None
+
+
+def threads_of(threads: int | None) -> int:
+    """How many threads: as asked for, ``LIMITMESH_NUM_THREADS``, or as many as this process may run on."""
+    if threads is None:
+        named = os.environ.get("LIMITMESH_NUM_THREADS", "").strip()
+        if named:
+            if not named.isdigit() or int(named) == 0:
+                raise OptionError(f"LIMITMESH_NUM_THREADS is {named!r}, expected a whole number of at least 1")
+            return min(int(named), MOST_THREADS)
+        if hasattr(os, "sched_getaffinity"):
+            return min(len(os.sched_getaffinity(0)), MOST_THREADS)
+        return min(os.cpu_count() or 1, MOST_THREADS)
+    return min(whole(threads, "threads", 1), MOST_THREADS)
+
+
+MOST_THREADS = 256
+
+
+def callback_of(progress: ProgressCallback | None) -> Callable[[str, int, int | None, int], object] | None:
+    """What the native half calls."""
+    if progress is None:
+        return None
+    if not callable(progress):
+        raise OptionError(f"progress is {progress!r}, expected a function")
+    call = progress
+    return lambda stage, done, total, triangles: call(Progress(stage, done, total, triangles))
+
+
+def control_of(
+    *,
+    interpolate: bool | Length = False,
+    crease_angle: float | None = None,
+    boundary: str = "smooth",
+    concave_corners: str | None = None,
+    scheme: str = "loop",
+    weld: float | None = 0.0,
+    repair: bool = True,
+) -> dict[str, Any]:
+    """How the control mesh comes about."""
+    for name, value, expected in (
+        ("boundary", boundary, ("smooth", "corners", "fixed")),
+        ("scheme", scheme, ("loop", "loop-warren", "butterfly")),
+        ("concave_corners", concave_corners, (None, "divided", "as-tagged")),
+    ):
+        one_of(value, name, expected)
+    if crease_angle is not None:
+        crease_angle = angle_of(crease_angle, "crease_angle")
+    usual = "divided" if crease_angle is not None or boundary != "smooth" else "as-tagged"
+    within: tuple[float, bool] | None
+    if interpolate is False or interpolate is None:
+        within = None
+    elif interpolate is True:
+        within = (0.0, False)
+    else:
+        within = extent(interpolate, "interpolate", zero=True)
+    return {
+        "weld": -1.0 if weld is None else number(weld, "weld", "a distance of at least 0, or None", _is_distance),
+        "repair": bool(repair),
+        "boundary": boundary,
+        "crease_angle": crease_angle,
+        "divides_concave_corners": (concave_corners or usual) == "divided",
+        "interpolate": within,
+        "scheme": scheme,
+    }
+
+
+def _is_distance(x: float) -> bool:
+    return 0.0 <= x < np.inf
+
+
+def one_of(value: Any, name: str, expected: tuple[str | None, ...]) -> None:
+    """Refuses what is none of some words."""
+    if not (value is None or isinstance(value, str)) or value not in expected:
+        words = ", ".join(repr(word) for word in expected)
+        raise OptionError(f"{name} is {value!r}, expected one of {words}")
+
+
+def angle_of(value: float, name: str) -> float:
+    """Degrees above 0, at most 180."""
+    return number(value, name, "degrees above 0, at most 180", lambda x: 0.0 < x <= 180.0)
+
+
+def cameras_of(cameras: Iterable[Camera]) -> list[tuple[Any, ...]]:
+    """Cameras for the native half."""
+    found = []
+    for row, camera in enumerate(cameras):
+        if not isinstance(camera, Camera):
+            raise OptionError(f"cameras[{row}] is {camera!r}, expected a limitmesh.Camera")
+        name = f"cameras[{row}]"
+        places = [point(getattr(camera, field), f"{name}.{field}") for field in ("eye", "target", "up")]
+        fov = number(camera.fov, f"{name}.fov", "degrees above 0, below 180", lambda x: 0.0 < x < 180.0)
+        size = [whole(getattr(camera, field), f"{name}.{field}", 1) for field in ("width", "height")]
+        if max(size) >= 2**31:
+            raise OptionError(f"{name} has a picture of {size[0]} x {size[1]}, which is too large")
+        found.append((*places, fov, *size))
+    return found
+
+
+def goals_of(
+    *,
+    method: str,
+    levels: int | None,
+    tolerance: Length | None,
+    triangles: int | None,
+    angle: float | None,
+    pixels: float | None,
+    cameras: Camera | Iterable[Camera] | None,
+    view: npt.ArrayLike | None,
+    eye: npt.ArrayLike | None,
+    dilatation: float,
+    optimize: bool,
+    balance: bool,
+    flat_regions: bool,
+    origins: bool,
+    max_triangles: int | None,
+    max_levels: int | None,
+    max_memory: float | str | None,
+) -> dict[str, Any]:
+    """Goals and caps."""
+    one_of(method, "method", ("exact", "limit-normal", "amresh", "uniform"))
+    looking = [] if cameras is None else cameras_of([cameras] if isinstance(cameras, Camera) else cameras)
+    if looking and pixels is None:
+        pixels = 1.0
+    exact = method == "exact"
+    if not exact:
+        for name, value in (
+            ("tolerance", tolerance),
+            ("triangles", triangles),
+            ("pixels", pixels),
+            ("optimize", optimize or None),
+            ("balance", balance or None),
+        ):
+            if value is not None:
+                raise OptionError(f"{name} is a goal of method='exact', not of {method!r}")
+    elif levels is not None:
+        raise OptionError("levels are steps of the other methods; with method='exact' they follow from the goals")
+    if exact and tolerance is None and triangles is None and angle is None and pixels is None:
+        tolerance = "0.1%"
+    if view is not None and eye is not None:
+        raise OptionError("view and eye: one of them says where the viewer is")
+    return {
+        "method": method,
+        "levels": 3 if levels is None else whole(levels, "levels", 0),
+        "tolerance": None if tolerance is None else extent(tolerance, "tolerance"),
+        "triangles": None if triangles is None else whole(triangles, "triangles", 1),
+        "angle": None if angle is None else angle_of(angle, "angle"),
+        "pixels": None if pixels is None else number(pixels, "pixels", "a number above 0", lambda x: 0.0 < x < np.inf),
+        "cameras": looking,
+        "eye": None if eye is None else point(eye, "eye"),
+        "view": None if view is None else point(view, "view"),
+        "dilatation": number(dilatation, "dilatation", "a number of at least 0", _is_distance),
+        "optimize": bool(optimize),
+        "balance": bool(balance),
+        "flat_regions": bool(flat_regions),
+        "origins": bool(origins),
+        "max_triangles": None if max_triangles is None else whole(max_triangles, "max_triangles", 1),
+        "max_levels": None if max_levels is None else whole(max_levels, "max_levels", 1),
+        "max_memory": memory(max_memory),
+    }

@@ -1,0 +1,352 @@
+"""Refinement of arrays."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _limitmesh, _options
+from ._errors import StoppedShort, ToleranceNotMet
+from ._limitmesh import OptionError
+from ._mesh import Channel, Mesh, MeshLike, as_mesh
+from ._options import Boundary, Camera, Length, Method, ProgressCallback, Scheme
+from ._refined import Diagnosis, ErrorBounds, Refined
+
+
+def refine(
+    vertices: npt.ArrayLike | MeshLike,
+    faces: Any = None,
+    *,
+    tolerance: Length | None = None,
+    triangles: int | None = None,
+    angle: float | None = None,
+    pixels: float | None = None,
+    cameras: Camera | Iterable[Camera] | None = None,
+    interpolate: bool | Length = False,
+    crease_angle: float | None = None,
+    creases: Any = None,
+    corners: Any = None,
+    boundary: Boundary = "smooth",
+    concave_corners: str | None = None,
+    scheme: Scheme = "loop",
+    method: Method = "exact",
+    levels: int | None = None,
+    view: npt.ArrayLike | None = None,
+    eye: npt.ArrayLike | None = None,
+    dilatation: float = 1.0,
+    optimize: bool = False,
+    balance: bool = False,
+    flat_regions: bool = True,
+    channels: Mapping[str, Channel | npt.ArrayLike] | None = None,
+    origins: bool = True,
+    weld: float | None = 0.0,
+    repair: bool = True,
+    index_dtype: npt.DTypeLike = np.int64,
+    max_triangles: int | None = None,
+    max_levels: int | None = None,
+    max_memory: float | str | None = "50%",
+    strict: bool = False,
+    threads: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> Refined:
+    """Refines a mesh to a goal: within a proven distance of its smooth limit surface.
+
+    Without a goal the tolerance is "0.1%". Each of tolerance, angle and pixels that is given is met everywhere; a number of
+    triangles ends the refinement early, with the worst places refined first. There are never cracks.
+
+    Parameters
+    ----------
+    vertices
+        (n, 3) positions in the mesh's unit, or a mesh: a `Mesh`, a result, a pair, a file's name, or a mesh of trimesh, PyVista,
+        meshio or Open3D.
+    faces
+        (m, 3) vertex numbers, counter-clockwise seen from outside; or polygons, as (m, k) or a list of lists.
+    tolerance
+        Greatest distance between mesh and limit surface, either way: a length, or a part of the diagonal such as "0.1%".
+    triangles
+        The best mesh with at most so many.
+    angle
+        Greatest angle between triangles and limit normals, in degrees.
+    pixels, cameras
+        Greatest distance as the cameras see it; 1 where there are cameras and no number.
+    interpolate
+        True lets the limit surface pass through every vertex; a length, or a part of the diagonal, that near to them, and as fair
+        as it can be.
+    crease_angle
+        Edges stay sharp where faces meet at more than this angle between their normals, in degrees.
+    creases, corners
+        Edges that stay sharp: pairs of vertices, or triples with a sharpness in levels; vertices that stay, likewise.
+    boundary
+        "smooth"; "corners" keeps vertices in one face only; "fixed" keeps open boundaries as they are.
+    concave_corners
+        Corners of 180° and more between sharp edges: "divided", so that flat faces stay flat, or "as-tagged". Default: divided
+        with ``crease_angle`` and with boundaries that are not smooth.
+    scheme
+        "loop", "loop-warren" or "butterfly"; distances are proven for the first two, and estimated for the last.
+    method
+        "exact"; or, with ``levels`` steps (default 3), "limit-normal" (the paper's) or "amresh" with ``angle`` (default 10), or
+        "uniform".
+    view, eye, dilatation
+        Let ``angle`` depend on where the viewer looks along, or stands.
+    optimize
+        Collapses edges of a finer mesh as long as the goals allow: slower, with fewer triangles. Not with channels.
+    balance
+        Lets vertices leave the limit surface by up to half the local error: fewer triangles.
+    flat_regions
+        Whether regions in a plane are triangulated from their rims alone.
+    channels
+        What is carried along, by name: `Channel`, or arrays with a row for each vertex, corner or face.
+    origins
+        Whether the result tells where its vertices came from, which is a quarter of its memory.
+    weld
+        Distance within which vertices become one: 0 for equal positions, None for none.
+    repair
+        Whether defects are mended (and told in ``diagnosis``) or refused.
+    index_dtype
+        Type of the result's vertex numbers.
+    max_triangles, max_levels, max_memory
+        Caps; what was reached by then is the result, and a `StoppedShort` warning says so. ``max_memory`` is in bytes, such as
+        "2GB", or a part of the machine's; None for no cap.
+    strict
+        Raises `ToleranceNotMet` where a cap came first.
+    threads
+        Default: ``LIMITMESH_NUM_THREADS``, or all processors. The result is the same to the bit for any number.
+    progress
+        Called with a `Progress` some twenty times a second; what it raises ends the refinement and is raised again.
+
+    Raises
+    ------
+    MeshError
+        The arrays are no mesh; the message names the row.
+    OptionError
+        An option is out of range, or does not go with another.
+
+    Examples
+    --------
+    >>> import limitmesh, numpy as np
+    >>> vertices = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+    >>> faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]
+    >>> smooth = limitmesh.refine(vertices, faces, tolerance=0.01)
+    >>> smooth.error.certified and smooth.error.upper <= 0.01
+    True
+    >>> smooth.vertices.shape[1], smooth.faces.dtype
+    (3, dtype('int64'))
+    """
+    mesh = _mesh_of(vertices, faces, channels, creases, corners)
+    if optimize and mesh.channels:
+        raise OptionError("channels are not carried with optimize: triangles reach over several faces then")
+    if method != "exact" and mesh.channels:
+        raise OptionError(f"channels are carried with method='exact', not with {method!r}")
+    control = _options.control_of(
+        interpolate=interpolate,
+        crease_angle=crease_angle,
+        boundary=boundary,
+        concave_corners=concave_corners,
+        scheme=scheme,
+        weld=weld,
+        repair=repair,
+    )
+    goals = _options.goals_of(
+        method=method,
+        levels=levels,
+        tolerance=tolerance,
+        triangles=triangles,
+        angle=angle,
+        pixels=pixels,
+        cameras=cameras,
+        view=view,
+        eye=eye,
+        dilatation=dilatation,
+        optimize=optimize,
+        balance=balance,
+        flat_regions=flat_regions,
+        origins=origins,
+        max_triangles=max_triangles,
+        max_levels=max_levels,
+        max_memory=max_memory,
+    )
+    dtype = _index_dtype(index_dtype)
+    told = _limitmesh.refine(
+        mesh._native(), control, goals, _options.threads_of(threads), _options.callback_of(progress)
+    )
+    result = _refined(told, dtype)
+    short = _short(result, goals)
+    if short is not None:
+        if strict:
+            raise ToleranceNotMet(short, result)
+        warnings.warn(short, StoppedShort, stacklevel=2)
+    return result
+
+
+def _mesh_of(
+    vertices: Any,
+    faces: Any,
+    channels: Mapping[str, Channel | npt.ArrayLike] | None,
+    creases: Any,
+    corners: Any,
+) -> Mesh:
+    mesh = as_mesh(vertices, faces).with_channels(channels)
+    if creases is not None:
+        mesh = replace(mesh, creases=creases)
+    if corners is not None:
+        mesh = replace(mesh, corners=corners)
+    return mesh
+
+
+def _index_dtype(index_dtype: npt.DTypeLike) -> np.dtype[Any]:
+    try:
+        dtype = np.dtype(index_dtype)
+    except TypeError:
+        dtype = np.dtype(np.float64)
+    if dtype.kind not in "iu" or dtype.itemsize < 4:
+        raise OptionError(f"index_dtype is {index_dtype!r}, expected whole numbers of 32 or 64 bits")
+    return dtype
+
+
+def _refined(told: dict[str, Any], dtype: np.dtype[Any]) -> Refined:
+    def indices(name: str) -> Any:
+        return None if told[name] is None else told[name].astype(dtype, copy=False)
+
+    error = told["error"]
+    channels = {one["name"]: Channel._of_native(one, triangles=True) for one in told["channels"]}
+    return Refined(
+        vertices=told["vertices"],
+        faces=indices("faces"),
+        normals=told["normals"],
+        parent_face=indices("parent_face"),
+        vertex_face=indices("vertex_face"),
+        barycentric=told["barycentric"],
+        barycentric_vertices=indices("vertex_corners"),
+        channels=channels,
+        error=None if error is None else ErrorBounds(error[0], error[1], error[2], tuple(error[3])),
+        stop=told["stop"],
+        diagnosis=Diagnosis._of_native(told["diagnosis"]),
+        levels=told["levels"],
+        pixels=told["pixels"],
+        open_cones=told["open_cones"],
+        unfolded=told["unfolded"],
+        inverted=told["inverted"],
+        interpolation=told["interpolation"],
+        seconds=told["seconds"],
+        _sides=(told["side_corners"], told["side_normals"]),
+    )
+
+
+def _short(result: Refined, goals: dict[str, Any]) -> str | None:
+    """Why a result is less than what was asked for, if it is."""
+    count = len(result.faces)
+    reached = f"what was reached has {count} triangles"
+    if result.error is not None and np.isfinite(result.error.upper):
+        reached += f" within {result.error.upper:.4g}"
+    if result.stop == "triangle-cap":
+        return f"max_triangles came before the goals: {reached}"
+    if result.stop == "memory-cap":
+        return f"max_memory came before the goals: {reached}"
+    if result.stop == "level-cap":
+        return f"max_levels came before the goals: {reached}"
+    if result.stop == "rounding":
+        return f"the tolerance is finer than rounding leaves certain: {reached}"
+    if result.stop == "triangles" and goals["triangles"] is not None and count > goals["triangles"]:
+        return f"the control mesh has more than the {goals['triangles']} triangles asked for; optimize=True goes below: {reached}"
+    return None
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What a refinement would give.
+
+    Attributes
+    ----------
+    triangles
+        Counted where there are few, extrapolated where there are many.
+    memory
+        Bytes that the refinement and its result would take at most, about.
+    counted
+        Whether the triangles were counted.
+    """
+
+    triangles: int
+    memory: int
+    counted: bool
+
+
+def estimate(
+    vertices: npt.ArrayLike | MeshLike,
+    faces: Any = None,
+    *,
+    tolerance: Length | None = None,
+    triangles: int | None = None,
+    angle: float | None = None,
+    pixels: float | None = None,
+    cameras: Camera | Iterable[Camera] | None = None,
+    interpolate: bool | Length = False,
+    crease_angle: float | None = None,
+    creases: Any = None,
+    corners: Any = None,
+    boundary: Boundary = "smooth",
+    concave_corners: str | None = None,
+    scheme: Scheme = "loop",
+    view: npt.ArrayLike | None = None,
+    eye: npt.ArrayLike | None = None,
+    dilatation: float = 1.0,
+    optimize: bool = False,
+    balance: bool = False,
+    flat_regions: bool = True,
+    weld: float | None = 0.0,
+    repair: bool = True,
+    threads: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> Estimate:
+    """Predicts the triangles and the memory of `refine` with the same options, from how a coarser result grows.
+
+    Raises
+    ------
+    MeshError, OptionError
+        As `refine`.
+
+    Examples
+    --------
+    >>> import limitmesh
+    >>> found = limitmesh.estimate("builtin:cup", tolerance="0.1%")
+    >>> found.counted and found.triangles > 1000
+    True
+    """
+    control = _options.control_of(
+        interpolate=interpolate,
+        crease_angle=crease_angle,
+        boundary=boundary,
+        concave_corners=concave_corners,
+        scheme=scheme,
+        weld=weld,
+        repair=repair,
+    )
+    goals = _options.goals_of(
+        method="exact",
+        levels=None,
+        tolerance=tolerance,
+        triangles=triangles,
+        angle=angle,
+        pixels=pixels,
+        cameras=cameras,
+        view=view,
+        eye=eye,
+        dilatation=dilatation,
+        optimize=optimize,
+        balance=balance,
+        flat_regions=flat_regions,
+        origins=False,
+        max_triangles=None,
+        max_levels=None,
+        max_memory=None,
+    )
+    mesh = _mesh_of(vertices, faces, None, creases, corners)
+    native = mesh._native()
+    found = _limitmesh.estimate(
+        native, control, goals, _options.threads_of(threads), _options.callback_of(progress)
+    )
+    return Estimate(*found)

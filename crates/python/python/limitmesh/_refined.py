@@ -1,0 +1,353 @@
+"""Results of refinement."""
+
+from __future__ import annotations
+
+import base64
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _limitmesh
+from ._arrays import Floats
+from ._limitmesh import OptionError
+from ._mesh import Channel
+from ._options import threads_of
+
+AnyIntegers = npt.NDArray[np.integer[Any]]
+
+
+@dataclass(frozen=True)
+class ErrorBounds:
+    """An interval for the symmetric Hausdorff distance between a mesh and its limit surface, in the mesh's unit.
+
+    Attributes
+    ----------
+    lower
+        A distance that was found.
+    upper
+        A distance that is not exceeded where ``certified`` holds; infinite where none was asked for and none near ``lower``
+        could be proven. Otherwise an estimate.
+    certified
+        Whether ``upper`` is proven, as it is for Loop's schemes.
+    at
+        A point of the limit surface at the distance ``lower``.
+    """
+
+    lower: float
+    upper: float
+    certified: bool
+    at: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """How often something was found in the input, and the rows of the first few."""
+
+    count: int
+    first: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What was found in a mesh and mended before it was used.
+
+    Attributes
+    ----------
+    clean
+        Whether nothing had to be mended; polygons and equal positions are no defects.
+    repairs, preparations
+        A line for each defect, and for each other finding, with what was done about it.
+    findings
+        All of them by name, such as "repeated_faces".
+    """
+
+    clean: bool
+    repairs: tuple[str, ...]
+    preparations: tuple[str, ...]
+    findings: Mapping[str, Finding]
+
+    @staticmethod
+    def _of_native(told: Mapping[str, Any]) -> Diagnosis:
+        findings = {name: Finding(count, tuple(first)) for name, (count, first) in told["findings"].items()}
+        return Diagnosis(told["clean"], tuple(told["repairs"]), tuple(told["preparations"]), findings)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Refined:
+    """A refined mesh, how near it is to its limit surface, and where it came from.
+
+    Attributes
+    ----------
+    vertices
+        (n, 3) positions, all on the limit surface unless ``balance`` or another method was asked for. Those of the control mesh
+        come first.
+    faces
+        (m, 3) vertex numbers, counter-clockwise seen from outside, of the type ``index_dtype``.
+    normals
+        (n, 3) unit limit normals of the vertices; at sharp edges an average of the sides, zero where there is none.
+    parent_face
+        (m,) the row of ``faces`` of the input that each triangle came from; None where triangles reach over several
+        (``optimize``), and for methods that do not tell.
+    vertex_face
+        (n,) a row of ``faces`` of the input on which each vertex was.
+    barycentric
+        (n, 3) where on it: weights of the vertices ``barycentric_vertices``.
+    barycentric_vertices
+        (n, 3) rows of ``vertices`` of the input: those of the triangle that ``barycentric`` is about.
+    channels
+        What was carried along, by name; with corners as domain, so that seams stay seams.
+    error
+        How near the mesh is to the limit surface; None for methods that do not say.
+    stop
+        Why it ended: "met"; "triangles" where their number was a goal; "triangle-cap", "level-cap", "memory-cap" or "rounding"
+        where that was before the goals; "cones" where triangles stay outside the angle that no division brings nearer;
+        "levels" or "satisfied" for the stepwise methods.
+    diagnosis
+        What was found in the input and mended.
+    levels
+        Levels of the most divided part, or steps.
+    pixels
+        The distance as the cameras see it, at most, in pixels.
+    open_cones
+        Triangles outside the angle that was asked for.
+    unfolded
+        Flat regions that the scheme folds over, in whose place stands what their rim encloses.
+    inverted
+        Triangles that are turned over against the limit surface: it folds there.
+    interpolation
+        How control points were found for a surface through the vertices, if that was asked for.
+    seconds
+        Time that the library took, without the binding.
+
+    Examples
+    --------
+    >>> import limitmesh
+    >>> cup = limitmesh.refine("builtin:cup", tolerance="0.1%")
+    >>> cup
+    Refined(... vertices, ... triangles, within ... certified, met)
+    >>> cup.corner_normals.shape == (*cup.faces.shape, 3)
+    True
+    """
+
+    vertices: Floats
+    faces: AnyIntegers
+    normals: Floats
+    parent_face: AnyIntegers | None
+    vertex_face: AnyIntegers | None
+    barycentric: Floats | None
+    barycentric_vertices: AnyIntegers | None
+    channels: Mapping[str, Channel]
+    error: ErrorBounds | None
+    stop: str
+    diagnosis: Diagnosis
+    levels: int
+    pixels: float | None
+    open_cones: int
+    unfolded: int
+    inverted: int | None
+    interpolation: Mapping[str, Any] | None
+    seconds: float
+    _sides: tuple[AnyIntegers, Floats] = field(repr=False)
+
+    @property
+    def corner_normals(self) -> Floats:
+        """(m, 3, 3) unit limit normals of the triangles' corners, each of its own side of sharp edges."""
+        found = self.normals[self.faces]
+        corners, normals = self._sides
+        found.reshape(-1, 3)[corners] = normals
+        return found
+
+    @property
+    def met(self) -> bool:
+        """Whether what was asked for was reached, rather than a cap before it."""
+        return self.stop not in _SHORT
+
+    def at_vertices(self, name: str) -> Floats:
+        """(n, width) values of a channel by vertex.
+
+        Raises
+        ------
+        OptionError
+            There is no such channel, or it has a seam: vertices with several values. `split` takes these apart.
+
+        Examples
+        --------
+        >>> import limitmesh
+        >>> cup = limitmesh.load("builtin:cup")
+        >>> fine = limitmesh.refine(cup, channels={"height": cup.vertices[:, 1]})
+        >>> fine.at_vertices("height").shape == (len(fine.vertices), 1)
+        True
+        """
+        channel = self._channel(name)
+        rows = self._rows(channel)
+        found = np.zeros(len(self.vertices), dtype=np.int64)
+        flat = self.faces.reshape(-1)
+        found[flat] = rows
+        torn = found[flat] != rows
+        if torn.any() and not np.array_equal(channel.values[found[flat]], channel.values[rows]):
+            raise OptionError(f"channel {name!r} has several values at vertex {int(flat[torn][0])}; split() takes these apart")
+        return channel.values[found]
+
+    def at_corners(self, name: str) -> Floats:
+        """(m, 3, width) values of a channel by corner of the triangles.
+
+        >>> import limitmesh
+        >>> cup = limitmesh.load("builtin:cup")
+        >>> fine = limitmesh.refine(cup, channels={"height": cup.vertices[:, 1]})
+        >>> fine.at_corners("height").shape == (*fine.faces.shape, 1)
+        True
+        """
+        channel = self._channel(name)
+        return channel.values[self._rows(channel)].reshape(*self.faces.shape, -1)
+
+    def _channel(self, name: str) -> Channel:
+        try:
+            return self.channels[name]
+        except KeyError:
+            raise OptionError(f"there is no channel {name!r}; there are: {', '.join(self.channels) or 'none'}") from None
+
+    def _rows(self, channel: Channel) -> AnyIntegers:
+        assert channel.indices is not None
+        return np.repeat(channel.indices, 3) if channel.domain == "face" else channel.indices.reshape(-1)
+
+    def split(self, *names: str, normals: bool = True) -> Split:
+        """The mesh with a vertex for each value at it: as graphics cards and most libraries want it.
+
+        Parameters
+        ----------
+        names
+            The channels whose values are told by vertex; all channels of corners without names.
+        normals
+            Whether vertices on sharp edges stand once for each side, too.
+
+        Examples
+        --------
+        >>> import limitmesh
+        >>> box = limitmesh.refine("builtin:cube", crease_angle=30)
+        >>> split = box.split()
+        >>> len(split.vertices) > len(box.vertices)
+        True
+        """
+        if not names:
+            names = tuple(name for name, channel in self.channels.items() if channel.domain == "corner")
+        flat = self.faces.reshape(-1).astype(np.int64)
+        keys = [flat]
+        for name in names:
+            keys.append(np.unique(self._channel(name).values, axis=0, return_inverse=True)[1].reshape(-1)[self._rows(self.channels[name])])
+        side = np.full(len(flat), -1, dtype=np.int64)
+        if normals and len(self._sides[0]):
+            rounded = np.round(self._sides[1], 6)
+            side[self._sides[0]] = np.unique(rounded, axis=0, return_inverse=True)[1].reshape(-1)
+            keys.append(side)
+        _, first, inverse = np.unique(np.stack(keys, axis=1), axis=0, return_index=True, return_inverse=True)
+        # By number of the vertex, so that undivided ones keep their order.
+        values = {name: self._channel(name).values[self._rows(self.channels[name])][first] for name in names}
+        return Split(
+            vertices=self.vertices[flat[first]],
+            faces=inverse.reshape(-1, 3).astype(self.faces.dtype),
+            normals=(self.corner_normals if normals else self.normals[self.faces]).reshape(-1, 3)[first],
+            values=values,
+            sources=flat[first].astype(self.faces.dtype),
+        )
+
+    def save(self, path: str | os.PathLike[str], *, ascii: bool = False) -> None:
+        """Writes a file, whole or not at all: OBJ, PLY, STL, OFF or glTF, by its extension.
+
+        Channels that the format has a place for are written, too; for glTF assets see `refine_file`.
+
+        Raises
+        ------
+        ReadError
+            The file cannot be written.
+
+        Examples
+        --------
+        >>> import limitmesh, os, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = os.path.join(folder, "cup.ply")
+        ...     limitmesh.refine("builtin:cup").save(path)
+        ...     len(limitmesh.load(path).faces) > 1000
+        True
+        """
+        from ._files import save
+
+        save(path, self, ascii=ascii)
+
+    def __repr__(self) -> str:
+        error = ""
+        if self.error is not None and np.isfinite(self.error.upper):
+            error = f", within {self.error.upper:.4g} {'certified' if self.error.certified else 'estimated'}"
+        return f"Refined({len(self.vertices)} vertices, {len(self.faces)} triangles{error}, {self.stop})"
+
+    def _picture(self, width: int, height: int) -> bytes:
+        return _limitmesh.picture(
+            np.ascontiguousarray(self.vertices),
+            np.ascontiguousarray(self.faces, dtype=np.uint32),
+            None,
+            width,
+            height,
+            len(self.faces) <= 50_000,
+            threads_of(None),
+        )
+
+    def _repr_html_(self) -> str:
+        picture = ""
+        if 0 < len(self.faces) <= 2_000_000:
+            png = base64.b64encode(self._picture(320, 240)).decode("ascii")
+            picture = f'<img alt="the mesh" width="320" height="240" src="data:image/png;base64,{png}">'
+        rows = [("triangles", f"{len(self.faces):,}"), ("vertices", f"{len(self.vertices):,}"), ("ended", self.stop)]
+        if self.error is not None:
+            certain = "certainly within" if self.error.certified else "within, estimated,"
+            rows.append(("distance", f"{certain} {self.error.upper:.4g}, at least {self.error.lower:.4g}"))
+        if self.channels:
+            rows.append(("carries", ", ".join(map(_escaped, self.channels))))
+        body = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows)
+        return f"<div>{picture}<table>{body}</table></div>"
+
+    def plot(self, *, backend: str | None = None, show: bool = True, **options: Any) -> Any:
+        """Draws the mesh with PyVista, or with Matplotlib where that is not installed.
+
+        Parameters
+        ----------
+        backend
+            "pyvista" or "matplotlib".
+        show
+            Whether it is shown at once; else what the library draws into is returned, a plotter or axes.
+        options
+            For ``pyvista.Plotter.add_mesh``, or ``Axes.plot_trisurf``.
+        """
+        from ._plot import plot
+
+        return plot(self, backend=backend, show=show, options=options)
+
+
+_SHORT = ("triangle-cap", "level-cap", "memory-cap", "rounding")
+
+
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
+@dataclass(frozen=True, eq=False)
+class Split:
+    """A mesh whose vertices have one value and one normal each.
+
+    Attributes
+    ----------
+    vertices, faces, normals
+        As of `Refined`; vertices stand as often as they have values.
+    values
+        (n, width) by channel.
+    sources
+        (n,) the vertex that each was.
+    """
+
+    vertices: Floats
+    faces: AnyIntegers
+    normals: Floats
+    values: Mapping[str, Floats]
+    sources: AnyIntegers

@@ -1,0 +1,155 @@
+//! From a soup to the control mesh that is refined, and the way back: which row of the input each element is from.
+
+use limitmesh::interpolate::{InterpolateOptions, InterpolationMethod, interpolate_observed};
+use limitmesh::mesh::{BoundaryRule, Channel, Diagnosis, Domain, FaceParts};
+use limitmesh::progress::Observer;
+use limitmesh::scheme::Scheme;
+use limitmesh::{Mesh, PolygonSoup};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors::Failure;
+use crate::options::ControlOptions;
+
+/// What to make of a soup.
+#[derive(Clone)]
+pub(crate) struct Recipe {
+    options: ControlOptions,
+    boundary: BoundaryRule,
+    pub(crate) scheme: &'static dyn Scheme,
+}
+
+impl Recipe {
+    /// # Errors
+    /// A name that stands for nothing.
+    pub(crate) fn new(options: ControlOptions) -> PyResult<Self> {
+        Ok(Self { boundary: options.boundary()?, scheme: options.scheme()?, options })
+    }
+
+    /// Whether folded flat regions are taken for what their rims enclose.
+    pub(crate) fn unfolds(&self) -> bool {
+        self.options.divides_concave_corners
+    }
+
+    /// The mesh of a soup without what makes it a control mesh.
+    ///
+    /// # Errors
+    /// No mesh can be made of it.
+    pub(crate) fn plain(&self, soup: &PolygonSoup) -> Result<(Mesh, Diagnosis), Failure> {
+        Ok(Mesh::from_soup(soup, &self.options.build())?)
+    }
+
+    /// The control mesh of a soup.
+    ///
+    /// # Errors
+    /// No mesh can be made of it, or none that interpolates.
+    pub(crate) fn control(&self, soup: PolygonSoup, observer: &mut Observer<'_>) -> Result<Control, Failure> {
+        let options = &self.options;
+        let (mesh, mut diagnosis, trace) = Mesh::from_soup_traced(&soup, &options.build())?;
+        let channels = soup.channels.iter().map(|channel| channel.on_mesh(&soup, &mesh, &trace));
+        let channels: Vec<Channel> = channels.collect::<Result<_, _>>()?;
+        let of_soup: Vec<u32> = soup.faces.iter().flatten().copied().collect();
+        let corners: Vec<u32> = trace.corners.iter().map(|&corner| of_soup[corner as usize]).collect();
+        let mut vertices = vec![None; soup.positions.len()];
+        for (&own, &input) in mesh.triangles().as_flattened().iter().zip(&corners) {
+            vertices[input as usize].get_or_insert(own);
+        }
+        drop(soup);
+        let mesh = mesh.with_boundary(self.boundary);
+        let mesh = match options.crease_angle {
+            Some(degrees) => mesh.with_creases_above(degrees.to_radians())?,
+            None => mesh,
+        };
+        let (mesh, concave) = match options.divides_concave_corners {
+            true => mesh.with_divided_concave_corners()?,
+            false => (mesh, Default::default()),
+        };
+        diagnosis.concave_corners = concave.corners;
+        let diagonal = mesh.diagonal();
+        let (mesh, interpolated) = match options.interpolate {
+            None => (mesh, None),
+            Some(within) => {
+                let goal = InterpolateOptions::default().within(within.of(diagonal));
+                let found = interpolate_observed(&mesh, self.scheme, &goal, observer)?;
+                let told = InterpolatedTold {
+                    method: found.method,
+                    residual: found.residual,
+                    displacement: found.displacement,
+                };
+                (found.mesh, Some(told))
+            }
+        };
+        let channels = match concave.parts.is_empty() {
+            true => channels,
+            false => channels.iter().map(|channel| channel.on_parts(&concave.parts, &mesh)).collect(),
+        };
+        Ok(Control {
+            mesh,
+            parts: concave.parts,
+            diagnosis,
+            faces: trace.faces,
+            corners,
+            vertices,
+            channels,
+            diagonal,
+            interpolated,
+        })
+    }
+}
+
+/// A control mesh and where it came from.
+pub(crate) struct Control {
+    pub(crate) mesh: Mesh,
+    /// Where faces were divided.
+    pub(crate) parts: FaceParts,
+    pub(crate) diagnosis: Diagnosis,
+    /// By face of the mesh before faces were divided, the input's.
+    pub(crate) faces: Vec<u32>,
+    /// By corner of the same, the input's vertex.
+    pub(crate) corners: Vec<u32>,
+    /// By vertex of the input, the mesh's; none where no face of it was kept, the first of copies.
+    pub(crate) vertices: Vec<Option<u32>>,
+    pub(crate) channels: Vec<Channel>,
+    /// What lengths are given in parts of.
+    pub(crate) diagonal: f64,
+    pub(crate) interpolated: Option<InterpolatedTold>,
+}
+
+impl Control {
+    /// Whether triangles must not reach over several faces: something differs between these.
+    pub(crate) fn tells_faces_apart(&self) -> bool {
+        let is_one = |channel: &Channel| {
+            channel.domain == Domain::Face && channel.indices.iter().all(|&index| index == channel.indices[0])
+        };
+        !self.channels.iter().all(is_one)
+    }
+
+    /// The input's face that a control face is from.
+    pub(crate) fn input_face(&self, face: u32) -> u32 {
+        self.faces[self.parts.whole(face) as usize]
+    }
+}
+
+/// How control points were found.
+pub(crate) struct InterpolatedTold {
+    method: InterpolationMethod,
+    residual: f64,
+    displacement: f64,
+}
+
+impl InterpolatedTold {
+    pub(crate) fn told<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        let method = match self.method {
+            InterpolationMethod::Unchanged => "unchanged",
+            InterpolationMethod::ConjugateGradients => "conjugate-gradients",
+            InterpolationMethod::NormalEquations => "normal-equations",
+            InterpolationMethod::LeastSquares => "least-squares",
+            _ => "other",
+        };
+        dict.set_item("method", method)?;
+        dict.set_item("residual", self.residual)?;
+        dict.set_item("displacement", self.displacement)?;
+        Ok(dict)
+    }
+}

@@ -1,0 +1,50 @@
+//! The native half of the Python package `limitmesh`: NumPy arrays in, the library's functions without the interpreter's lock,
+//! arrays out.
+//!
+//! Arguments are checked and completed by the package's Python half, which is what people call; here each function takes arrays
+//! and a dictionary in which every option stands.
+
+mod channels;
+mod control;
+mod errors;
+mod files;
+mod limit;
+mod measure;
+mod options;
+mod picture;
+mod program;
+mod refine;
+mod run;
+mod simplify;
+mod soup;
+mod tell;
+
+use pyo3::prelude::*;
+
+/// Functions over NumPy arrays; see the package's own functions.
+#[pymodule]
+mod _limitmesh {
+    #[pymodule_export]
+    use super::errors::{Error, MeshError, OptionError, ReadError};
+    #[pymodule_export]
+    use super::files::{load, models, save};
+    #[pymodule_export]
+    use super::limit::limit;
+    #[pymodule_export]
+    use super::measure::{examine, measure, measure_limit};
+    #[pymodule_export]
+    use super::picture::picture;
+    #[pymodule_export]
+    use super::program::{program, refine_file};
+    #[pymodule_export]
+    use super::refine::{estimate, refine};
+    #[pymodule_export]
+    use super::simplify::{repair, simplify};
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,159 @@
+//! Options as the Python half hands them over, complete, and what they are for the library.
+
+use limitmesh::criterion::{Camera, View, Viewpoint};
+use limitmesh::mesh::{BoundaryRule, BuildOptions, Weld};
+use limitmesh::refine::ExactOptions;
+use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
+use pyo3::prelude::*;
+
+use crate::errors::OptionError;
+
+/// How a control mesh comes of a mesh, and its limit surface of that.
+#[derive(FromPyObject, Clone)]
+#[pyo3(from_item_all)]
+pub(crate) struct ControlOptions {
+    /// Distance within which vertices are merged; below 0 for none.
+    weld: f64,
+    /// Whether defects are mended.
+    repair: bool,
+    boundary: String,
+    /// In degrees.
+    pub(crate) crease_angle: Option<f64>,
+    /// Whether corners of 180° and more are divided.
+    pub(crate) divides_concave_corners: bool,
+    /// How near the limit surface is to pass to the vertices.
+    pub(crate) interpolate: Option<Extent>,
+    scheme: String,
+}
+
+/// A length, or a part of the diagonal.
+#[derive(FromPyObject, Clone, Copy)]
+pub(crate) struct Extent(f64, bool);
+
+impl Extent {
+    /// As a length.
+    pub(crate) fn of(self, diagonal: f64) -> f64 {
+        if self.1 { self.0 * diagonal } else { self.0 }
+    }
+}
+
+impl ControlOptions {
+    pub(crate) fn build(&self) -> BuildOptions {
+        let weld = match self.weld {
+            none if none < 0.0 => Weld::Never,
+            0.0 => Weld::Exact,
+            distance => Weld::Within(distance),
+        };
+        BuildOptions::default().weld(weld).strict(!self.repair)
+    }
+
+    pub(crate) fn boundary(&self) -> PyResult<BoundaryRule> {
+        match self.boundary.as_str() {
+            "smooth" => Ok(BoundaryRule::Smooth),
+            "corners" => Ok(BoundaryRule::Corners),
+            "fixed" => Ok(BoundaryRule::Fixed),
+            other => {
+                let what = format!("boundary is '{other}', expected 'smooth', 'corners' or 'fixed'");
+                Err(OptionError::new_err(what))
+            }
+        }
+    }
+
+    pub(crate) fn scheme(&self) -> PyResult<&'static dyn Scheme> {
+        match self.scheme.as_str() {
+            "loop" => Ok(&Loop),
+            "loop-warren" => Ok(&LoopWarren),
+            "butterfly" => Ok(&ModifiedButterfly),
+            other => {
+                let what = format!("scheme is '{other}', expected 'loop', 'loop-warren' or 'butterfly'");
+                Err(OptionError::new_err(what))
+            }
+        }
+    }
+}
+
+/// A camera: eye, target, up, vertical angle of view in degrees, width and height in pixels.
+type CameraIn = ([f64; 3], [f64; 3], [f64; 3], f64, u32, u32);
+
+/// Goals and caps of a refinement.
+#[derive(FromPyObject, Clone)]
+#[pyo3(from_item_all)]
+pub(crate) struct Goals {
+    pub(crate) method: String,
+    /// Steps of the stepwise methods.
+    pub(crate) levels: usize,
+    pub(crate) tolerance: Option<Extent>,
+    pub(crate) triangles: Option<usize>,
+    /// In degrees.
+    pub(crate) angle: Option<f64>,
+    pixels: Option<f64>,
+    cameras: Vec<CameraIn>,
+    /// Where the viewer stands, or looks along; and the dilatation.
+    eye: Option<[f64; 3]>,
+    view: Option<[f64; 3]>,
+    dilatation: f64,
+    optimize: bool,
+    balance: bool,
+    flat_regions: bool,
+    origins: bool,
+    max_triangles: Option<usize>,
+    max_levels: Option<usize>,
+    max_memory: Option<usize>,
+}
+
+impl Goals {
+    /// Where the viewer stands, if that counts.
+    pub(crate) fn viewer(&self) -> Option<View> {
+        let viewpoint = self.view.map(Viewpoint::Direction).or(self.eye.map(Viewpoint::Eye))?;
+        Some(View { viewpoint, dilatation: self.dilatation })
+    }
+
+    /// Triangles that a stepwise method must not exceed, by number or memory.
+    pub(crate) fn cap(&self) -> Option<usize> {
+        /// A mesh with what refining it takes besides, measured for uniform refinement, rounded up.
+        const BYTES_PER_TRIANGLE: usize = 200;
+        let by_memory = self.max_memory.map(|bytes| bytes / BYTES_PER_TRIANGLE);
+        self.max_triangles.into_iter().chain(by_memory).min()
+    }
+
+    /// As exact refinement has them, for a mesh with this diagonal. Triangles stay within one face where faces are to be told apart.
+    pub(crate) fn exact(&self, diagonal: f64, tells_faces_apart: bool, unfolds: bool) -> ExactOptions {
+        let mut options = ExactOptions::default()
+            .max_memory(self.max_memory)
+            .balance(self.balance)
+            .optimize(self.optimize)
+            .flat_regions(self.flat_regions && !tells_faces_apart)
+            .unfold(unfolds)
+            .origins(self.origins || tells_faces_apart);
+        if let Some(cap) = self.max_triangles {
+            options = options.max_triangles(Some(cap));
+        }
+        if let Some(levels) = self.max_levels {
+            options = options.max_levels(levels);
+        }
+        if let Some(tolerance) = self.tolerance {
+            options = options.tolerance(tolerance.of(diagonal));
+        }
+        if let Some(degrees) = self.angle {
+            options = options.angle(degrees.to_radians());
+        }
+        if let Some(view) = self.viewer() {
+            options = options.view(view);
+        }
+        if let Some(pixels) = self.pixels {
+            let camera = |&(eye, target, up, fov_degrees, width, height): &CameraIn| Camera {
+                eye,
+                target,
+                up,
+                fov_degrees,
+                width,
+                height,
+            };
+            options = options.pixels(pixels, self.cameras.iter().map(camera).collect());
+        }
+        if let Some(count) = self.triangles {
+            options = options.triangles(count);
+        }
+        options
+    }
+}

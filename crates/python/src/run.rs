@@ -1,0 +1,97 @@
+//! Long jobs: on threads of their own, without the interpreter's lock, while the calling thread wakes for signals and progress.
+//!
+//! Each job has a pool that nobody else knows, so that a process that is forked afterwards finds no threads missing. The calling
+//! thread only waits: every [`WAKE`] it takes the lock, lets Python handle signals and tells of progress. If either raises, the job
+//! is told to stop, and left to itself if it does not at once.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use limitmesh::progress::{Observer, Progress};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use rayon::ThreadPoolBuilder;
+
+use crate::errors::Failure;
+
+/// How often the calling thread looks for signals.
+const WAKE: Duration = Duration::from_millis(50);
+
+/// How long a job that is to stop may take for it before the caller goes on without it: it stops at its next block of work.
+const PATIENCE: Duration = Duration::from_millis(150);
+
+/// What job and caller tell each other.
+#[derive(Default)]
+struct Line {
+    is_stopped: AtomicBool,
+    /// What was told last, for callers who want to know.
+    latest: Mutex<Option<Progress>>,
+}
+
+/// The result of a job on `threads` threads.
+///
+/// # Errors
+/// The job's own; what a signal's handler or `progress` raises.
+pub(crate) fn run<T: Send + 'static>(
+    py: Python<'_>,
+    threads: usize,
+    progress: Option<Py<PyAny>>,
+    job: impl FnOnce(&mut Observer<'_>) -> Result<T, Failure> + Send + 'static,
+) -> PyResult<T> {
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .thread_name(|_| "limitmesh".to_owned())
+        // The panic is told by its hook, and by the channel that closes.
+        .panic_handler(|_| ())
+        .build()
+        .map_err(|why| PyRuntimeError::new_err(format!("{threads} threads could not be started: {why}")))?;
+    let line = Arc::new(Line::default());
+    let (sender, receiver) = sync_channel(1);
+    let (ears, is_heard) = (Arc::clone(&line), progress.is_some());
+    pool.spawn(move || {
+        let mut observer = |at: &Progress| {
+            if is_heard {
+                *ears.latest.lock().unwrap_or_else(PoisonError::into_inner) = Some(*at);
+            }
+            if ears.is_stopped.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        // Nobody listens any more if the caller went on.
+        let _ = sender.send(job(&mut observer));
+    });
+    let result = py.detach(move || wait(receiver, &line, progress.as_ref()))?;
+    Ok(result?)
+}
+
+/// Waits for the job, waking now and then.
+fn wait<T>(
+    receiver: Receiver<Result<T, Failure>>,
+    line: &Line,
+    progress: Option<&Py<PyAny>>,
+) -> PyResult<Result<T, Failure>> {
+    loop {
+        match receiver.recv_timeout(WAKE) {
+            Ok(result) => return Ok(result),
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(PyRuntimeError::new_err("an internal error ended the job; please report it"));
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        if let Err(raised) = Python::attach(|py| look_up(py, line, progress)) {
+            line.is_stopped.store(true, Relaxed);
+            let _ = receiver.recv_timeout(PATIENCE);
+            return Err(raised);
+        }
+    }
+}
+
+/// Handles signals and tells of progress.
+fn look_up(py: Python<'_>, line: &Line, progress: Option<&Py<PyAny>>) -> PyResult<()> {
+    py.check_signals()?;
+    let Some(progress) = progress else { return Ok(()) };
+    let latest = line.latest.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let Some(Progress { stage, done, total, triangles, .. }) = latest else { return Ok(()) };
+    progress.call1(py, (stage.to_string(), done, total, triangles)).map(drop)
+}

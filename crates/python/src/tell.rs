@@ -1,0 +1,26 @@
+//! Arrays and dictionaries of results: vectors are handed over without a copy.
+
+use limitmesh::mesh::Diagnosis;
+use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+/// Rows of three as an array.
+pub(crate) fn rows<T: Element>(py: Python<'_>, rows: Vec<[T; 3]>) -> PyResult<Bound<'_, PyArray2<T>>> {
+    let count = rows.len();
+    PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
+}
+
+/// What was found in the input, for the Python half.
+pub(crate) fn diagnosis<'py>(py: Python<'py>, found: &Diagnosis) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("clean", found.is_clean())?;
+    dict.set_item("repairs", PyList::new(py, found.repairs())?)?;
+    dict.set_item("preparations", PyList::new(py, found.preparations())?)?;
+    let findings = PyDict::new(py);
+    for (name, finding) in found.findings() {
+        findings.set_item(name, (finding.count, &finding.first))?;
+    }
+    dict.set_item("findings", findings)?;
+    Ok(dict)
+}

@@ -1,0 +1,68 @@
+"""What is carried along, against interpolation by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import limitmesh
+
+
+def test_linear_channels_are_barycentric(grid):
+    vertices, faces = grid
+    heat = np.sin(np.arange(25.0))
+    found = limitmesh.refine(vertices, faces, tolerance=0.01, channels={"heat": heat})
+    expected = (heat[found.barycentric_vertices] * found.barycentric).sum(axis=1)
+    np.testing.assert_allclose(found.at_vertices("heat")[:, 0], expected, atol=1e-12)
+    assert found.at_corners("heat").shape == (len(found.faces), 3, 1)
+
+
+def test_smooth_channels_follow_positions(octahedron):
+    vertices, faces = octahedron
+    own = limitmesh.Channel(vertices, interpolation="smooth-none")
+    found = limitmesh.refine(vertices, faces, tolerance=0.01, channels={"own": own})
+    np.testing.assert_allclose(found.at_vertices("own"), found.vertices, atol=1e-12)
+
+
+def test_face_channels_are_inherited(grid):
+    vertices, faces = grid
+    material = np.arange(len(faces)) % 3
+    found = limitmesh.refine(vertices, faces, tolerance=0.01, channels={"material": material})
+    channel = found.channels["material"]
+    assert channel.domain == "face" and channel.semantic == "label"
+    np.testing.assert_array_equal(channel[:][:, 0], material[found.parent_face])
+
+
+def test_seams_stay_seams():
+    # Two squares side by side, each with the whole texture.
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0.5], [0, 1, 0], [1, 1, 0], [2, 1, 0.5]], dtype=float)
+    quads = [[0, 1, 4, 3], [1, 2, 5, 4]]
+    corners = np.tile([[0, 0], [1, 0], [1, 1], [0, 1]], (2, 1)).astype(float)
+    uv = limitmesh.Channel(corners, domain="corner", semantic="texture")
+    found = limitmesh.refine(vertices, quads, tolerance=0.001, channels={"uv": uv})
+    with pytest.raises(limitmesh.OptionError, match="several values at vertex"):
+        found.at_vertices("uv")
+    split = found.split("uv")
+    assert len(split.vertices) > len(found.vertices)
+    np.testing.assert_array_equal(split.values["uv"][split.faces], found.at_corners("uv"))
+    np.testing.assert_array_equal(split.vertices[split.faces], found.vertices[found.faces])
+    np.testing.assert_array_equal(found.vertices[split.sources], split.vertices)
+    assert split.values["uv"].min() >= -1e-12 and split.values["uv"].max() <= 1 + 1e-12
+    by_row = found.channels["uv"]
+    assert by_row.indices.shape == found.faces.shape
+
+
+def test_three_dimensional_arrays_are_corners(octahedron):
+    vertices, faces = octahedron
+    uv = vertices[faces][:, :, :2]
+    found = limitmesh.refine(vertices, faces, tolerance=0.05, channels={"uv": uv})
+    assert found.channels["uv"].semantic == "texture"
+    with pytest.raises(limitmesh.OptionError, match="no channel 'st'"):
+        found.at_vertices("st")
+
+
+def test_results_are_meshes_again(octahedron):
+    vertices, faces = octahedron
+    once = limitmesh.refine(vertices, faces, tolerance=0.1, channels={"x": vertices[:, 0]})
+    twice = limitmesh.refine(once, tolerance=0.01)
+    assert twice.at_vertices("x").shape == (len(twice.vertices), 1)

@@ -1,0 +1,275 @@
+"""Refinement against closed forms and NumPy, not against its own numbers."""
+
+from __future__ import annotations
+
+import pickle
+import warnings
+
+import numpy as np
+import pytest
+
+import limitmesh
+
+
+def loop_step(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """One step of Loop subdivision of a closed mesh, by the book."""
+    edges: dict[tuple[int, int], list[int]] = {}
+    around: list[set[int]] = [set() for _ in vertices]
+    for face in faces:
+        for i in range(3):
+            a, b, c = (int(face[(i + k) % 3]) for k in range(3))
+            edges.setdefault((min(a, b), max(a, b)), []).append(c)
+            around[a] |= {b, c}
+    fine = []
+    for v, ring in enumerate(around):
+        k = len(ring)
+        beta = (5 / 8 - (3 / 8 + np.cos(2 * np.pi / k) / 4) ** 2) / k
+        fine.append((1 - k * beta) * vertices[v] + beta * sum(vertices[u] for u in ring))
+    number = {}
+    for (a, b), (c, d) in edges.items():
+        number[a, b] = len(fine)
+        fine.append(3 / 8 * (vertices[a] + vertices[b]) + (vertices[c] + vertices[d]) / 8)
+    middle = lambda a, b: number[min(a, b), max(a, b)]
+    parts = []
+    for a, b, c in faces.tolist():
+        ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+        parts += [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    return np.array(fine), np.array(parts)
+
+
+def test_uniform_refinement_is_loops(octahedron):
+    expected_vertices, expected_faces = loop_step(*loop_step(*octahedron))
+    found = limitmesh.refine(*octahedron, method="uniform", levels=2)
+    assert found.vertices.shape == expected_vertices.shape
+    assert found.faces.shape == expected_faces.shape
+    # As sets of points: the order is each one's own.
+    order = lambda points: points[np.lexsort(np.round(points, 9).T)]
+    np.testing.assert_allclose(order(found.vertices), order(expected_vertices), atol=1e-12)
+    assert found.error is None and found.stop == "levels"
+
+
+def test_limits_are_those_of_many_steps(octahedron):
+    vertices, faces = octahedron
+    positions, normals = limitmesh.limit(vertices, faces)
+    fine_vertices, fine_faces = vertices, faces
+    for _ in range(5):
+        fine_vertices, fine_faces = loop_step(fine_vertices, fine_faces)
+    np.testing.assert_allclose(positions, fine_vertices[:6], atol=1e-3)
+    np.testing.assert_allclose(normals, vertices, atol=1e-12)
+    # In closed form: (5/8 v + 3/8 mean of the ring) tends to the limit with weight 1/(1 + 3/(8 beta k)) of the ring.
+    k = 4
+    beta = (5 / 8 - (3 / 8 + np.cos(2 * np.pi / k) / 4) ** 2) / k
+    ring = 1 / (3 / (8 * beta) + k)
+    np.testing.assert_allclose(positions, (1 - k * ring) * vertices, atol=1e-14)
+
+
+def test_a_tolerance_is_kept(octahedron):
+    found = limitmesh.refine(*octahedron, tolerance=0.01)
+    assert found.met and found.stop == "met"
+    assert found.error.certified and found.error.lower <= found.error.upper <= 0.01
+    # Five levels stand for the limit surface, about 1e-3 off.
+    vertices, faces = octahedron
+    for _ in range(5):
+        vertices, faces = loop_step(vertices, faces)
+    distance = limitmesh.measure(found, (vertices, faces), certified=True)
+    assert distance.certified and distance.lower <= found.error.upper + 2e-3
+    edges = np.sort(np.concatenate([found.faces[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+    np.testing.assert_allclose(np.linalg.norm(found.normals, axis=1), 1.0, atol=1e-12)
+
+
+def test_results_are_arrays_of_their_own(octahedron):
+    found = limitmesh.refine(*octahedron, tolerance=0.05)
+    n, m = len(found.vertices), len(found.faces)
+    assert found.vertices.dtype == np.float64 and found.faces.dtype == np.int64
+    assert found.vertices.shape == found.normals.shape == found.barycentric.shape == (n, 3)
+    assert found.faces.shape == (m, 3) and found.parent_face.shape == (m,)
+    assert found.vertices.flags.writeable and found.vertices.flags.c_contiguous
+    for dtype in (np.int32, np.uint32, np.uint64, "int64"):
+        assert limitmesh.refine(*octahedron, tolerance=0.05, index_dtype=dtype).faces.dtype == np.dtype(dtype)
+    for dtype in (np.int16, float, "apples"):
+        with pytest.raises(limitmesh.OptionError, match="index_dtype"):
+            limitmesh.refine(*octahedron, tolerance=0.05, index_dtype=dtype)
+
+
+def test_origins_are_places_of_the_input(grid):
+    vertices, faces = grid
+    found = limitmesh.refine(vertices, faces, tolerance=0.01, flat_regions=False)
+    np.testing.assert_allclose(found.barycentric.sum(axis=1), 1.0)
+    # Which triangle it is, is told twice.
+    assert (np.sort(faces[found.vertex_face], axis=1) == np.sort(found.barycentric_vertices, axis=1)).all()
+    # x and y are linear, so their limits inside are where the barycentric coordinates say; the boundary is a spline of its own.
+    places = np.einsum("nk,nkx->nx", found.barycentric, vertices[found.barycentric_vertices])
+    inside = (places[:, :2] >= 1.0).all(axis=1) & (places[:, :2] <= 3.0).all(axis=1)
+    assert inside.sum() > 20
+    np.testing.assert_allclose(found.vertices[inside, :2], places[inside, :2], atol=1e-12)
+    corners = vertices[faces[found.parent_face]][:, :, :2]
+    middles = places[found.faces][:, :, :2].mean(axis=1)
+    assert (middles >= corners.min(axis=1) - 1e-9).all() and (middles <= corners.max(axis=1) + 1e-9).all()
+
+
+def test_whatever_asarray_takes_gives_the_same(octahedron):
+    vertices, faces = octahedron
+    expected = limitmesh.refine(vertices, faces, tolerance=0.05)
+    read_only = vertices.copy()
+    read_only.flags.writeable = False
+    others = [
+        (vertices.astype(np.float32), faces),
+        (vertices.astype(np.int8), faces),
+        (np.asfortranarray(vertices), np.asfortranarray(faces)),
+        (read_only, faces.astype(np.uint8)),
+        (vertices.tolist(), faces.tolist()),
+        (vertices[::-1][::-1], faces.astype(float)),
+        (np.hstack([vertices, vertices])[:, ::2][:, [0, 2, 1]][:, [0, 2, 1]] * 0 + vertices, [tuple(f) for f in faces]),
+        (vertices.astype(">f8"), faces.astype(">i4")),
+        (tuple(map(tuple, vertices)), faces.astype(np.uint64)),
+        (vertices, [np.array(f) for f in faces]),
+        (np.ma.masked_array(vertices), faces),
+    ]
+    for other in others:
+        found = limitmesh.refine(*other, tolerance=0.05)
+        assert found.vertices.tobytes() == expected.vertices.tobytes()
+        assert found.faces.tobytes() == expected.faces.tobytes()
+    assert limitmesh.refine((vertices, faces), tolerance=0.05).faces.tobytes() == expected.faces.tobytes()
+    assert limitmesh.refine(limitmesh.Mesh(vertices, faces), tolerance=0.05).faces.tobytes() == expected.faces.tobytes()
+
+
+def test_polygons_of_any_number_of_corners():
+    corners = [[0, 0, 0], [2, 0, 0], [3, 1, 0], [1, 2, 0], [0, 1, 0], [1, 1, 2]]
+    faces = [[4, 3, 2, 1, 0], [0, 1, 5], [1, 2, 5], [2, 3, 5], [3, 4, 5], [4, 0, 5]]
+    found = limitmesh.refine(corners, faces, tolerance="1%")
+    assert found.diagnosis.findings["polygons"] == limitmesh.Finding(1, (0,))
+    assert found.diagnosis.clean and set(found.parent_face.tolist()) == set(range(6))
+    squares = limitmesh.refine("builtin:cube", tolerance="1%")
+    assert limitmesh.info("builtin:cube")["watertight"] and squares.met
+
+
+def test_threads_do_not_matter():
+    one = limitmesh.refine("builtin:cup", tolerance="0.05%", threads=1)
+    three = limitmesh.refine("builtin:cup", tolerance="0.05%", threads=3)
+    for name in ("vertices", "faces", "normals", "barycentric", "parent_face"):
+        assert getattr(one, name).tobytes() == getattr(three, name).tobytes()
+
+
+def test_the_environment_says_how_many_threads(monkeypatch, octahedron):
+    monkeypatch.setenv("LIMITMESH_NUM_THREADS", "2")
+    assert limitmesh.refine(*octahedron, tolerance=0.05).met
+    monkeypatch.setenv("LIMITMESH_NUM_THREADS", "none")
+    with pytest.raises(limitmesh.OptionError, match="LIMITMESH_NUM_THREADS"):
+        limitmesh.refine(*octahedron)
+
+
+def test_goals(octahedron):
+    assert len(limitmesh.refine(*octahedron, triangles=500).faces) <= 500
+    assert len(limitmesh.refine(*octahedron, triangles=2e2).faces) <= 200
+    optimised = limitmesh.refine(*octahedron, tolerance=0.02, optimize=True)
+    plain = limitmesh.refine(*octahedron, tolerance=0.02)
+    assert len(optimised.faces) < len(plain.faces) and optimised.error.upper <= 0.02
+    assert optimised.parent_face is None
+    angle = limitmesh.refine(*octahedron, angle=10)
+    sides = angle.vertices[angle.faces]
+    normals = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    cosines = np.einsum("mx,mkx->mk", normals, angle.corner_normals)
+    assert (cosines >= np.cos(np.radians(10)) - 1e-12).all()
+    camera = limitmesh.Camera(eye=(0, 0, 5), width=640, height=480)
+    seen = limitmesh.refine(*octahedron, cameras=camera)
+    assert seen.pixels <= 1.0
+    stepwise = limitmesh.refine(*octahedron, method="limit-normal", angle=10, levels=2)
+    assert 8 < len(stepwise.faces) <= 128
+    assert len(limitmesh.refine(*octahedron, method="amresh", levels=1).faces) == 32
+
+
+def test_creases_have_a_normal_a_side():
+    found = limitmesh.refine("builtin:cube", crease_angle=30, tolerance="1%")
+    sides = found.vertices[found.faces]
+    normals = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    np.testing.assert_allclose(found.corner_normals, np.repeat(normals[:, None], 3, axis=1), atol=1e-9)
+    split = found.split()
+    assert len(split.vertices) == 24
+    np.testing.assert_array_equal(split.vertices[split.faces], found.vertices[found.faces])
+    np.testing.assert_allclose(split.normals[split.faces], found.corner_normals, atol=1e-6)
+    by_hand = limitmesh.refine("builtin:cube", creases=[[0, 1]], tolerance="1%")
+    assert by_hand.faces.shape != found.faces.shape
+
+
+def test_creases_by_hand_are_those_by_angle():
+    cube = limitmesh.load("builtin:cube")
+    quads = np.asarray(cube.faces)
+    edges = np.concatenate([quads[:, [i, (i + 1) % quads.shape[1]]] for i in range(quads.shape[1])])
+    sharp = np.unique(np.sort(edges, axis=1), axis=0)
+    if quads.shape[1] == 3:
+        length = np.linalg.norm(cube.vertices[sharp[:, 0]] - cube.vertices[sharp[:, 1]], axis=1)
+        sharp = sharp[length < 1.1 * length.min()]
+    assert len(sharp) == 12
+    by_hand = limitmesh.refine(cube, creases=sharp, tolerance="1%", concave_corners="divided")
+    by_angle = limitmesh.refine(cube, crease_angle=30, tolerance="1%")
+    assert by_hand.vertices.tobytes() == by_angle.vertices.tobytes()
+
+
+def test_interpolation_passes_through_the_vertices(octahedron):
+    vertices, faces = octahedron
+    found = limitmesh.refine(vertices, faces, interpolate=True, tolerance=0.01)
+    np.testing.assert_allclose(found.vertices[:6], vertices, atol=1e-9)
+    near = limitmesh.refine(vertices, faces, interpolate="1%", tolerance=0.01)
+    assert np.linalg.norm(near.vertices[:6] - vertices, axis=1).max() <= 0.01 * np.sqrt(12) + 1e-9
+    np.testing.assert_allclose(limitmesh.limit(vertices, faces, interpolate=True).positions, vertices, atol=1e-9)
+
+
+def test_stopping_short_warns_or_raises(octahedron):
+    with pytest.warns(limitmesh.StoppedShort, match="max_triangles"):
+        found = limitmesh.refine(*octahedron, tolerance=1e-6, max_triangles=1000)
+    assert found.stop == "triangle-cap" and not found.met and len(found.faces) <= 1000
+    with pytest.warns(limitmesh.StoppedShort, match="max_memory"):
+        found = limitmesh.refine(*octahedron, tolerance=1e-9, max_memory="1MB")
+    assert found.stop == "memory-cap"
+    with pytest.raises(limitmesh.ToleranceNotMet, match="max_levels") as caught:
+        limitmesh.refine(*octahedron, tolerance=1e-9, max_levels=2, strict=True)
+    assert len(caught.value.result.faces) > 8
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert isinstance(again, limitmesh.ToleranceNotMet) and len(again.result.faces) == len(caught.value.result.faces)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        limitmesh.refine(*octahedron, tolerance=0.1, strict=True)
+
+
+def test_results_pickle(octahedron):
+    found = limitmesh.refine(*octahedron, tolerance=0.05, channels={"x": octahedron[0][:, 0]})
+    again = pickle.loads(pickle.dumps(found))
+    assert again.vertices.tobytes() == found.vertices.tobytes()
+    assert again.error == found.error and again.diagnosis == found.diagnosis
+    assert again.corner_normals.tobytes() == found.corner_normals.tobytes()
+    np.testing.assert_array_equal(again.at_vertices("x"), found.at_vertices("x"))
+    with pytest.raises(AttributeError):
+        found.stop = "never"
+
+
+def test_notebooks_see_a_picture(octahedron):
+    html = limitmesh.refine(*octahedron)._repr_html_()
+    assert html.startswith("<div><img") and "certainly within" in html
+
+
+def test_estimates_are_near(octahedron):
+    found = limitmesh.estimate(*octahedron, tolerance=0.005)
+    assert found.counted and found.triangles == len(limitmesh.refine(*octahedron, tolerance=0.005).faces)
+
+
+def test_repairs_are_told():
+    vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]]
+    faces = [[0, 2, 1], [4, 1, 3], [1, 2, 3], [2, 3, 4], [2, 1, 0]]
+    found = limitmesh.refine(vertices, faces, tolerance="1%")
+    assert not found.diagnosis.clean
+    assert found.diagnosis.findings["flipped_faces"].first == (3,)
+    assert found.diagnosis.findings["repeated_faces"].first == (4,)
+    with pytest.raises(limitmesh.MeshError, match="repair"):
+        limitmesh.refine(vertices, faces, tolerance="1%", repair=False)
+    mended = limitmesh.repair(vertices, faces)
+    assert mended.faces.shape == (4, 3) and len(mended.vertices) == 4
+    np.testing.assert_array_equal(np.asarray(vertices)[mended.parent_vertices], mended.vertices[mended.faces])
+
+
+def test_limits_of_vertices_without_faces():
+    positions, normals = limitmesh.limit([[9, 9, 9], [0, 0, 0], [1, 0, 0], [0, 1, 0]], [[1, 2, 3]], boundary="fixed")
+    assert np.isnan(positions[0]).all() and np.isnan(normals[0]).all()
+    np.testing.assert_array_equal(positions[1:], [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
