@@ -96,7 +96,7 @@ pub(crate) fn refine<'py>(
     dict.set_item("barycentric", barycentric.map(|list| tell::rows(py, list)).transpose()?)?;
     let channels = refined.channels.into_iter().map(|channel| channels::told(py, channel));
     dict.set_item("channels", PyList::new(py, channels.collect::<PyResult<Vec<_>>>()?)?)?;
-    dict.set_item("error", refined.error.map(|(lower, upper, certified, at)| (lower, upper, certified, at)))?;
+    dict.set_item("error", refined.error)?;
     dict.set_item("stop", refined.stop)?;
     dict.set_item("levels", refined.levels)?;
     dict.set_item("pixels", refined.pixels)?;

@@ -139,7 +139,7 @@ def from_pyvista(mesh: Any) -> Mesh:
     >>> limitmesh.info(sphere)["watertight"]
     True
     """
-    surface = mesh if type(mesh).__name__ == "PolyData" else mesh.extract_surface()
+    surface = mesh if isinstance(mesh, _library("pyvista").PolyData) else _outside(mesh)
     if surface.n_strips:
         surface = surface.triangulate()
     # Lines and points are cells, too, and stand before the polygons.
@@ -169,6 +169,14 @@ def from_pyvista(mesh: Any) -> Mesh:
         if found is not None:
             channels[name] = found
     return Mesh(np.asarray(surface.points), faces, channels)
+
+
+def _outside(dataset: Any) -> Any:
+    """The surface of a dataset, by whichever way this version of PyVista has."""
+    try:
+        return dataset.extract_surface(algorithm=None)
+    except TypeError:
+        return dataset.extract_geometry()
 
 
 def to_pyvista(mesh: Refined | Any) -> Any:
@@ -316,7 +324,7 @@ def _split(mesh: Any) -> tuple[Split, dict[str, npt.NDArray[Any]]]:
 
 def _column(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """Values of one number each as a flat array."""
-    return values[:, 0] if values.shape[1] == 1 else values
+    return values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values
 
 
 def _bytes(colours: npt.NDArray[Any]) -> npt.NDArray[np.uint8]:

@@ -4,6 +4,27 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+__all__ = [
+    "Error",
+    "MeshError",
+    "OptionError",
+    "ReadError",
+    "__version__",
+    "estimate",
+    "examine",
+    "limit",
+    "load",
+    "measure",
+    "measure_limit",
+    "models",
+    "picture",
+    "program",
+    "refine",
+    "refine_file",
+    "repair",
+    "save",
+    "simplify",
+]
 __version__: str
 
 class Error(ValueError): ...

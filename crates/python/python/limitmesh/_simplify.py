@@ -87,7 +87,7 @@ def simplify(
     >>> import limitmesh
     >>> fine = limitmesh.refine("builtin:torus", tolerance="0.05%")
     >>> coarse = limitmesh.simplify(fine, tolerance="0.5%")
-    >>> len(coarse.faces) < len(fine.faces) and (coarse.vertices == fine.vertices[coarse.parent_vertex]).all()
+    >>> len(coarse.faces) < len(fine.faces) and bool((coarse.vertices == fine.vertices[coarse.parent_vertex]).all())
     True
     """
     control = _options.control_of(
