@@ -5,7 +5,7 @@ use std::time::Instant;
 use limitmesh::carry::carried;
 use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal};
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{Channel, Sharpness, SplitSurface};
+use limitmesh::mesh::{Channel, Diagnosis, Sharpness, SplitSurface};
 use limitmesh::progress::Observer;
 use limitmesh::refine::{
     Exact, ExactStop, Origin, StepwiseOptions, Stop, UniformOptions, exact_estimate_observed, exact_observed,
@@ -17,15 +17,19 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::channels;
-use crate::control::{Control, Recipe};
+use crate::control::{Control, InterpolatedTold, Recipe};
 use crate::errors::{Failure, OptionError};
 use crate::options::{ControlOptions, Goals};
 use crate::run::run;
 use crate::soup::MeshIn;
 use crate::tell;
 
-/// A refined mesh with everything that is told of it.
+/// A refined mesh with everything that is told of it; what it was made of is gone by then.
 struct Refined {
+    /// What was found in the input.
+    diagnosis: Diagnosis,
+    /// How control points were found, if that was asked for.
+    interpolated: Option<InterpolatedTold>,
     positions: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
     normals: Vec<[f64; 3]>,
@@ -66,21 +70,20 @@ pub(crate) fn refine<'py>(
     let (soup, recipe) = (mesh.soup()?, Recipe::new(control)?);
     let method = Method::of(&goals)?;
     drop(mesh);
-    let (control, refined, seconds) = run(py, threads, progress, move |observer| {
+    let (refined, seconds) = run(py, threads, progress, move |observer| {
         let start = Instant::now();
-        let control = recipe.control(soup, observer)?;
+        let mut control = recipe.control(soup, observer)?;
         let refined = match method {
-            Method::Exact => exact(&control, &recipe, &goals, observer)?,
-            _ => stepwise(&control, &recipe, (method, &goals), observer)?,
+            Method::Exact => exact(&mut control, &recipe, &goals, observer)?,
+            _ => stepwise(&mut control, &recipe, (method, &goals), observer)?,
         };
-        Ok((control, refined, start.elapsed().as_secs_f64()))
+        drop(control);
+        Ok((refined, start.elapsed().as_secs_f64()))
     })?;
     let dict = PyDict::new(py);
     dict.set_item("seconds", seconds)?;
-    dict.set_item("diagnosis", tell::diagnosis(py, &control.diagnosis)?)?;
-    dict.set_item("diagonal", control.diagonal)?;
-    dict.set_item("control_triangles", control.mesh.face_count())?;
-    dict.set_item("interpolation", control.interpolated.map(|told| told.told(py)).transpose()?)?;
+    dict.set_item("diagnosis", tell::diagnosis(py, &refined.diagnosis)?)?;
+    dict.set_item("interpolation", refined.interpolated.map(|told| told.told(py)).transpose()?)?;
     dict.set_item("vertices", tell::rows(py, refined.positions)?)?;
     dict.set_item("faces", tell::rows(py, refined.triangles)?)?;
     dict.set_item("normals", tell::rows(py, refined.normals)?)?;
@@ -149,7 +152,7 @@ impl Method {
 }
 
 fn exact(
-    control: &Control,
+    control: &mut Control,
     recipe: &Recipe,
     goals: &Goals,
     observer: &mut Observer<'_>,
@@ -169,6 +172,8 @@ fn exact(
     let error = found.error;
     let (positions, triangles) = found.mesh.into_positions_and_triangles();
     Ok(Refined {
+        diagnosis: std::mem::take(&mut control.diagnosis),
+        interpolated: control.interpolated.take(),
         positions,
         triangles,
         normals: found.normals,
@@ -227,7 +232,7 @@ impl Origins {
 const USUAL_ANGLE: f64 = 10.0;
 
 fn stepwise(
-    control: &Control,
+    control: &mut Control,
     recipe: &Recipe,
     (method, goals): (Method, &Goals),
     observer: &mut Observer<'_>,
@@ -256,6 +261,8 @@ fn stepwise(
     let (side_corners, side_normals, normals) = sided_normals(&found.mesh, recipe)?;
     let (positions, triangles) = found.mesh.into_positions_and_triangles();
     Ok(Refined {
+        diagnosis: std::mem::take(&mut control.diagnosis),
+        interpolated: control.interpolated.take(),
         positions,
         triangles,
         normals,

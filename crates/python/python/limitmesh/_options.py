@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import re
 from collections.abc import Callable, Iterable
@@ -149,6 +150,7 @@ def memory(value: float | str | None) -> int | None:
     return int(number(value, "max_memory", "bytes above 0", lambda x: 0.0 < x < 2**62))
 
 
+@functools.cache
 def machine_memory() -> int | None:
     """Bytes that this process may have: the machine's, or fewer where its container has a limit."""
     limits = []
