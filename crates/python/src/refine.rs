@@ -2,13 +2,13 @@
 
 use std::time::Instant;
 
-use limitmesh::carry::carried;
+use limitmesh::carry::{borders, carried};
 use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal};
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{Channel, Diagnosis, Sharpness, SplitSurface};
+use limitmesh::mesh::{Channel, Diagnosis};
 use limitmesh::progress::Observer;
 use limitmesh::refine::{
-    Exact, ExactStop, Origin, StepwiseOptions, Stop, UniformOptions, exact_estimate_observed, exact_observed,
+    ExactStop, Origin, StepwiseOptions, Stop, UniformOptions, exact_estimate_observed, exact_observed,
     stepwise_observed, uniform_observed,
 };
 use limitmesh::{HalfEdgeId, Mesh};
@@ -157,14 +157,16 @@ fn exact(
     goals: &Goals,
     observer: &mut Observer<'_>,
 ) -> Result<Refined, Failure> {
-    let options = goals.exact(control.diagonal, control.tells_faces_apart(), recipe.unfolds());
+    let options = goals
+        .exact(control.diagonal, control.tells_faces_apart(), recipe.unfolds())
+        .kept_edges(borders(&control.channels, &control.mesh));
     let mut found = exact_observed(&control.mesh, recipe.scheme, &options, observer)?;
     let channels = match control.channels.is_empty() {
         true => Vec::new(),
         false => carried(&control.channels, &control.mesh, recipe.scheme, &found)?,
     };
     let inverted = found.inverted_triangles();
-    let (side_corners, side_normals) = sides(&mut found).into_iter().unzip();
+    let (side_corners, side_normals) = std::mem::take(&mut found.sides).into_iter().unzip();
     let origins = (!found.origins.is_empty()).then(|| Origins::new(control, &found.origins));
     let parents = std::mem::take(&mut found.parents);
     let parents = (parents.len() == found.mesh.face_count())
@@ -201,22 +203,6 @@ fn exact(
     })
 }
 
-/// The normals at corners beside sharp edges. Collapses leave none by side: there the faces' own have to do.
-fn sides(found: &mut Exact) -> Vec<(u32, [f64; 3])> {
-    if !found.sides.is_empty() || found.mesh.tags().creases.is_empty() {
-        return std::mem::take(&mut found.sides);
-    }
-    let (sharp, faces) = (Sharpness::of(&found.mesh).lasting(), SplitSurface::by_faces(&found.mesh));
-    let topology = found.mesh.topology();
-    let sided = topology.half_edges().filter(|&h| sharp.is_tagged(topology.origin(h)));
-    sided
-        .map(|h: HalfEdgeId| {
-            let copy = faces.triangles[h.face().index()][h.corner()];
-            (h.0, faces.normals[copy as usize])
-        })
-        .collect()
-}
-
 impl Origins {
     fn new(control: &Control, origins: &[Origin]) -> Self {
         let on_whole = |origin: &Origin| control.parts.on_whole(origin.face, origin.barycentric);
@@ -248,15 +234,20 @@ fn stepwise(
         Method::Uniform | Method::Exact => None,
     };
     let (mesh, scheme, cap) = (&control.mesh, recipe.scheme, goals.cap());
+    let carries = !control.channels.is_empty();
     let found = match criterion {
         Some(criterion) => {
-            let options = StepwiseOptions::default().levels(goals.levels).max_triangles(cap);
+            let options = StepwiseOptions::default().levels(goals.levels).origins(carries).max_triangles(cap);
             stepwise_observed(mesh, scheme, criterion.as_ref(), &options, observer)?
         }
         None => {
-            let options = UniformOptions::default().levels(goals.levels).max_triangles(cap);
+            let options = UniformOptions::default().levels(goals.levels).origins(carries).max_triangles(cap);
             uniform_observed(mesh, scheme, &options, observer)?
         }
+    };
+    let channels = match carries {
+        true => carried(&control.channels, mesh, scheme, &found)?,
+        false => Vec::new(),
     };
     let (side_corners, side_normals, normals) = sided_normals(&found.mesh, recipe)?;
     let (positions, triangles) = found.mesh.into_positions_and_triangles();
@@ -270,7 +261,7 @@ fn stepwise(
         side_normals,
         origins: None,
         parents: None,
-        channels: Vec::new(),
+        channels,
         error: None,
         stop: match found.stop {
             Stop::Levels => "levels",

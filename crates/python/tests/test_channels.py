@@ -66,3 +66,17 @@ def test_results_are_meshes_again(octahedron):
     once = limitmesh.refine(vertices, faces, tolerance=0.1, channels={"x": vertices[:, 0]})
     twice = limitmesh.refine(once, tolerance=0.01)
     assert twice.at_vertices("x").shape == (len(twice.vertices), 1)
+
+
+@pytest.mark.parametrize("options", [{"method": "uniform", "levels": 3}, {"tolerance": 0.01, "optimize": True}])
+def test_other_ways_carry_channels_too(octahedron, options):
+    vertices, faces = octahedron
+    uv = limitmesh.Channel(vertices, interpolation="smooth-none")
+    part = np.arange(8) // 4
+    found = limitmesh.refine(vertices, faces, channels={"own": uv, "part": part}, **options)
+    assert found.at_vertices("own").shape == found.vertices.shape
+    # All z are at least 0 in the first half, and at most 0 in the other.
+    z = found.vertices[found.faces][:, :, 2].mean(axis=1)
+    np.testing.assert_array_equal(found.channels["part"][:][:, 0], (z < 0).astype(float))
+    if "optimize" in options:
+        np.testing.assert_allclose(found.at_vertices("own"), found.vertices, atol=1e-9)

@@ -79,7 +79,6 @@ def test_meshes_that_are_none(vertices, faces, words):
         ({"method": "uniform", "tolerance": 1}, "tolerance is a goal of method='exact'"),
         ({"levels": 3}, "levels are steps"),
         ({"optimize": True, "angle": 5}, "optimisation"),
-        ({"optimize": True, "channels": {"x": [0, 1, 2, 3.0]}}, "optimize"),
         ({"max_memory": "lots"}, "max_memory is 'lots'"),
         ({"max_memory": -1}, "max_memory is -1"),
         ({"threads": 0}, "threads is 0"),

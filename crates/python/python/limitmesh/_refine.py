@@ -94,7 +94,7 @@ def refine(
     view, eye, dilatation
         Let ``angle`` depend on where the viewer looks along, or stands.
     optimize
-        Collapses edges of a finer mesh as long as the goals allow: slower, with fewer triangles. Not with channels.
+        Collapses edges of a finer mesh as long as the goals allow: slower, with fewer triangles.
     balance
         Lets vertices leave the limit surface by up to half the local error: fewer triangles.
     flat_regions
@@ -138,10 +138,6 @@ def refine(
     (3, dtype('int64'))
     """
     mesh = _mesh_of(vertices, faces, channels, creases, corners)
-    if optimize and mesh.channels:
-        raise OptionError("channels are not carried with optimize: triangles reach over several faces then")
-    if method != "exact" and mesh.channels:
-        raise OptionError(f"channels are carried with method='exact', not with {method!r}")
     control = _options.control_of(
         interpolate=interpolate,
         crease_angle=crease_angle,

@@ -90,8 +90,8 @@ class Refined:
     normals
         (n, 3) unit limit normals of the vertices; at sharp edges an average of the sides, zero where there is none.
     parent_face
-        (m,) the row of ``faces`` of the input that each triangle came from; None where triangles reach over several
-        (``optimize``), and for methods that do not tell.
+        (m,) the row of ``faces`` of the input that each triangle came from, with ``optimize`` one of those that it reaches over; None
+        for methods that do not tell.
     vertex_face
         (n,) a row of ``faces`` of the input on which each vertex was.
     barycentric
