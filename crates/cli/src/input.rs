@@ -10,7 +10,7 @@ use limitmesh::{Mesh, PolygonSoup};
 use limitmesh_io::gltf::Contents;
 use limitmesh_io::{Asset, Format};
 
-use crate::arguments::{BuildArguments, FileFormat};
+use crate::arguments::{BuildArguments, ChannelArguments, FileFormat};
 use crate::failure::usage;
 use crate::format::{counted, thousands};
 use crate::progress::Progress;
@@ -154,18 +154,30 @@ fn builtin(name: &str) -> anyhow::Result<PolygonSoup> {
 /// # Errors
 /// As for [`read`]; or no mesh can be made of it, or only by a repair that `build` forbids.
 pub(crate) fn load(path: &Path, build: &BuildArguments, progress: &Progress) -> anyhow::Result<Input> {
-    load_keeping(path, build, &[], progress)
+    let soup = read(path, build, progress)?;
+    connect(soup, build, &[], progress)
 }
 
-/// [`load`], where the output will have some of what a soup leaves out after all, so that nothing need be said of it.
-pub(crate) fn load_keeping(
+/// [`load`] for refinement: channels are as `channels` asks, and of what a soup leaves out the output has `kept` after all, so that
+/// nothing need be said of it.
+///
+/// # Errors
+/// As for [`load`]; or there is no channel of a name that is asked for.
+pub(crate) fn load_for(
     path: &Path,
     build: &BuildArguments,
-    kept: &[&str],
+    (kept, channels): (&[&str], &ChannelArguments),
     progress: &Progress,
 ) -> anyhow::Result<Input> {
+    let mut read = read(path, build, progress)?;
+    channels.check(&read.name, read.soup.channels.iter().map(|channel| channel.name.as_str()))?;
+    channels.apply(&mut read.soup.channels)?;
+    connect(read, build, kept, progress)
+}
+
+fn connect(read: Soup, build: &BuildArguments, kept: &[&str], progress: &Progress) -> anyhow::Result<Input> {
     let options = &build.options()?;
-    let Soup { name, format, mut soup, asset, reading } = read(path, build, progress)?;
+    let Soup { name, format, mut soup, asset, reading, .. } = read;
     progress.stage(format!("connecting {}", counted(soup.faces.len(), "face", "faces")));
     let start = Instant::now();
     let (mesh, diagnosis, trace) =

@@ -3,6 +3,8 @@
 use limitmesh::mesh::{Channel, Domain, Interpolation};
 use serde::Serialize;
 
+use crate::arguments::ChannelArguments;
+
 /// A channel of the input.
 #[derive(Serialize, Debug, Clone)]
 pub(crate) struct ChannelReport {
@@ -12,7 +14,7 @@ pub(crate) struct ChannelReport {
     pub(crate) domain: &'static str,
     /// Numbers in a value.
     pub(crate) arity: usize,
-    /// `smooth`, `linear` or `nearest`, where nothing else is asked for.
+    /// `smooth`, `linear` or `nearest`; `drop` where it is left out on demand.
     pub(crate) interpolation: &'static str,
     /// Values in the table.
     pub(crate) values: usize,
@@ -39,6 +41,13 @@ impl From<&Channel> for ChannelReport {
 }
 
 impl ChannelReport {
+    /// Of a channel that is carried as options say.
+    pub(crate) fn chosen(channel: &Channel, arguments: &ChannelArguments) -> Self {
+        let found = Self::from(channel);
+        let interpolation = if arguments.drops(&channel.name) { "drop" } else { found.interpolation };
+        Self { interpolation, ..found }
+    }
+
     /// `texture coordinates (2 numbers a corner)`.
     pub(crate) fn in_words(&self) -> String {
         match self.interpolation {

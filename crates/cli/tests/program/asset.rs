@@ -10,7 +10,7 @@ use crate::common::{counts, file, folder, run, soup};
 /// A text document with its buffer in it: positions of eight corners of a cube (accessor 0), and indices of its sides but the top,
 /// of the top, and of a line; joints and weights of the corners (4 and 5), which are the first joint's below and the second's above.
 /// Its triangles have `more` attributes.
-fn cube(folder: &TempDir, name: &str, nodes: &str, more: &str) -> PathBuf {
+pub(crate) fn cube(folder: &TempDir, name: &str, nodes: &str, more: &str) -> PathBuf {
     let mut bytes: Vec<u8> = Vec::new();
     for corner in 0..8u32 {
         let side = |bit: u32| if corner >> bit & 1 == 0 { -1f32 } else { 1.0 };
@@ -124,7 +124,7 @@ fn materials_keep_their_border_and_stay_joined() {
 }
 
 /// What a file's mesh has, read by the library's other half.
-fn first_mesh(path: &Path) -> limitmesh_io::gltf::MeshSoup {
+pub(crate) fn first_mesh(path: &Path) -> limitmesh_io::gltf::MeshSoup {
     let asset = limitmesh_io::Asset::open(path).expect("an asset");
     asset.mesh(0, limitmesh_io::gltf::Joining::Never).expect("a mesh")
 }

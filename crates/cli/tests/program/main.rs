@@ -1,6 +1,7 @@
 //! The program as its users meet it: commands, files, exit codes, the JSON contract.
 
 mod asset;
+mod channels;
 mod common;
 mod compare;
 mod concave;

@@ -3,6 +3,7 @@
 //! A mesh is refined at the scale of its largest appearance, its coordinates times the greatest stretch of its nodes, so
 //! that all lengths are the scene's; the result is divided by that again.
 
+use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
 use limitmesh::Mesh;
@@ -24,7 +25,8 @@ use crate::input;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::{
-    AssetMeshReport, AssetReport, InputReport, OutputReport, SecondsReport, SizeReport, VERSION,
+    AssetMeshReport, AssetReport, ChannelReport, InputReport, OutputReport, SecondsReport, SizeReport,
+    VERSION,
 };
 
 /// An asset to be refined.
@@ -79,12 +81,26 @@ impl Job {
         Ok(())
     }
 
+    /// Refuses choices for attributes that no mesh has.
+    fn check_channels(&self, asset: &Asset, name: &str) -> anyhow::Result<()> {
+        let contents = asset.contents()?;
+        let primitives = contents.meshes.iter().flat_map(|mesh| &mesh.primitives);
+        let names: BTreeSet<&str> = primitives.flat_map(|own| &own.attributes).map(String::as_str).collect();
+        // What moves vertices, and what is found anew, is no matter of choice.
+        let is_free = |name: &&str| {
+            let kind = name.split_once('_').map_or(*name, |(kind, _)| kind);
+            !["POSITION", "NORMAL", "TANGENT", "JOINTS", "WEIGHTS"].contains(&kind)
+        };
+        self.arguments.channels.check(name, names.into_iter().filter(is_free))
+    }
+
     /// Refines all meshes and writes the asset.
     pub(super) fn run(mut self, progress: &Progress) -> anyhow::Result<Outcome> {
         let name = input::display_name(self.arguments.input());
         progress.stage(format!("reading {name}"));
         let start = Instant::now();
         let mut asset = input::asset(self.arguments.input())?;
+        self.check_channels(&asset, &name)?;
         let bounds = asset.bounding_box()?;
         let reading = start.elapsed();
         let Some([low, high]) = bounds else {
@@ -145,6 +161,7 @@ impl Job {
         self.notes(&name, &own, &built.1, progress);
         let (built, diagnosis, trace) = built;
         own.soup.channels = own.attributes.iter().map(channel).collect();
+        arguments.channels.apply(&mut own.soup.channels)?;
         let on_mesh = |channel: &Channel| channel.on_mesh(&own.soup, &built, &trace);
         let narrow =
             own.soup.channels.iter().filter(|channel| channel.arity <= MOST_WIDE && self.is_traced());
@@ -195,9 +212,11 @@ impl Job {
         if let Outcome::StoppedShort(why) = refined.outcome {
             done.short.push(format!("{name}: {why}"));
         }
-        for table in
-            own.attributes.iter().filter(|table| refined.parents.is_empty() || table.width > MOST_WIDE)
-        {
+        let is_lost = |table: &&CornerAttribute| {
+            let is_dropped = arguments.channels.drops(&table.name);
+            is_dropped || refined.parents.is_empty() || table.width > MOST_WIDE
+        };
+        for table in own.attributes.iter().filter(is_lost) {
             if !done.left_out.contains(&table.name) {
                 done.left_out.push(table.name.clone());
             }
@@ -237,7 +256,8 @@ impl Job {
             );
         }
         // A flat region has triangles across borders, and across the faces that values belong to.
-        let has_values = !own.attributes.is_empty() || !own.influences.is_empty();
+        let is_kept = |own: &CornerAttribute| !arguments.channels.drops(&own.name);
+        let has_values = own.attributes.iter().any(is_kept) || !own.influences.is_empty();
         arguments.exact.divide_flat |= self.is_traced() && (own.parts.len() > 1 || has_values);
         Ok(arguments)
     }
@@ -254,8 +274,12 @@ impl Job {
             vertices: own.soup.positions.len(),
             faces: own.soup.faces.len(),
             left_out: Vec::new(),
-            channels: own.soup.channels.iter().map(Into::into).collect(),
+            channels: self.channel_reports(&own.soup.channels),
         }
+    }
+
+    fn channel_reports(&self, channels: &[Channel]) -> Vec<ChannelReport> {
+        channels.iter().map(|own| ChannelReport::chosen(own, &self.arguments.channels)).collect()
     }
 
     /// Writes the asset, the report and the picture.

@@ -10,6 +10,11 @@ use crate::arguments::RefineArguments;
 use crate::format::counted;
 use crate::progress::Progress;
 
+fn names(channels: &[Channel]) -> String {
+    let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
+    names.join("; ")
+}
+
 /// The channels of a mesh, and the files that describe the materials they name.
 #[derive(Default)]
 pub(super) struct Channels {
@@ -26,22 +31,23 @@ impl Channels {
         progress: &Progress,
     ) -> Self {
         let Some(format) = format else { return Self::default() };
+        let is_dropped = |channel: &Channel| arguments.channels.drops(&channel.name);
+        let (dropped, channels): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(is_dropped);
+        if !dropped.is_empty() {
+            progress.note(format!("left out: {} (by --channel)", names(&dropped)));
+        }
         let reaches = |channel: &Channel| holds(format, channel);
         let (kept, lost): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(reaches);
         if !lost.is_empty() {
-            let names: Vec<&str> = lost.iter().map(|channel| channel.name.as_str()).collect();
-            let names = names.join("; ");
-            progress.note(format!("left out: {names} (the output's format has no place for them)"));
+            progress.note(format!("left out: {} (the output's format has no place for them)", names(&lost)));
         }
-        let channels: Vec<Channel> =
-            kept.into_iter().map(|channel| arguments.channels.applied(channel)).collect();
-        let material_libraries = if channels.is_empty() { Vec::new() } else { material_libraries };
-        Self { channels, material_libraries }
+        let material_libraries = if kept.is_empty() { Vec::new() } else { material_libraries };
+        Self { channels: kept, material_libraries }
     }
 
     /// Those of a mesh of an asset.
-    pub(super) fn of_asset(channels: Vec<Channel>, arguments: &RefineArguments) -> Self {
-        let channels = channels.into_iter().map(|channel| arguments.channels.applied(channel)).collect();
+    pub(super) fn of_asset(mut channels: Vec<Channel>, arguments: &RefineArguments) -> Self {
+        channels.retain(|channel| !arguments.channels.drops(&channel.name));
         Self { channels, material_libraries: Vec::new() }
     }
 

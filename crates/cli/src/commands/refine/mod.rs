@@ -34,8 +34,8 @@ use crate::input::{self, Input};
 use crate::output;
 use crate::progress::Progress;
 use crate::report::{
-    InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport, SizeReport,
-    VERSION, ViewReport,
+    ChannelReport, InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport,
+    SizeReport, VERSION, ViewReport,
 };
 use channels::Channels;
 use control::Control;
@@ -90,14 +90,14 @@ fn refine(
         return asset.run(progress);
     }
     let kept: &[&str] = if format.is_some_and(Normals::are_held) { &["normals"] } else { &[] };
-    let input = input::load_keeping(arguments.input(), &arguments.build, kept, progress)?;
+    let input = input::load_for(arguments.input(), &arguments.build, (kept, &arguments.channels), progress)?;
     let input_report = InputReport {
         path: input.name,
         format: input.format,
         vertices: input.diagnosis.input_vertices,
         faces: input.diagnosis.input_faces,
         left_out: input.left_out,
-        channels: input.channels.iter().map(Into::into).collect(),
+        channels: input.channels.iter().map(|own| ChannelReport::chosen(own, &arguments.channels)).collect(),
     };
     let mut channels =
         Channels::of_input(input.channels, input.material_libraries, (format, arguments), progress);
