@@ -8,7 +8,8 @@ use anyhow::Context;
 use limitmesh::mesh::{BuildOptions, Channel, Diagnosis, MeshError, Weld};
 use limitmesh::{Mesh, PolygonSoup};
 use limitmesh_io::gltf::Contents;
-use limitmesh_io::{Asset, Format};
+use limitmesh_io::threemf::PackageContents;
+use limitmesh_io::{Asset, Format, Package};
 
 use crate::arguments::{BuildArguments, ChannelArguments, FileFormat};
 use crate::failure::usage;
@@ -25,12 +26,14 @@ const STANDARD_INPUT: &str = "-";
 pub(crate) struct Soup {
     /// As given on the command line.
     pub(crate) name: String,
-    /// `obj`, `ply`, `stl`, `off`, `gltf`, `glb` or `builtin`.
+    /// `obj`, `ply`, `stl`, `off`, `gltf`, `glb`, `3mf` or `builtin`.
     pub(crate) format: &'static str,
     /// Positions, polygons and tags.
     pub(crate) soup: PolygonSoup,
     /// The glTF document, if it was one, and what else that holds.
     pub(crate) asset: Option<(Asset, Contents)>,
+    /// What else a 3MF package holds.
+    pub(crate) package: Option<PackageContents>,
     /// Time taken to read or generate it.
     pub(crate) reading: Duration,
 }
@@ -39,7 +42,7 @@ pub(crate) struct Soup {
 pub(crate) struct Input {
     /// As given on the command line.
     pub(crate) name: String,
-    /// `obj`, `ply`, `stl`, `off`, `gltf`, `glb` or `builtin`.
+    /// `obj`, `ply`, `stl`, `off`, `gltf`, `glb`, `3mf` or `builtin`.
     pub(crate) format: &'static str,
     /// What else the file held and was left out, in words.
     pub(crate) left_out: Vec<String>,
@@ -69,25 +72,31 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
     let name = display_name(path);
     progress.stage(format!("reading {name}"));
     let start = Instant::now();
-    let (soup, asset, format) = match builtin_name(path) {
-        Some(model) => (builtin(model)?, None, "builtin"),
+    let (mut document, mut held) = (None, None);
+    let (soup, format) = match builtin_name(path) {
+        Some(model) => (builtin(model)?, "builtin"),
         None => {
             let format = format_of(path, build.from)?;
-            let (soup, asset) = if format.is_gltf() {
+            let soup = if format.is_gltf() {
                 let asset = asset(path)?;
-                let contents = asset.contents()?;
-                (asset.scene_soup()?, Some((asset, contents)))
+                let (soup, contents) = (asset.scene_soup()?, asset.contents()?);
+                document = Some((asset, contents));
+                soup
+            } else if format == Format::ThreeMf {
+                let package = package(path)?;
+                held = Some(package.contents());
+                package.scene_soup()?
             } else if path.as_os_str() == STANDARD_INPUT {
                 let bytes = standard_input()?;
                 let soup = limitmesh_io::read_bytes(&bytes, format);
-                (soup.map_err(|why| anyhow::anyhow!("{name}: {why}"))?, None)
+                soup.map_err(|why| anyhow::anyhow!("{name}: {why}"))?
             } else {
-                (limitmesh_io::read_as(path, format)?, None)
+                limitmesh_io::read_as(path, format)?
             };
-            (soup, asset, format.extension())
+            (soup, format.extension())
         }
     };
-    Ok(Soup { name, format, soup, asset, reading: start.elapsed() })
+    Ok(Soup { name, format, soup, asset: document, package: held, reading: start.elapsed() })
 }
 
 /// Opens a glTF document: a file, or standard input for `-`.
@@ -100,6 +109,18 @@ pub(crate) fn asset(path: &Path) -> anyhow::Result<Asset> {
         return Asset::from_bytes(&bytes, None).map_err(|why| anyhow::anyhow!("standard input: {why}"));
     }
     Ok(Asset::open(path)?)
+}
+
+/// Opens a 3MF package: a file, or standard input for `-`.
+///
+/// # Errors
+/// It cannot be read, or breaks the rules.
+pub(crate) fn package(path: &Path) -> anyhow::Result<Package> {
+    if path.as_os_str() == STANDARD_INPUT {
+        return Package::from_bytes(standard_input()?)
+            .map_err(|why| anyhow::anyhow!("standard input: {why}"));
+    }
+    Ok(Package::open(path)?)
 }
 
 fn standard_input() -> anyhow::Result<Vec<u8>> {

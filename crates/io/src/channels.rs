@@ -33,7 +33,7 @@ pub fn holds(format: Format, channel: &Channel) -> bool {
             Semantic::Label => channel.labels.is_empty(),
             _ => true,
         },
-        Format::Stl | Format::Off | Format::Gltf | Format::Glb => false,
+        Format::Stl | Format::Off | Format::Gltf | Format::Glb | Format::ThreeMf => false,
     }
 }
 

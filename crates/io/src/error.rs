@@ -2,6 +2,7 @@
 
 use crate::format::{Format, UnknownFormat};
 use crate::gltf::GltfFlaw;
+use crate::threemf::PackageFlaw;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -57,6 +58,14 @@ pub enum ReadError {
         /// What is wrong, and where.
         flaw: GltfFlaw,
     },
+    /// Something in a 3MF package breaks its rules.
+    #[error("{}3MF {flaw}", prefix(path))]
+    Package {
+        /// The file, if it was one.
+        path: Option<PathBuf>,
+        /// What is wrong, and where.
+        flaw: PackageFlaw,
+    },
 }
 
 impl From<UnknownFormat> for ReadError {
@@ -72,7 +81,8 @@ impl ReadError {
             Self::Empty { path, .. }
             | Self::OtherContent { path, .. }
             | Self::Flaw { path, .. }
-            | Self::Gltf { path, .. } => {
+            | Self::Gltf { path, .. }
+            | Self::Package { path, .. } => {
                 *path = Some(file.to_owned());
             }
             Self::UnknownFormat(_) | Self::Io { .. } => {}

@@ -19,6 +19,8 @@ pub enum Format {
     Gltf,
     /// glTF 2.0 in one binary file.
     Glb,
+    /// 3MF: a ZIP archive of XML models.
+    ThreeMf,
 }
 
 /// A file name whose extension is none of the formats.
@@ -34,12 +36,12 @@ impl fmt::Display for UnknownFormat {
         match self.path.extension() {
             Some(extension) => write!(
                 out,
-                "{path}: the extension '{}' is not one that is known, expected .obj, .ply, .stl, .off, .gltf or .glb",
+                "{path}: the extension '{}' is not one that is known, expected .obj, .ply, .stl, .off, .gltf, .glb or .3mf",
                 extension.display()
             ),
             None => write!(
                 out,
-                "{path}: the name has no extension, expected .obj, .ply, .stl, .off, .gltf or .glb"
+                "{path}: the name has no extension, expected .obj, .ply, .stl, .off, .gltf, .glb or .3mf"
             ),
         }
     }
@@ -49,7 +51,8 @@ impl std::error::Error for UnknownFormat {}
 
 impl Format {
     /// All formats.
-    pub const ALL: &[Self] = &[Self::Obj, Self::Ply, Self::Stl, Self::Off, Self::Gltf, Self::Glb];
+    pub const ALL: &[Self] =
+        &[Self::Obj, Self::Ply, Self::Stl, Self::Off, Self::Gltf, Self::Glb, Self::ThreeMf];
 
     /// The usual extension, in small letters and without the point.
     pub fn extension(self) -> &'static str {
@@ -60,6 +63,7 @@ impl Format {
             Self::Off => "off",
             Self::Gltf => "gltf",
             Self::Glb => "glb",
+            Self::ThreeMf => "3mf",
         }
     }
 
@@ -86,6 +90,7 @@ impl Format {
             Self::Stl => "an STL file",
             Self::Off => "an OFF file",
             Self::Gltf | Self::Glb => "a glTF file",
+            Self::ThreeMf => "a 3MF file",
         }
     }
 }
@@ -99,6 +104,7 @@ impl fmt::Display for Format {
             Self::Off => "OFF",
             Self::Gltf => "glTF",
             Self::Glb => "GLB",
+            Self::ThreeMf => "3MF",
         })
     }
 }
@@ -125,6 +131,9 @@ const SIGNATURES: [(&[u8], &str); 11] = [
 pub(crate) fn looks_like_other(bytes: &[u8], named: Format) -> Option<&'static str> {
     // Both forms of glTF are met under both names, and tell themselves apart.
     if named.is_gltf() && (bytes.starts_with(b"glTF") || bytes.starts_with(b"{")) {
+        return None;
+    }
+    if named == Format::ThreeMf && bytes.starts_with(b"PK") {
         return None;
     }
     // A binary STL may begin with any 80 bytes at all, so that its length speaks first.

@@ -1,4 +1,4 @@
-//! OBJ, PLY, STL, OFF and glTF files: read into a [`PolygonSoup`], written from triangles.
+//! OBJ, PLY, STL, OFF, glTF and 3MF files: read into a [`PolygonSoup`], written from triangles.
 //!
 //! The format is chosen by the file's extension and checked against its content. Reading keeps every number
 //! at the precision the file has it; a damaged file is an [error](ReadError) that names the line or byte, the
@@ -12,8 +12,9 @@
 //! | STL | ASCII and binary, several solids; three vertices a facet, not merged | `f32` binary (or ASCII with `f64` digits) |
 //! | OFF | polygons; extra columns are skipped | `f64` digits, normals, colours |
 //! | glTF | what the scene shows, all instances, in its coordinates, with attributes and names of materials; Draco and meshopt | `f32`, normals: one mesh |
+//! | 3MF | what the build has, all items, in its coordinates | all digits: one object |
 //!
-//! A glTF [`Asset`] can be edited, too: its meshes are taken out one by one and replaced, and everything else stays.
+//! A glTF [`Asset`] and a 3MF [`Package`] can be edited, too: meshes are taken out one by one and replaced, and everything else stays.
 //!
 //! ```
 //! use limitmesh_io::{Format, Output, WriteOptions, read_bytes, write_to};
@@ -28,12 +29,14 @@
 //!
 //! [`PolygonSoup`]: limitmesh::mesh::PolygonSoup
 
+mod affine;
 mod channels;
 mod error;
 mod format;
 pub mod gltf;
 mod read;
 mod scan;
+pub mod threemf;
 mod write;
 
 pub use channels::{MATERIAL, TEXTURE, holds, values_lost};
@@ -41,6 +44,7 @@ pub use error::{Flaw, Place, ReadError, WriteError};
 pub use format::{Format, UnknownFormat};
 pub use gltf::Asset;
 pub use read::{read, read_as, read_bytes};
+pub use threemf::Package;
 pub use write::{
     Output, Property, PropertyValues, WriteOptions, check_writable, rounding, write, write_as, write_to,
     write_whole,

@@ -111,6 +111,29 @@ impl ChannelArguments {
         usage(format!("--channel: {input} has no channel '{}'; {known}", unknown.name))
     }
 
+    /// Refuses to blend what triangles inherit.
+    ///
+    /// # Errors
+    /// Something is to be smooth or linear.
+    pub(crate) fn check_inherited(&self) -> anyhow::Result<()> {
+        let is_blended = |choice: &&Choice| matches!(choice.mode, Mode::Smooth | Mode::Linear);
+        match self.channel.iter().find(is_blended) {
+            Some(Choice { name, .. }) => {
+                usage(format!("--channel: '{name}' is inherited by triangles; it can be nearest or drop"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The names of channels that are to be left out.
+    pub(crate) fn dropped(&self) -> Vec<String> {
+        let is_first = |i: usize| !self.channel[..i].iter().any(|other| other.name == self.channel[i].name);
+        let all = self.channel.iter().enumerate();
+        all.filter(|(i, own)| self.drops(&own.name) && is_first(*i))
+            .map(|(_, own)| own.name.clone())
+            .collect()
+    }
+
     /// Whether a channel is to be left out.
     pub(crate) fn drops(&self, name: &str) -> bool {
         self.mode(name) == Some(Mode::Drop)

@@ -52,7 +52,7 @@ Ctrl-C, SIGTERM or SIGHUP cancelled it: no file is left half written.";
 ///
 /// A control mesh is refined only where its faces stand badly for the smooth limit surface: until the mesh is
 /// certainly within a tolerance of it, has as many triangles as it may, or keeps an angle. INPUT is a file (OBJ,
-/// PLY, STL, OFF, glTF), - for standard input with --from, or builtin:NAME; `limitmesh models` lists the names.
+/// PLY, STL, OFF, glTF, 3MF), - for standard input with --from, or builtin:NAME; `limitmesh models` lists the names.
 ///
 /// Counts may be written 20000, 20,000, 20k or 2e4; lengths with a unit, such as 0.05mm, where --unit says what the
 /// numbers of the mesh are.

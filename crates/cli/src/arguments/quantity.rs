@@ -3,11 +3,12 @@
 use std::str::FromStr;
 
 use clap::ValueEnum;
+use limitmesh_io::threemf::LengthUnit;
 
 use super::values::finite;
 use crate::failure::usage;
 
-/// What the numbers of a mesh are measured in; files do not say.
+/// What the numbers of a mesh are measured in; of all files only 3MF packages say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Unit {
     /// Micrometres
@@ -39,6 +40,18 @@ impl Unit {
     /// How it is written after a number.
     pub(crate) fn name(self) -> &'static str {
         UNITS.iter().find(|unit| unit.0 == self).map_or("", |unit| unit.1)
+    }
+
+    /// The unit that a 3MF package names.
+    pub(crate) fn of_package(unit: LengthUnit) -> Self {
+        match unit {
+            LengthUnit::Micron => Self::Um,
+            LengthUnit::Centimeter => Self::Cm,
+            LengthUnit::Inch => Self::In,
+            LengthUnit::Foot => Self::Ft,
+            LengthUnit::Meter => Self::M,
+            _ => Self::Mm,
+        }
     }
 
     fn micrometres(self) -> f64 {

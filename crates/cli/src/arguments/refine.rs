@@ -61,13 +61,13 @@ const STEPWISE: &str = "Options of the other methods";
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct RefineArguments {
-    /// Mesh files (.obj, .ply, .stl, .off, .gltf, .glb), - for standard input, or builtin:NAME
+    /// Mesh files (.obj, .ply, .stl, .off, .gltf, .glb, .3mf), - for standard input, or builtin:NAME
     ///
     /// With several, --output is a folder: each is refined by itself, and where one fails the others go on.
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
 
-    /// File to write, whose extension (.obj, .ply, .stl, .off, .gltf, .glb) chooses the format; FOLDER/, or - for standard output
+    /// File to write, whose extension (.obj, .ply, .stl, .off, .gltf, .glb, .3mf) chooses the format; FOLDER/, or - for standard output
     ///
     /// In a folder, which is made if its name ends with a slash, files are called as their inputs are.
     #[arg(short, long, value_name = "FILE", required_unless_present = "dry_run")]

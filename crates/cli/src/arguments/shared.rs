@@ -68,7 +68,7 @@ pub(crate) struct BuildArguments {
     #[arg(long, value_name = "DIST", value_parser = values::weld, allow_hyphen_values = true)]
     weld: Option<WeldDistance>,
 
-    /// What the mesh's numbers are measured in, for lengths that have a unit, such as 0.05mm
+    /// What the mesh's numbers are measured in, for lengths that have a unit, such as 0.05mm; 3MF packages say it
     #[arg(long, value_enum)]
     pub(crate) unit: Option<Unit>,
 
@@ -114,6 +114,9 @@ pub(crate) enum FileFormat {
     Gltf,
     /// glTF in one binary file
     Glb,
+    /// 3MF
+    #[value(name = "3mf")]
+    ThreeMf,
 }
 
 impl FileFormat {
@@ -126,6 +129,7 @@ impl FileFormat {
             Self::Off => Format::Off,
             Self::Gltf => Format::Gltf,
             Self::Glb => Format::Glb,
+            Self::ThreeMf => Format::ThreeMf,
         }
     }
 }

@@ -15,12 +15,13 @@ use crate::output;
 use crate::progress::Progress;
 use crate::report::information::{PolygonCount, TagCounts};
 use crate::report::{
-    AssetInformation, ChannelReport, InformationReport, InputReport, MeshInformation, VERSION,
+    AssetInformation, ChannelReport, InformationReport, InputReport, MeshInformation, PackageInformation,
+    VERSION,
 };
 
 /// Examines a file and prints what it holds.
 pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    let input::Soup { name, format, soup, asset, .. } =
+    let input::Soup { name, format, soup, asset, package, .. } =
         input::read(&arguments.input, &arguments.build, progress)?;
     let options = arguments.build.options()?;
     let mut corners = BTreeMap::<usize, usize>::new();
@@ -51,6 +52,7 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         polygons,
         tags,
         asset: asset.map(|(_, contents)| contents.into()),
+        package: package.map(PackageInformation::from),
         diagnosis: (&diagnosis).into(),
         mesh: mesh_info::examine(&mesh),
     };
@@ -103,6 +105,7 @@ fn describe_file(report: &InformationReport) -> String {
         text.push_str(&format!("tagged: {creases}, {corners}\n"));
     }
     report.asset.iter().for_each(|asset| text.push_str(&describe_asset(asset)));
+    report.package.iter().for_each(|package| text.push_str(&describe_package(package)));
     text
 }
 
@@ -139,6 +142,30 @@ fn describe_asset(asset: &AssetInformation) -> String {
             }
             text.push_str(&format!("    primitive {number}: {}\n", parts.join("; ")));
         }
+    }
+    text
+}
+
+/// What a 3MF package holds, a line for each object.
+fn describe_package(package: &PackageInformation) -> String {
+    let items = counted(package.items, "item is", "items are");
+    let mut text = format!("\npackage\n  in {}; {items} built", package.unit);
+    if package.assemblies > 0 {
+        text.push_str(&format!(", {} of others", counted(package.assemblies, "object", "objects")));
+    }
+    text.push('\n');
+    for object in &package.objects {
+        let vertices = counted(object.vertices, "vertex", "vertices");
+        let triangles = counted(object.triangles, "triangle", "triangles");
+        let built = counted(object.built, "time", "times");
+        let mut parts = vec![format!("{vertices}, {triangles}, built {built}")];
+        if !object.attributes.is_empty() {
+            parts.push(format!("triangles have {}", object.attributes.join(" ")));
+        }
+        if !object.others.is_empty() {
+            parts.push(object.others.join(" "));
+        }
+        text.push_str(&format!("  {}: {}\n", object.name, parts.join("; ")));
     }
     text
 }

@@ -48,6 +48,12 @@ impl ChannelReport {
         Self { interpolation, ..found }
     }
 
+    /// Of an attribute of triangles that others inherit from them.
+    pub(crate) fn inherited(name: &str, faces: usize, arguments: &ChannelArguments) -> Self {
+        let interpolation = if arguments.drops(name) { "drop" } else { "nearest" };
+        Self { name: name.to_owned(), domain: "face", arity: 1, interpolation, values: faces }
+    }
+
     /// `texture coordinates (2 numbers a corner)`.
     pub(crate) fn in_words(&self) -> String {
         match self.interpolation {

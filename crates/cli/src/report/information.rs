@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 
 use limitmesh_io::gltf::{Contents, MeshContents, PrimitiveContents};
+use limitmesh_io::threemf::{ObjectContents, PackageContents};
 use serde::Serialize;
 
 use super::InputReport;
 use super::diagnosis::DiagnosisReport;
+use crate::arguments::Unit;
 use crate::bulk::Bulk;
 use crate::dihedral::Dihedrals;
 
@@ -20,6 +22,8 @@ pub(crate) struct InformationReport {
     pub(crate) tags: TagCounts,
     /// What a glTF document holds; null for other formats.
     pub(crate) asset: Option<AssetInformation>,
+    /// What a 3MF package holds; null for other formats.
+    pub(crate) package: Option<PackageInformation>,
     pub(crate) diagnosis: DiagnosisReport,
     pub(crate) mesh: MeshInformation,
 }
@@ -53,6 +57,50 @@ pub(crate) struct AssetPrimitive {
     pub(crate) morph_targets: usize,
     pub(crate) material: Option<String>,
     pub(crate) extensions: Vec<String>,
+}
+
+/// What a 3MF package holds.
+#[derive(Debug, Serialize)]
+pub(crate) struct PackageInformation {
+    /// What numbers are measured in, as `--unit` has it.
+    pub(crate) unit: &'static str,
+    /// Items that are built.
+    pub(crate) items: usize,
+    /// Objects that are put together from others.
+    pub(crate) assemblies: usize,
+    /// Objects that have a mesh.
+    pub(crate) objects: Vec<PackageObject>,
+}
+
+/// An object of a 3MF package.
+#[derive(Debug, Serialize)]
+pub(crate) struct PackageObject {
+    /// As messages call it.
+    pub(crate) name: String,
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+    /// How often the build has it.
+    pub(crate) built: usize,
+    /// What its triangles have beside corners, by name.
+    pub(crate) attributes: Vec<String>,
+    /// What else its mesh has, by name.
+    pub(crate) others: Vec<String>,
+}
+
+impl From<PackageContents> for PackageInformation {
+    fn from(contents: PackageContents) -> Self {
+        let PackageContents { objects, assemblies, items, unit, .. } = contents;
+        let object = |found: ObjectContents| PackageObject {
+            name: found.name,
+            vertices: found.vertices,
+            triangles: found.triangles,
+            built: found.built,
+            attributes: found.attributes,
+            others: found.others,
+        };
+        let objects = objects.into_iter().map(object).collect();
+        Self { unit: Unit::of_package(unit).name(), items, assemblies, objects }
+    }
 }
 
 impl From<Contents> for AssetInformation {

@@ -14,7 +14,7 @@ pub(crate) use certified::CertifiedReport;
 pub(crate) use channel::ChannelReport;
 pub(crate) use comparison::{CertifiedErrorReport, ComparedMethod};
 pub(crate) use diagnosis::DiagnosisReport;
-pub(crate) use information::{AssetInformation, InformationReport, MeshInformation};
+pub(crate) use information::{AssetInformation, InformationReport, MeshInformation, PackageInformation};
 pub(crate) use interpolation::InterpolationReport;
 pub(crate) use measurement::{DistanceReport, LimitReport, MeasureReport, SurfaceReport};
 pub(crate) use refinement::{
@@ -33,7 +33,7 @@ pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub(crate) struct InputReport {
     /// As given on the command line.
     pub(crate) path: String,
-    /// `obj`, `ply`, `stl`, `off`, `gltf`, `glb` or `builtin`.
+    /// `obj`, `ply`, `stl`, `off`, `gltf`, `glb`, `3mf` or `builtin`.
     pub(crate) format: &'static str,
     /// Positions in the file.
     pub(crate) vertices: usize,

@@ -10,6 +10,7 @@ mod examine;
 mod interpolate;
 mod limits;
 mod measure;
+mod package;
 mod quantities;
 mod refine;
 mod render;

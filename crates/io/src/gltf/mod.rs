@@ -16,7 +16,6 @@
 //! what it names, files are reached below the document's folder only, and a flaw names its place as JavaScript would.
 
 mod accessor;
-mod affine;
 mod attributes;
 mod changes;
 mod codecs;

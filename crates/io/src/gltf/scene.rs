@@ -4,11 +4,11 @@
 //! a point that is d from another there is at most that stretch times d from it in the scene. The vertices of a skin go
 //! where a mixture of its joints' matrices puts them, and a mixture stretches no more than the worst of them.
 
-use super::affine::{self, Affine, IDENTITY};
 use super::flaw::{GltfFlaw, Result};
 use super::json::At;
 use super::parts::MeshSoup;
 use super::source::Source;
+use crate::affine::{self, Affine, IDENTITY};
 
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 

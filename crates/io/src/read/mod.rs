@@ -9,6 +9,7 @@ mod stl;
 use crate::error::{Flaw, Place, ReadError};
 use crate::format::{Format, looks_like_other};
 use crate::gltf::Asset;
+use crate::threemf::Package;
 use limitmesh::mesh::{PolygonFaces, PolygonSoup};
 use std::io;
 use std::path::Path;
@@ -67,6 +68,7 @@ pub fn read_bytes(bytes: &[u8], format: Format) -> Result<PolygonSoup, ReadError
         Format::Ply => ply::read(bytes),
         Format::Stl => stl::read(bytes),
         Format::Off => off::read(bytes),
+        Format::ThreeMf => return Package::from_bytes(bytes.to_vec())?.scene_soup(),
     };
     soup.map_err(|flaw| flaw.in_format(format))
 }

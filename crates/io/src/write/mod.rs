@@ -16,6 +16,7 @@ pub use whole::{check_writable, write_whole};
 use crate::error::WriteError;
 use crate::format::Format;
 use crate::gltf;
+use crate::threemf;
 use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Triangles};
 use std::io::Write;
 use std::path::Path;
@@ -169,14 +170,14 @@ fn is_single(format: Format, options: &WriteOptions) -> bool {
     match format {
         Format::Stl => !options.ascii,
         Format::Gltf | Format::Glb => true,
-        Format::Obj | Format::Ply | Format::Off => false,
+        Format::Obj | Format::Ply | Format::Off | Format::ThreeMf => false,
     }
 }
 
 /// Writes a mesh file in the format of its extension, whole or not at all (see [`write_whole`]).
 ///
 /// What the format cannot hold is left out: [`Output`] says which holds what. Positions keep every bit in
-/// OBJ, PLY, OFF and ASCII STL; binary STL and glTF round them to `f32`. STL repeats them in each facet.
+/// OBJ, PLY, OFF, 3MF and ASCII STL; binary STL and glTF round them to `f32`. STL repeats them in each facet.
 ///
 /// # Errors
 /// The extension is unknown, the output does not fit together or into the format, or the system refuses.
@@ -227,6 +228,7 @@ fn write_checked(
         Format::Stl => stl::write(writer, output, options.ascii)?,
         Format::Off => off::write(writer, output)?,
         Format::Gltf | Format::Glb => writer.write_all(&gltf::write_fresh(None, format, output)?)?,
+        Format::ThreeMf => writer.write_all(&threemf::write_fresh(output.surface)?)?,
     }
     Ok(writer.flush()?)
 }

@@ -144,7 +144,7 @@ pub(super) fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
         output::check_writable(output)?;
         let binary = match arguments.format()? {
             Some(Format::Ply | Format::Stl) => !arguments.ascii,
-            format => format == Some(Format::Glb),
+            format => matches!(format, Some(Format::Glb | Format::ThreeMf)),
         };
         if output::is_standard_output(output) && binary && std::io::stdout().is_terminal() {
             return usage(

@@ -11,6 +11,7 @@ mod exact;
 mod input_distance;
 mod jobs;
 mod normals;
+mod package;
 mod provenance;
 mod stepwise;
 
@@ -88,6 +89,9 @@ fn refine(
 ) -> anyhow::Result<Outcome> {
     if let Some(asset) = asset::Job::of(arguments, format)? {
         return asset.run(progress);
+    }
+    if let Some(package) = package::Job::of(arguments, format)? {
+        return package.run(progress);
     }
     let kept: &[&str] = if format.is_some_and(Normals::are_held) { &["normals"] } else { &[] };
     let input = input::load_for(arguments.input(), &arguments.build, (kept, &arguments.channels), progress)?;

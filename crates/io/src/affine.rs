@@ -1,12 +1,12 @@
 //! Affine maps of space, and how much they stretch.
 
 /// Three rows: x' = row · (x, y, z, 1).
-pub(super) type Affine = [[f64; 4]; 3];
+pub(crate) type Affine = [[f64; 4]; 3];
 
-pub(super) const IDENTITY: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+pub(crate) const IDENTITY: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
 /// `a` after `b`.
-pub(super) fn product(a: &Affine, b: &Affine) -> Affine {
+pub(crate) fn product(a: &Affine, b: &Affine) -> Affine {
     a.map(|row| {
         std::array::from_fn(|column| {
             let own = if column == 3 { row[3] } else { 0.0 };
@@ -16,12 +16,12 @@ pub(super) fn product(a: &Affine, b: &Affine) -> Affine {
 }
 
 /// From 16 numbers by column; the last row counts as 0, 0, 0, 1.
-pub(super) fn of_columns(m: &[f64; 16]) -> Affine {
+pub(crate) fn of_columns(m: &[f64; 16]) -> Affine {
     std::array::from_fn(|row| std::array::from_fn(|column| m[4 * column + row]))
 }
 
 /// Scaling, then rotating by a quaternion x, y, z, w of any length, then moving.
-pub(super) fn of_parts(translation: [f64; 3], rotation: [f64; 4], scale: [f64; 3]) -> Affine {
+pub(crate) fn of_parts(translation: [f64; 3], rotation: [f64; 4], scale: [f64; 3]) -> Affine {
     let length = rotation.iter().map(|x| x * x).sum::<f64>().sqrt();
     let [x, y, z, w] = if length > 0.0 { rotation.map(|c| c / length) } else { [0.0, 0.0, 0.0, 1.0] };
     let rows = [
@@ -36,18 +36,18 @@ pub(super) fn of_parts(translation: [f64; 3], rotation: [f64; 4], scale: [f64; 3
 }
 
 /// Where a point goes.
-pub(super) fn apply(m: &Affine, [x, y, z]: [f64; 3]) -> [f64; 3] {
+pub(crate) fn apply(m: &Affine, [x, y, z]: [f64; 3]) -> [f64; 3] {
     m.map(|row| row[0] * x + row[1] * y + row[2] * z + row[3])
 }
 
 /// Whether it turns surfaces inside out.
-pub(super) fn mirrors(m: &Affine) -> bool {
+pub(crate) fn mirrors(m: &Affine) -> bool {
     determinant(&linear(m)) < 0.0
 }
 
 /// How many times longer it makes vectors at most: the greatest singular value M, √λ of the greatest eigenvalue of MᵀM,
 /// by the closed form for symmetric matrices of three rows (Smith 1961).
-pub(super) fn greatest_stretch(m: &Affine) -> f64 {
+pub(crate) fn greatest_stretch(m: &Affine) -> f64 {
     let m = linear(m);
     let size = m.as_flattened().iter().fold(0.0f64, |most, x| most.max(x.abs()));
     if size == 0.0 || !size.is_finite() {

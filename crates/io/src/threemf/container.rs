@@ -1,0 +1,154 @@
+//! The archive: parts are read from it, and all but those that changed are copied as they are, compressed.
+//!
+//! What the archive says of its own sizes is not believed: a part is given up where it becomes larger than [`MOST_BYTES`].
+
+use super::flaw::{self, PackageFlaw};
+use super::xml::{Element, attribute};
+use quick_xml::events::Event;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read, Write};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
+
+/// Bytes of all parts together that are read, at most: as much as some thirty million triangles take.
+pub(super) const MOST_BYTES: u64 = 1 << 31;
+
+/// Parts at most.
+const MOST_PARTS: usize = 100_000;
+
+/// The relationships of a package.
+const RELATIONSHIPS: &str = "_rels/.rels";
+
+/// The type of the relationship to the model.
+const MODEL: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
+
+/// The bytes of a package, and where its parts are.
+#[derive(Clone)]
+pub(super) struct Container {
+    bytes: Vec<u8>,
+    names: Vec<String>,
+}
+
+impl Container {
+    pub(super) fn parse(bytes: Vec<u8>) -> flaw::Result<Self> {
+        let archive = ZipArchive::new(Cursor::new(bytes.as_slice())).map_err(broken)?;
+        if archive.len() > MOST_PARTS {
+            let met = format!("{} parts", archive.len());
+            return Err(PackageFlaw::of_archive(met, format!("at most {MOST_PARTS}")));
+        }
+        // A part whose name cannot be read is copied, and never asked for.
+        let name =
+            |i| archive.name_for_index(i).and_then(Result::ok).map_or_else(String::new, Cow::into_owned);
+        let names = (0..archive.len()).map(name).collect();
+        drop(archive);
+        Ok(Self { bytes, names })
+    }
+
+    /// A part as the archive calls it; names are alike in capitals and small letters.
+    pub(super) fn find(&self, name: &str) -> Option<usize> {
+        let name = name.trim_start_matches('/');
+        let is_own = |own: &&String| own.trim_start_matches('/').eq_ignore_ascii_case(name);
+        self.names.iter().position(|own| is_own(&own))
+    }
+
+    /// The name of a part.
+    pub(super) fn name(&self, part: usize) -> &str {
+        &self.names[part]
+    }
+
+    /// The text of a part, counting it to what has been `read` so far.
+    pub(super) fn text(&self, part: usize, read: &mut u64) -> flaw::Result<String> {
+        let name = &self.names[part];
+        let mut archive = ZipArchive::new(Cursor::new(self.bytes.as_slice())).map_err(broken)?;
+        let flaw = |met: String| PackageFlaw::new(name, met, "a part that can be unpacked");
+        let file = archive.by_index(part).map_err(|why| flaw(why.to_string()))?;
+        let most = MOST_BYTES - *read;
+        let mut bytes = Vec::new();
+        file.take(most + 1).read_to_end(&mut bytes).map_err(|why| flaw(why.to_string()))?;
+        *read += bytes.len() as u64;
+        if *read > MOST_BYTES {
+            let met = "more than 2 GiB with the parts before it";
+            return Err(PackageFlaw::new(name, met, "less in all models together"));
+        }
+        // What some programs put before text in UTF-8 stays: it is part of what is edited.
+        String::from_utf8(bytes).map_err(|error| {
+            let met = format!("byte {} that is not UTF-8", error.utf8_error().valid_up_to());
+            PackageFlaw::new(name, met, "text in UTF-8")
+        })
+    }
+
+    /// The part that is the model, by the package's relationships.
+    pub(super) fn root(&self, read: &mut u64) -> flaw::Result<usize> {
+        let Some(relationships) = self.find(RELATIONSHIPS) else {
+            return Err(PackageFlaw::of_archive(format!("no part {RELATIONSHIPS}"), "a 3MF package"));
+        };
+        let text = self.text(relationships, read)?;
+        let name = self.name(relationships);
+        let mut reader = quick_xml::Reader::from_str(&text);
+        loop {
+            let at = reader.buffer_position() as usize;
+            let event = reader
+                .read_event()
+                .map_err(|why| PackageFlaw::new(name, why.to_string(), "well-formed XML").at(&text, at))?;
+            let (Event::Start(tag) | Event::Empty(tag)) = event else {
+                if event == Event::Eof {
+                    return Err(PackageFlaw::new(name, "no relationship to a 3D model", "one"));
+                }
+                continue;
+            };
+            let element = Element::new(&tag, &text);
+            if attribute(element.attributes, "Type") != Some(MODEL) {
+                continue;
+            }
+            let target = attribute(element.attributes, "Target").unwrap_or_default();
+            return self.find(target).ok_or_else(|| {
+                PackageFlaw::new(name, format!("the model '{target}'"), "a part of the package").at(&text, at)
+            });
+        }
+    }
+
+    /// The package with other texts for some of its parts; all others are copied as they are.
+    pub(super) fn with(&self, changed: &BTreeMap<usize, String>) -> zip::result::ZipResult<Vec<u8>> {
+        let mut archive = ZipArchive::new(Cursor::new(self.bytes.as_slice()))?;
+        let mut writer = ZipWriter::new(Cursor::new(Vec::with_capacity(self.bytes.len())));
+        for part in 0..archive.len() {
+            let Some(text) = changed.get(&part) else {
+                writer.raw_copy_file(archive.by_index_raw(part)?)?;
+                continue;
+            };
+            let old = archive.by_index_raw(part)?;
+            let mut options = options(text.len());
+            if let Some(time) = old.last_modified() {
+                options = options.last_modified_time(time);
+            }
+            let name = old.name()?.into_owned();
+            drop(old);
+            writer.start_file(name, options)?;
+            writer.write_all(text.as_bytes())?;
+        }
+        Ok(writer.finish()?.into_inner())
+    }
+}
+
+/// A new package of parts with their names.
+pub(super) fn fresh(parts: &[(&str, &[u8])]) -> zip::result::ZipResult<Vec<u8>> {
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in parts {
+        writer.start_file(*name, options(bytes.len()))?;
+        writer.write_all(bytes)?;
+    }
+    Ok(writer.finish()?.into_inner())
+}
+
+/// How parts are written; without a time, so that the same input gives the same bytes.
+fn options(length: usize) -> SimpleFileOptions {
+    SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Deflated)
+        .last_modified_time(zip::DateTime::default())
+        .large_file(length >= u32::MAX as usize)
+}
+
+fn broken(why: zip::result::ZipError) -> PackageFlaw {
+    PackageFlaw::of_archive(format!("an archive that cannot be read ({why})"), "a ZIP archive, as 3MF is")
+}

@@ -1,0 +1,412 @@
+//! 3MF packages: what is read of them, that nothing but triangles changes, and what is refused; witnesses are archives and texts put
+//! together and taken apart here.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test")]
+
+use std::io::{Cursor, Read, Write};
+
+use limitmesh_io::threemf::{LengthUnit, NewTriangles, Source};
+use limitmesh_io::{Format, Output, Package, WriteOptions, read_bytes, write_to};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
+
+const RELATIONSHIPS: &str = r#"<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
+<Relationship Id="t" Target="/Metadata/thumbnail.png" Type="http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail"/>
+<Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>"#;
+
+/// An archive of these parts, the second time of another kind of compression.
+fn archive(parts: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    for (i, (name, bytes)) in parts.iter().enumerate() {
+        let method = [CompressionMethod::Deflated, CompressionMethod::Stored][i % 2];
+        writer.start_file(*name, SimpleFileOptions::default().compression_method(method)).unwrap();
+        writer.write_all(bytes).unwrap();
+    }
+    writer.finish().unwrap().into_inner()
+}
+
+/// A package with a model, a picture, and other parts.
+fn package(model: &str, more: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut parts: Vec<(&str, &[u8])> = vec![
+        ("[Content_Types].xml", b"<Types/>"),
+        ("_rels/.rels", RELATIONSHIPS.as_bytes()),
+        ("Metadata/thumbnail.png", b"\x89PNG\r\n\x1a\n\0\0no real picture"),
+        ("3D/3dmodel.model", model.as_bytes()),
+    ];
+    parts.extend(more);
+    archive(&parts)
+}
+
+/// The raw bytes of all parts of an archive, compressed as they are.
+fn raw(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
+    let count = archive.len();
+    let mut read = |i| {
+        let mut file = archive.by_index_raw(i).unwrap();
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).unwrap();
+        (file.name().unwrap().into_owned(), bytes)
+    };
+    (0..count).map(|i| read(i)).collect()
+}
+
+/// A part's text.
+fn text(bytes: &[u8], name: &str) -> String {
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
+    let mut text = String::new();
+    archive.by_name(name).unwrap().read_to_string(&mut text).unwrap();
+    text
+}
+
+/// The values of an attribute in all tags of a name, empty where a tag has none.
+fn values(text: &str, tag: &str, key: &str) -> Vec<String> {
+    let tags = text.split('<').filter(|own| own.starts_with(&format!("{tag} ")));
+    let value = |own: &str| {
+        let found = own.split_once(&format!(" {key}=\""));
+        found.map_or_else(String::new, |(_, rest)| rest.split('"').next().unwrap().to_owned())
+    };
+    tags.map(value).collect()
+}
+
+/// A tetrahedron's vertices and triangles, the first with `first` in its tag.
+fn tetrahedron(prefix: &str, first: &str) -> String {
+    let p = prefix;
+    format!(
+        "<{p}mesh>\n   <{p}vertices>\n    <{p}vertex x=\"0\" y=\"0\" z=\"0\"/>\n    <{p}vertex x=\"1e0\" y=\"0\" z=\"0\" />\
+         <{p}vertex x=\"0\" y=\"+2\" z=\"0\"></{p}vertex><{p}vertex z=\"3\" y=\"0\" x=\"-0.5\"/>\n   </{p}vertices>\n   \
+         <{p}triangles a:b='c'>\n    <{p}triangle v1=\"0\" v2=\"2\" v3=\"1\"{first}/>\n    <{p}triangle v1=\"0\" v2=\"1\" v3=\"3\"/>\
+         <{p}triangle v1=\"1\" v2=\"2\" v3=\"3\"/><{p}triangle v1=\"2\" v2=\"0\" v3=\"3\"/>\n   </{p}triangles>\n  </{p}mesh>"
+    )
+}
+
+fn model(resources: &str, build: &str) -> String {
+    format!(
+        "\u{feff}<?xml version=\"1.0\"?>\n<!-- kept --><model unit=\"inch\" xmlns=\"c\" xmlns:q='q'>\n <metadata name=\"Title\">a &amp; b</metadata>\n \
+         <resources>{resources}</resources>\n <build>{build}</build>\n</model>\n"
+    )
+}
+
+#[test]
+fn what_is_built_is_read() {
+    let resources = format!(
+        "<object id=\"1\" name=\"a &lt; b\">{}</object><object id=\"2\"><components><component objectid=\"1\"/>\
+         <component objectid=\"1\" transform=\"0 1 0 -1 0 0 0 0 1 10 0 0\"/></components></object>\
+         <object id=\"3\">{}</object>",
+        tetrahedron("", ""),
+        tetrahedron("", "")
+    );
+    let build = "<item objectid=\"2\" transform=\"2 0 0 0 2 0 0 0 3 0 0 100\"/><item objectid=\"1\"/>";
+    let bytes = package(&model(&resources, build), &[]);
+    let package = Package::from_bytes(bytes.clone()).unwrap();
+    assert_eq!((package.object_count(), package.unit()), (2, LengthUnit::Inch));
+    assert_eq!(package.object_name(0), "object 1 'a < b'");
+    assert!((package.stretch(0) - 3.0).abs() < 1e-12 && package.stretch(1) == 1.0);
+    let contents = package.contents();
+    assert_eq!((contents.objects[0].built, contents.objects[1].built), (3, 0));
+    assert_eq!((contents.items, contents.assemblies), (2, 1));
+    let soup = read_bytes(&bytes, Format::ThreeMf).unwrap();
+    assert_eq!((soup.positions.len(), soup.faces.len()), (12, 12));
+    // The last vertex, (-0.5, 0, 3): as it is scaled, then turned about z, moved and scaled, then as it is.
+    assert_eq!(soup.positions[3], [-1.0, 0.0, 109.0]);
+    assert_eq!(soup.positions[7], [20.0, -1.0, 109.0]);
+    assert_eq!(soup.positions[11], [-0.5, 0.0, 3.0]);
+    let [low, high] = package.bounding_box().unwrap().unwrap();
+    assert_eq!((low, high), ([-1.0, -1.0, 0.0], [20.0, 4.0, 109.0]));
+}
+
+#[test]
+fn only_triangles_change() {
+    for prefix in ["", "q:"] {
+        let tags = |text: &str| text.replace('@', prefix);
+        let first = " pid=\"5\" p1=\"0\" q:x='&quot;'";
+        let text_of = tags(&format!(
+            "<?xml version=\"1.0\"?>\r\n<@model xmlns:q=\"c\" xmlns=\"c\"><@resources><other>é</other><@object id=\"7\" pid='1' pindex=\"0\">\
+             {}</@object></@resources><@build><@item  objectid=\"7\"/></@build></@model><!-- end -->",
+            tetrahedron(prefix, first)
+        ));
+        let bytes = package(&text_of, &[("Metadata/x.config", b"<config/>")]);
+        let mut package = Package::from_bytes(bytes.clone()).unwrap();
+        // Nothing replaced, nothing changed.
+        assert_eq!(raw(&package.to_bytes().unwrap()), raw(&bytes));
+        let own = package.object(0, true);
+        assert_eq!((own.is_uniform, own.varies_within), (false, false));
+        assert_eq!(own.attributes, ["p1", "pid", "q:x"]);
+        // Each triangle in two, in another order.
+        let positions: Vec<[f64; 3]> = (0..9).map(|i| [f64::from(i), 0.1, -1e-30]).collect();
+        let triangles: Vec<[u32; 3]> = (0..8).map(|i| [i, i + 1, (i + 2) % 9]).collect();
+        let source = |triangle: usize| Source { face: (7 - triangle) / 2, corners: None };
+        let keeps = |_: &str| true;
+        let new =
+            NewTriangles { positions: &positions, triangles: &triangles, source: &source, keeps: &keeps };
+        package.replace(0, &new).unwrap();
+        let written = package.to_bytes().unwrap();
+        for ((name, new), (_, old)) in raw(&written).iter().zip(raw(&bytes)) {
+            assert!(*new == old || name == "3D/3dmodel.model", "{name} changed");
+        }
+        let new = text(&written, "3D/3dmodel.model");
+        let cut = |text: &str| -> Vec<String> {
+            let at = |tag: &str| text.find(&tags(tag)).unwrap();
+            let ranges = [
+                0..at("<@vertices>") + tags("<@vertices>").len(),
+                at("</@vertices>")..at("<@triangles a") + tags("<@triangles a:b='c'>").len(),
+                at("</@triangles>")..text.len(),
+            ];
+            ranges.map(|range| text[range].to_owned()).to_vec()
+        };
+        assert_eq!(cut(&new), cut(&text_of));
+        assert_eq!(values(&new, &tags("@vertex"), "x").len(), 9);
+        assert_eq!(values(&new, &tags("@vertex"), "z")[4], "-1e-30");
+        let properties = values(&new, &tags("@triangle"), "pid");
+        assert_eq!(properties.iter().filter(|pid| *pid == "5").count(), 2);
+        assert_eq!(new.matches("q:x='&quot;'").count(), 2);
+        let again = Package::from_bytes(written).unwrap().scene_soup().unwrap();
+        assert_eq!((again.positions, again.faces.len()), (positions, 8));
+    }
+}
+
+#[test]
+fn volumes_are_numbered_anew() {
+    let object = |id: u32| format!("<object id=\"{id}\">{}</object>", tetrahedron("", ""));
+    let model = model(&(object(1) + &object(2)), "<item objectid=\"1\"/><item objectid=\"2\"/>");
+    let config = "<config><object id=\"1\"><volume firstid=\"0\" lastid=\"0\"><m/></volume><volume firstid=\"1\" lastid=\"3\"/>\
+                  </object><object id=\"2\"><volume firstid=\"0\" lastid=\"3\"/></object></config>";
+    let bytes = package(&model, &[("Metadata/Slic3r_PE_model.config", config.as_bytes())]);
+    let mut package = Package::from_bytes(bytes).unwrap();
+    // The first triangle is a volume of its own: joined by position within volumes, and no farther.
+    let own = package.object(0, true);
+    assert!(own.is_joined && !own.is_uniform);
+    assert_eq!((own.soup.positions.len(), own.soup.faces.len()), (7, 4));
+    assert_eq!(package.object(1, true).soup.positions.len(), 4);
+    let positions = vec![[0.0; 3]; 3];
+    let triangles = vec![[0, 1, 2]; 10];
+    // Six from the first, given in an order of their own.
+    let source = |triangle: usize| Source { face: [0, 3, 0, 0, 1, 0, 2, 0, 0, 1][triangle], corners: None };
+    let new =
+        NewTriangles { positions: &positions, triangles: &triangles, source: &source, keeps: &|_| true };
+    package.replace(0, &new).unwrap();
+    let written = text(&package.to_bytes().unwrap(), "Metadata/Slic3r_PE_model.config");
+    let expected = config.replacen("lastid=\"0\"", "lastid=\"5\"", 1).replacen(
+        "firstid=\"1\" lastid=\"3\"",
+        "firstid=\"6\" lastid=\"9\"",
+        1,
+    );
+    assert_eq!(written, expected);
+    let nothing = |_: usize| Source { face: 1, corners: None };
+    let new = NewTriangles { source: &nothing, ..new };
+    let flaw = package.replace(0, &new).unwrap_err().to_string();
+    assert!(flaw.contains("no triangles left of the volume from 0 to 0"), "{flaw}");
+}
+
+#[test]
+fn objects_of_other_parts_are_found() {
+    let other = format!(
+        "<model xmlns=\"c\"><resources><object id=\"4\">{}</object></resources><build/></model>",
+        tetrahedron("", "")
+    );
+    let resources = "<object id=\"1\"><components><component p:path=\"/3D/Objects/part_1.model\" objectid=\"4\" \
+                     transform=\"1 0 0 0 1 0 0 0 1 5 0 0\"/></components></object>";
+    let bytes = package(
+        &model(resources, "<item objectid=\"1\"/>"),
+        &[("3D/Objects/part_1.model", other.as_bytes())],
+    );
+    let package = Package::from_bytes(bytes).unwrap();
+    assert_eq!(package.object_name(0), "object 4 of 3D/Objects/part_1.model");
+    assert_eq!(package.scene_soup().unwrap().positions[3], [4.5, 0.0, 3.0]);
+}
+
+#[test]
+fn triangles_become_packages() {
+    let positions = [[0.1, 0.2, 0.3], [1e-300, -2.0, 1e21], [3.0, 4.0, 5.0]];
+    let triangles = [[0, 1, 2]];
+    let output = Output::new(limitmesh::mesh::Triangles { positions: &positions, triangles: &triangles });
+    let write = || {
+        let mut bytes = Vec::new();
+        write_to(&mut bytes, Format::ThreeMf, &output, &WriteOptions::default()).unwrap();
+        bytes
+    };
+    let bytes = write();
+    assert_eq!(bytes, write());
+    let soup = read_bytes(&bytes, Format::ThreeMf).unwrap();
+    assert_eq!((soup.positions.as_slice(), soup.faces.len()), (&positions[..], 1));
+    assert_eq!(values(&text(&bytes, "3D/3dmodel.model"), "vertex", "z")[1], "1e21");
+}
+
+/// What a package with this model is refused with.
+fn refused(bytes: Vec<u8>) -> String {
+    match read_bytes(&bytes, Format::ThreeMf) {
+        Ok(_) => panic!("it was read"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn flaws_name_their_place() {
+    let mesh = tetrahedron("", "");
+    let object = |mesh: &str| model(&format!("<object id=\"1\">{mesh}</object>"), "<item objectid=\"1\"/>");
+    let whole = object(&mesh);
+    let cases: [(String, &str); 24] = [
+        (
+            object(&mesh.replace("v3=\"1\"/>", "v3=\"9\"/>")),
+            "line 9, column 5, object 1: met v3='9', expected a vertex below 4",
+        ),
+        (object(&mesh.replace("v3=\"1\"/>", "/>")), "object 1: met no v3, expected a vertex below 4"),
+        (object(&mesh.replace("v3=\"1\"/>", "v3=\"-1\"/>")), "met v3='-1'"),
+        (
+            object(&mesh.replace("y=\"+2\"", "y=\"2m\"")),
+            "line 6, column 48, object 1: met y='2m', expected a finite number",
+        ),
+        (object(&mesh.replace("y=\"+2\"", "y=\"1e999\"")), "met y='1e999'"),
+        (object(&mesh.replace("y=\"+2\"", "y=\"NaN\"")), "met y='NaN'"),
+        (object(&mesh.replace("</triangles>", "</triangle>")), "expected well-formed XML"),
+        (whole.replace("</model>", ""), "3D/3dmodel.model"),
+        (whole.replace("\"inch\"", "\"furlong\""), "the unit 'furlong', expected micron, millimeter"),
+        (whole.replace("<model ", "<modell "), "well-formed XML"),
+        (whole.replace("model", "modell"), "met the element modell, expected one model"),
+        (String::new(), "met no element model"),
+        (
+            whole.replace("<!-- kept -->", "<!DOCTYPE x [<!ENTITY y \"z\">]>"),
+            "met a document type, expected none",
+        ),
+        (whole.replace("objectid=\"1\"", "objectid=\"2\""), "met object 2, expected one that there is"),
+        (whole.replace("objectid=\"1\"", "objectid=\"1\" q:path=\"/x.model\""), "met object 1 of /x.model"),
+        (whole.replace("objectid=\"1\"", "objectid=\"one\""), "met objectid='one', expected a whole number"),
+        (
+            whole.replace("objectid=\"1\"", "objectid=\"1\" transform=\"1 0 0\""),
+            "expected twelve finite numbers",
+        ),
+        (
+            whole.replace("objectid=\"1\"", "objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 inf\""),
+            "twelve finite numbers",
+        ),
+        (whole.replace("<object id=\"1\"", "<object"), "met no id, expected a whole number"),
+        (whole.replace("</object>", "</object><object id=\"1\"/>"), "met a second object 1"),
+        (object(&format!("{mesh}{mesh}")), "met a second mesh"),
+        (object(&mesh.replace("</mesh>", "<triangles/></mesh>")), "met a second list of triangles"),
+        (
+            model(
+                "<object id=\"1\"><components><component objectid=\"1\"/></components></object>",
+                "<item objectid=\"1\"/>",
+            ),
+            "more than 64 components within each other",
+        ),
+        (
+            model(
+                &(2..40).fold("<object id=\"1\"/>".to_owned(), |all, id| {
+                    let own = format!("<component objectid=\"{}\"/>", id - 1).repeat(2);
+                    format!("{all}<object id=\"{id}\"><components>{own}</components></object>")
+                }),
+                "<item objectid=\"39\"/>",
+            ),
+            "more than 1000000 objects with all components",
+        ),
+    ];
+    for (model, words) in cases {
+        let said = refused(package(&model, &[]));
+        assert!(said.contains(words) && said.starts_with("3MF 3D/3dmodel.model"), "{said}\nwithout\n{words}");
+    }
+    let rels = |text: &str| archive(&[("_rels/.rels", text.as_bytes())]);
+    for (bytes, words) in [
+        (b"PK\x03\x04 and no more".to_vec(), "the package: met an archive that cannot be read"),
+        (archive(&[("a", b"b")]), "met no part _rels/.rels, expected a 3MF package"),
+        (rels("<Relationships/>"), "_rels/.rels: met no relationship to a 3D model"),
+        (rels(RELATIONSHIPS), "the model '/3D/3dmodel.model', expected a part of the package"),
+        (rels("<a><b></a>"), "expected well-formed XML"),
+        (b"solid x\nendsolid".to_vec(), "named as 3MF, but the content looks like"),
+        (Vec::new(), "the file is empty"),
+        (
+            package("\u{fffd}", &[]).iter().map(|&b| if b == 0xBF { 0xFF } else { b }).collect(),
+            "cannot be unpacked",
+        ),
+    ] {
+        let said = refused(bytes);
+        assert!(said.contains(words), "{said}\nwithout\n{words}");
+    }
+}
+
+#[test]
+fn packages_that_swell_are_refused() {
+    // Two gigabytes of blanks in two megabytes.
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    let deflated = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
+    writer.start_file("_rels/.rels", deflated).unwrap();
+    writer.write_all(RELATIONSHIPS.as_bytes()).unwrap();
+    writer.start_file("3D/3dmodel.model", deflated.large_file(true)).unwrap();
+    let blanks = vec![b' '; 1 << 24];
+    (0..129).for_each(|_| writer.write_all(&blanks).unwrap());
+    let said = refused(writer.finish().unwrap().into_inner());
+    assert!(said.contains("3D/3dmodel.model: met more than 2 GiB"), "{said}");
+}
+
+#[test]
+fn damaged_packages_are_errors_or_meshes() {
+    let whole = model(
+        &format!(
+            "<object id=\"1\">{}</object><object id=\"2\"><components><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 5 0 0\"/>\
+             </components></object>",
+            tetrahedron("", " pid=\"1\" paint_color=\"80043\"")
+        ),
+        "<item objectid=\"2\"/>",
+    );
+    let config = b"<config><object id=\"1\"><volume firstid=\"0\" lastid=\"3\"/></object></config>";
+    // A generator of numbers that are nothing special.
+    let mut state = 0x9E37_79B9_7F4A_7C15u64;
+    let mut random = move |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let marks = [
+        "<",
+        ">",
+        "/",
+        "\"",
+        "=",
+        "&",
+        " ",
+        "mesh",
+        "<vertices>",
+        "9999999999",
+        "-",
+        "\u{feff}",
+        "<triangles/>",
+    ];
+    let mut read = 0;
+    for _ in 0..4000 {
+        let mut text = whole.clone();
+        for _ in 0..1 + random(3) {
+            let at = (0..).map(|_| random(text.len())).find(|&at| text.is_char_boundary(at)).unwrap();
+            let end = (at..=(at + random(20)).min(text.len()))
+                .rev()
+                .find(|&end| text.is_char_boundary(end))
+                .unwrap();
+            text.replace_range(at..end, marks[random(marks.len())]);
+        }
+        let bytes = package(&text, &[("Metadata/Slic3r_PE_model.config", config)]);
+        let Ok(mut package) = Package::from_bytes(bytes) else { continue };
+        read += 1;
+        let _ = (package.bounding_box(), package.contents(), package.scene_soup());
+        for object in 0..package.object_count() {
+            let own = package.object(object, true);
+            let triangles: Vec<[u32; 3]> =
+                own.soup.faces.iter().map(|face| face.try_into().unwrap()).collect();
+            let centre = Some([[0.4, 0.3, 0.3], [0.3, 0.4, 0.3], [0.3, 0.3, 0.4]]);
+            let source = |face: usize| Source { face, corners: centre };
+            let positions = &own.soup.positions;
+            let new = NewTriangles { positions, triangles: &triangles, source: &source, keeps: &|_| true };
+            package.replace(object, &new).unwrap();
+        }
+        let again = Package::from_bytes(package.to_bytes().unwrap()).unwrap();
+        assert_eq!(again.object_count(), package.object_count());
+    }
+    assert!(read > 100, "{read}");
+    // And the archive itself.
+    let bytes = package(&whole, &[]);
+    for _ in 0..4000 {
+        let mut bytes = bytes.clone();
+        for _ in 0..1 + random(4) {
+            let at = random(bytes.len());
+            bytes[at] = random(256) as u8;
+        }
+        bytes.truncate(bytes.len() - random(3) * random(bytes.len()) / 3);
+        let _ = read_bytes(&bytes, Format::ThreeMf);
+    }
+}
