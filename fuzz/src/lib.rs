@@ -1,9 +1,17 @@
 //! What every fuzz target does with its bytes: read them, build a mesh of what was read, write and read it again.
 
+use std::io::{Cursor, Write};
+
 use limitmesh::Mesh;
+use limitmesh::carry::carried;
 use limitmesh::mesh::{BuildOptions, PolygonSoup, Weld};
+use limitmesh::refine::{ExactOptions, exact};
+use limitmesh::scheme::Loop;
 use limitmesh_io::gltf::{Geometry, Joining};
-use limitmesh_io::{Asset, Format, Output, WriteOptions, read_bytes, write_to};
+use limitmesh_io::threemf::{NewTriangles, Source};
+use limitmesh_io::{Asset, Format, Output, Package, WriteOptions, read_bytes, write_to};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
 
 /// Most faces and corners that are built into a mesh, to keep each run short; reading has no limit.
 const LARGEST: usize = 4096;
@@ -60,5 +68,75 @@ pub fn edit(bytes: &[u8]) {
         if let Err(error) = Asset::from_bytes(&written, None) {
             panic!("what was written cannot be read: {error}");
         }
+    }
+}
+
+/// Faces of meshes that are refined, at most.
+const FEW: usize = 64;
+
+/// Reads a mesh, carries its channels to a refined one, writes that in every format that holds some, and reads it again.
+pub fn carry(bytes: &[u8], format: Format) {
+    let Ok(soup) = read_bytes(bytes, format) else { return };
+    if soup.faces.len() > FEW || soup.faces.corner_count() > 4 * FEW || soup.channels.len() > 8 {
+        return;
+    }
+    let Ok((mesh, _, trace)) = Mesh::from_soup_traced(&soup, &BuildOptions::default()) else { return };
+    let channels: Result<Vec<_>, _> = soup.channels.iter().map(|own| own.on_mesh(&soup, &mesh, &trace)).collect();
+    let channels = match channels {
+        Ok(channels) => channels,
+        Err(error) => panic!("a channel that was read does not fit: {error}"),
+    };
+    let options = ExactOptions::default()
+        .tolerance(0.05 * mesh.diagonal().max(f64::MIN_POSITIVE))
+        .max_triangles(Some(16 * FEW))
+        .flat_regions(false)
+        .origins(true);
+    let Ok(found) = exact(&mesh, &Loop, &options) else { return };
+    // Values may overflow where they are blended.
+    let Ok(channels) = carried(&channels, &mesh, &Loop, &found) else { return };
+    let output = Output::new(found.mesh.as_triangles()).channels(&channels);
+    for (format, ascii) in
+        [(Format::Obj, false), (Format::Ply, true), (Format::Ply, false), (Format::Off, false), (Format::Stl, true)]
+    {
+        let mut bytes = Vec::new();
+        if write_to(&mut bytes, format, &output, &WriteOptions::default().ascii(ascii)).is_ok()
+            && let Err(error) = read_bytes(&bytes, format)
+        {
+            panic!("what was written cannot be read: {error}");
+        }
+    }
+}
+
+/// A package whose model is these bytes.
+pub fn packed(model: &[u8]) -> Vec<u8> {
+    const RELATIONSHIPS: &[u8] = b"<Relationships><Relationship Target=\"/a.model\" \
+        Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in [("_rels/.rels", RELATIONSHIPS), ("a.model", model), ("Metadata/Slic3r_PE_model.config", model)] {
+        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+        let written = writer.start_file(name, options).map(|()| writer.write_all(bytes));
+        assert!(matches!(written, Ok(Ok(()))), "memory can be written to");
+    }
+    writer.finish().map(Cursor::into_inner).unwrap_or_default()
+}
+
+/// Takes the triangles out of a 3MF package, puts them back in reverse, and reads what is written.
+pub fn edit_package(bytes: Vec<u8>) {
+    let Ok(mut package) = Package::from_bytes(bytes) else { return };
+    let _ = (package.contents(), package.bounding_box());
+    for object in 0..package.object_count().min(16) {
+        let soup = package.object(object, true).soup;
+        let triangles: Vec<[u32; 3]> = soup.faces.iter().filter_map(|face| face.try_into().ok()).collect();
+        let last = triangles.len() - 1;
+        let centre = Some([[0.4, 0.3, 0.3], [0.3, 0.4, 0.3], [0.3, 0.3, 0.4]]);
+        let source = |triangle: usize| Source { face: last - triangle, corners: centre };
+        let positions = &soup.positions;
+        let new = NewTriangles { positions, triangles: &triangles, source: &source, keeps: &|name| name != "pid" };
+        let _ = package.replace(object, &new);
+    }
+    let Ok(written) = package.to_bytes() else { return };
+    match Package::from_bytes(written) {
+        Ok(again) => assert_eq!(again.object_count(), package.object_count()),
+        Err(error) => panic!("what was written cannot be read: {error}"),
     }
 }

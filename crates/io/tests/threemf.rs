@@ -228,7 +228,7 @@ fn triangles_become_packages() {
     assert_eq!(bytes, write());
     let soup = read_bytes(&bytes, Format::ThreeMf).unwrap();
     assert_eq!((soup.positions.as_slice(), soup.faces.len()), (&positions[..], 1));
-    assert_eq!(values(&text(&bytes, "3D/3dmodel.model"), "vertex", "z")[1], "1e21");
+    assert_eq!(values(&text(&bytes, "3D/3dmodel.model"), "vertex", "z")[1], "1e+21");
 }
 
 /// What a package with this model is refused with.
@@ -247,13 +247,13 @@ fn flaws_name_their_place() {
     let cases: [(String, &str); 24] = [
         (
             object(&mesh.replace("v3=\"1\"/>", "v3=\"9\"/>")),
-            "line 9, column 5, object 1: met v3='9', expected a vertex below 4",
+            "line 10, column 5, object 1: met v3='9', expected a vertex below 4",
         ),
         (object(&mesh.replace("v3=\"1\"/>", "/>")), "object 1: met no v3, expected a vertex below 4"),
         (object(&mesh.replace("v3=\"1\"/>", "v3=\"-1\"/>")), "met v3='-1'"),
         (
             object(&mesh.replace("y=\"+2\"", "y=\"2m\"")),
-            "line 6, column 48, object 1: met y='2m', expected a finite number",
+            "line 7, column 35, object 1: met y='2m', expected a finite number",
         ),
         (object(&mesh.replace("y=\"+2\"", "y=\"1e999\"")), "met y='1e999'"),
         (object(&mesh.replace("y=\"+2\"", "y=\"NaN\"")), "met y='NaN'"),

@@ -161,9 +161,10 @@ mod tests {
             let mut near = [0.1; 3];
             near[corner] = 0.8;
             assert_eq!(super::at(&code, near).as_deref(), Some("0C"));
-            near.swap(corner, (corner + 1) % 3);
+            let (b, c) = ((corner + 1) % 3, (corner + 2) % 3);
+            (near[corner], near[b], near[c]) = (0.15, 0.8, 0.05);
             assert_eq!(super::at(&code, near).as_deref(), Some("8"));
-            near.swap((corner + 1) % 3, (corner + 2) % 3);
+            (near[b], near[c]) = (0.05, 0.8);
             assert_eq!(super::at(&code, near).as_deref(), Some("4"));
         }
     }

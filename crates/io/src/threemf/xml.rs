@@ -61,11 +61,15 @@ pub(super) fn attributes(text: &str) -> impl Iterator<Item = Attribute<'_>> {
     std::iter::from_fn(move || {
         let start = rest.trim_ascii_start();
         let (name, after) = start.split_once('=')?;
+        let name = name.trim_ascii_end();
+        if name.contains(|c: char| c.is_whitespace() || "\"'<>&/".contains(c)) {
+            return None;
+        }
         let after = after.trim_ascii_start();
         let quote = after.chars().next().filter(|&c| c == '"' || c == '\'')?;
         let (value, after) = after[1..].split_once(quote)?;
         rest = after;
-        Some(Attribute { name: name.trim_ascii_end(), value, text: &start[..start.len() - after.len()] })
+        Some(Attribute { name, value, text: &start[..start.len() - after.len()] })
     })
 }
 
@@ -92,6 +96,7 @@ mod tests {
         assert_eq!(all[1], own("p:UUID", "a \"b\"", "p:UUID = 'a \"b\"'"));
         assert_eq!((all.len(), plain(all[2].value).as_str()), (3, "<"));
         assert_eq!(attributes(" v1= v2='3'").count(), 0);
+        assert_eq!(attributes(" a\"b='1' c='2'").count(), 0);
         assert_eq!(attribute(text, "x"), Some("&lt;"));
     }
 }
