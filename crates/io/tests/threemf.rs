@@ -260,7 +260,7 @@ fn flaws_name_their_place() {
         (object(&mesh.replace("</triangles>", "</triangle>")), "expected well-formed XML"),
         (whole.replace("</model>", ""), "3D/3dmodel.model"),
         (whole.replace("\"inch\"", "\"furlong\""), "the unit 'furlong', expected micron, millimeter"),
-        (whole.replace("<model ", "<modell "), "well-formed XML"),
+        (whole.replace("</model>", "</modell>"), "well-formed XML"),
         (whole.replace("model", "modell"), "met the element modell, expected one model"),
         (String::new(), "met no element model"),
         (
@@ -302,7 +302,7 @@ fn flaws_name_their_place() {
     ];
     for (model, words) in cases {
         let said = refused(package(&model, &[]));
-        assert!(said.contains(words) && said.starts_with("3MF 3D/3dmodel.model"), "{said}\nwithout\n{words}");
+        assert!(said.contains(words) && said.contains("3MF 3D/3dmodel.model"), "{said}\nwithout\n{words}");
     }
     let rels = |text: &str| archive(&[("_rels/.rels", text.as_bytes())]);
     for (bytes, words) in [
@@ -315,7 +315,7 @@ fn flaws_name_their_place() {
         (Vec::new(), "the file is empty"),
         (
             package("\u{fffd}", &[]).iter().map(|&b| if b == 0xBF { 0xFF } else { b }).collect(),
-            "cannot be unpacked",
+            "a part that can be unpacked",
         ),
     ] {
         let said = refused(bytes);

@@ -18,7 +18,8 @@ const SIDES: [[usize; 4]; 6] =
 
 /// A package with a cube, whose sides' triangles have the attributes `of_side`, more in its mesh, and these items of object 1.
 fn cube(folder: &TempDir, name: &str, of_side: &dyn Fn(usize) -> String, more: &str, items: &str) -> PathBuf {
-    let mut text = String::from("<?xml version=\"1.0\"?>\n<model unit=\"centimeter\" xmlns=\"c\">\n<resources>\n");
+    let mut text =
+        String::from("<?xml version=\"1.0\"?>\n<model unit=\"centimeter\" xmlns=\"c\">\n<resources>\n");
     text += "<m:colorgroup id=\"9\" xmlns:m=\"m\"><m:color color=\"#FF0000\"/></m:colorgroup>\n";
     text += "<object id=\"1\" name=\"Box\"><mesh><vertices>\n";
     for corner in 0..8 {
@@ -33,7 +34,9 @@ fn cube(folder: &TempDir, name: &str, of_side: &dyn Fn(usize) -> String, more: &
     }
     text += &format!("</triangles>{more}</mesh></object>\n</resources>\n<build>{items}</build>\n</model>\n");
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, text) in [("_rels/.rels", RELATIONSHIPS), ("3D/3dmodel.model", &text), ("Metadata/a.config", "<a/>")] {
+    for (name, text) in
+        [("_rels/.rels", RELATIONSHIPS), ("3D/3dmodel.model", &text), ("Metadata/a.config", "<a/>")]
+    {
         writer.start_file(name, SimpleFileOptions::default()).expect("an archive");
         writer.write_all(text.as_bytes()).expect("an archive");
     }
@@ -54,9 +57,12 @@ fn triangles(path: &Path) -> Vec<Triangle> {
     let mut text = String::new();
     archive.by_name("3D/3dmodel.model").expect("a model").read_to_string(&mut text).expect("text");
     let tags = |name: &'static str| text.split('<').filter(move |tag| tag.starts_with(name));
-    let positions: Vec<[f64; 3]> =
-        tags("vertex ").map(|tag| ["x", "y", "z"].map(|key| value(tag, key).parse().expect("a number"))).collect();
-    let corners = |tag: &str| ["v1", "v2", "v3"].map(|key| positions[value(tag, key).parse::<usize>().expect("an index")]);
+    let positions: Vec<[f64; 3]> = tags("vertex ")
+        .map(|tag| ["x", "y", "z"].map(|key| value(tag, key).parse().expect("a number")))
+        .collect();
+    let corners = |tag: &str| {
+        ["v1", "v2", "v3"].map(|key| positions[value(tag, key).parse::<usize>().expect("an index")])
+    };
     tags("triangle ").map(|tag| (corners(tag), tag.to_owned())).collect()
 }
 
@@ -76,7 +82,12 @@ fn side(corners: &[[f64; 3]; 3]) -> usize {
 fn triangles_inherit_what_their_side_carries() {
     let folder = folder();
     let output = folder.path().join("out.3mf");
-    let of_side = |side: usize| format!(" pid=\"9\" p1=\"{side}\" paint_color=\"{}\" x:own='&amp;'", ["", "4", "8", "0C", "1C", "2C"][side]);
+    let of_side = |side: usize| {
+        format!(
+            " pid=\"9\" p1=\"{side}\" paint_color=\"{}\" x:own='&amp;'",
+            ["", "4", "8", "0C", "1C", "2C"][side]
+        )
+    };
     let input = cube(&folder, "in.3mf", &of_side, "", ITEM);
     // With sharp edges the cube is itself; flat regions keep the sides apart, as these carry different things.
     run("refine {} -o {} --crease-angle 30 --divide-flat --tolerance 1%", &[&input, &output]).expect(0);
@@ -103,7 +114,9 @@ fn triangles_inherit_what_their_side_carries() {
     // Left out on demand.
     run("refine {} -o {} --channel paint_color=drop --channel x:own=drop", &[&input, &output]).expect(0);
     assert!(triangles(&output).iter().all(|(_, tag)| !tag.contains("paint_color") && tag.contains("pid")));
-    run("refine {} -o {} --channel pid=linear", &[&input, &output]).expect(2).saying("it can be nearest or drop");
+    run("refine {} -o {} --channel pid=linear", &[&input, &output])
+        .expect(2)
+        .saying("it can be nearest or drop");
     run("refine {} -o {} --channel colour=drop", &[&input, &output])
         .expect(2)
         .saying("no channel 'colour'; there are: p1; paint_color; pid; x:own");
@@ -114,14 +127,18 @@ fn paint_in_parts_is_taken_at_the_centre() {
     let folder = folder();
     let output = folder.path().join("out.3mf");
     // The top in four, the part in the middle painted 4, at the first corner 8.
-    let of_side = |side: usize| if side == 5 { " slic3rpe:mmu_segmentation=\"80043\"".to_owned() } else { String::new() };
+    let of_side = |side: usize| {
+        if side == 5 { " slic3rpe:mmu_segmentation=\"80043\"".to_owned() } else { String::new() }
+    };
     let input = cube(&folder, "in.3mf", &of_side, "", ITEM);
     let found = run("refine {} -o {} --tolerance 0.2%", &[&input, &output]).expect(0);
     found.saying("took paint at the centre");
     let found = triangles(&output);
     let paint = |tag: &str| value(tag, "slic3rpe:mmu_segmentation").to_owned();
     let painted: Vec<&Triangle> = found.iter().filter(|(_, tag)| !paint(tag).is_empty()).collect();
-    assert!(painted.iter().any(|(_, tag)| paint(tag) == "4") && painted.iter().any(|(_, tag)| paint(tag) == "8"));
+    assert!(
+        painted.iter().any(|(_, tag)| paint(tag) == "4") && painted.iter().any(|(_, tag)| paint(tag) == "8")
+    );
     for (corners, tag) in painted {
         let [x, y, z] = [0, 1, 2].map(|i| corners.iter().map(|p| p[i]).sum::<f64>() / 3.0);
         assert!(z > 0.0, "{tag}");
@@ -157,7 +174,9 @@ fn lengths_are_the_builds() {
     // All items together, in another format and from one.
     let stl = folder.path().join("out.stl");
     run("refine {} -o {} --tolerance 1%", &[&large, &stl]).expect(0);
-    assert!(soup(&stl).positions.iter().any(|p| p[0] > 90.0) && soup(&stl).positions.iter().any(|p| p[0] < 1.0));
+    assert!(
+        soup(&stl).positions.iter().any(|p| p[0] > 90.0) && soup(&stl).positions.iter().any(|p| p[0] < 1.0)
+    );
     let from = folder.path().join("from.3mf");
     run("refine builtin:cube -o {} --tolerance 1%", &[&from]).expect(0);
     let read = soup(&from);
@@ -173,7 +192,13 @@ fn what_cannot_be_followed_stays_and_is_told() {
     let folder = folder();
     let output = folder.path().join("out.3mf");
     let of_side = |side: usize| format!(" p1=\"{side}\"");
-    let beams = cube(&folder, "beams.3mf", &of_side, "<b:beamlattice><b:beam v1=\"0\" v2=\"7\"/></b:beamlattice>", ITEM);
+    let beams = cube(
+        &folder,
+        "beams.3mf",
+        &of_side,
+        "<b:beamlattice><b:beam v1=\"0\" v2=\"7\"/></b:beamlattice>",
+        ITEM,
+    );
     run("refine {} -o {}", &[&beams, &output])
         .expect(0)
         .saying("object 1 'Box': kept as it is: b:beamlattice names its vertices or triangles by number");
@@ -200,7 +225,11 @@ fn info_lists_objects() {
     let input = cube(&folder, "in.3mf", &|_| " pid=\"9\"".to_owned(), "<x/>", &ITEM.repeat(3));
     let found = run("info {}", &[&input]).expect(0);
     assert!(found.stdout.contains("in cm; 3 items are built"), "{}", found.stdout);
-    assert!(found.stdout.contains("object 1 'Box': 8 vertices, 12 triangles, built 3 times; triangles have pid; x"));
+    assert!(
+        found
+            .stdout
+            .contains("object 1 'Box': 8 vertices, 12 triangles, built 3 times; triangles have pid; x")
+    );
     let json = run("info {} --json", &[&input]).expect(0).json();
     assert_eq!(json["package"]["objects"][0]["built"], 3);
     assert_eq!(json["package"]["unit"], "cm");
