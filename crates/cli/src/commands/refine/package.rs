@@ -157,7 +157,13 @@ impl Job {
             Method::Exact => {
                 exact::run((&featured, &before, &Channels::default()), &goals, &arguments, progress)?
             }
-            _ => stepwise::run(featured.mesh.clone(), &arguments, Some(Format::ThreeMf), progress)?,
+            _ => stepwise::run(
+                featured.mesh.clone(),
+                &Channels::default(),
+                &arguments,
+                Some(Format::ThreeMf),
+                progress,
+            )?,
         };
         let refining = start.elapsed();
         let after = Bulk::of(&refined.mesh);
