@@ -175,12 +175,24 @@ fn builtin(name: &str) -> anyhow::Result<PolygonSoup> {
 /// # Errors
 /// As for [`read`]; or no mesh can be made of it, or only by a repair that `build` forbids.
 pub(crate) fn load(path: &Path, build: &BuildArguments, progress: &Progress) -> anyhow::Result<Input> {
-    let soup = read(path, build, progress)?;
-    connect(soup, build, &[], progress)
+    load_keeping(path, build, &[], progress)
 }
 
-/// [`load`] for refinement: channels are as `channels` asks, and of what a soup leaves out the output has `kept` after all, so that
-/// nothing need be said of it.
+/// [`load`], where the output will have some of what a soup leaves out after all, so that nothing need be said of it.
+///
+/// # Errors
+/// As for [`load`].
+pub(crate) fn load_keeping(
+    path: &Path,
+    build: &BuildArguments,
+    kept: &[&str],
+    progress: &Progress,
+) -> anyhow::Result<Input> {
+    let soup = read(path, build, progress)?;
+    connect(soup, build, kept, progress)
+}
+
+/// [`load_keeping`] for refinement, where channels are as `channels` asks.
 ///
 /// # Errors
 /// As for [`load`]; or there is no channel of a name that is asked for.

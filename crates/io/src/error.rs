@@ -64,7 +64,7 @@ pub enum ReadError {
         /// The file, if it was one.
         path: Option<PathBuf>,
         /// What is wrong, and where.
-        flaw: PackageFlaw,
+        flaw: Box<PackageFlaw>,
     },
 }
 

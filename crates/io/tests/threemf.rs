@@ -41,13 +41,13 @@ fn package(model: &str, more: &[(&str, &[u8])]) -> Vec<u8> {
 fn raw(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
     let count = archive.len();
-    let mut read = |i| {
+    let read = |i| {
         let mut file = archive.by_index_raw(i).unwrap();
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).unwrap();
         (file.name().unwrap().into_owned(), bytes)
     };
-    (0..count).map(|i| read(i)).collect()
+    (0..count).map(read).collect()
 }
 
 /// A part's text.

@@ -128,7 +128,7 @@ impl Package {
     /// # Errors
     /// As for [`Self::open`].
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, ReadError> {
-        Self::parse(bytes).map_err(|flaw| ReadError::Package { path: None, flaw })
+        Self::parse(bytes).map_err(|flaw| ReadError::Package { path: None, flaw: Box::new(flaw) })
     }
 
     fn parse(bytes: Vec<u8>) -> Flawed<Self> {
@@ -282,7 +282,8 @@ impl Package {
             return Ok(());
         }
         let met = format!("more than {MOST} vertices or triangles with all items");
-        Err(ReadError::Package { path: self.path.clone(), flaw: PackageFlaw::of_archive(met, "fewer") })
+        let flaw = Box::new(PackageFlaw::of_archive(met, "fewer"));
+        Err(ReadError::Package { path: self.path.clone(), flaw })
     }
 
     /// Everything that is built as one soup, in its coordinates, and in words what else there is.
@@ -400,7 +401,7 @@ fn apart(mesh: &MeshText, volumes: &[&Volume]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>)
     let mut triangles = Vec::with_capacity(mesh.triangles.len());
     for (face, triangle) in mesh.triangles.iter().enumerate() {
         let is_own = |own: &&Volume| (own.first as usize..=own.last as usize).contains(&face);
-        let volume = volumes.iter().position(|own| is_own(own)).unwrap_or(volumes.len());
+        let volume = volumes.iter().position(is_own).unwrap_or(volumes.len());
         triangles.push(triangle.map(|v| {
             let position = mesh.positions[v as usize];
             // Zero has two signs.

@@ -66,7 +66,8 @@ pub(super) fn inherit(
     let differ = all.iter().flatten().any(|value| Some(*value) != all[0]);
     let is_whole = source.corners == Some([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
     for own in attributes(text).filter(|own| !is_corner(own) && keeps(own.name)) {
-        if is_whole || !(CORNERS.contains(&own.name) && differ) && !is_divided_paint(&own) {
+        let varies = differ && CORNERS.contains(&own.name) || is_divided_paint(&own);
+        if is_whole || !varies {
             let _ = write!(out, " {}", own.text);
             continue;
         }

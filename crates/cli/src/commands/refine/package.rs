@@ -138,11 +138,11 @@ impl Job {
         let Trace { faces, corners, .. } = trace;
         let mut arguments = self.arguments.clone();
         arguments.max_triangles = Some(arguments.max_triangles().saturating_sub(done.triangles).max(1));
+        // A flat region has triangles across faces that carry different things.
+        arguments.exact.divide_flat |= self.is_traced() && (own.varies_within || !own.is_uniform);
         let control = Control::new((built, diagnosis, faces), Some(diagonal), &arguments, progress)?;
         let goals = Goals::new(&arguments, &control.featured.mesh, diagonal)?;
-        let is_told_apart = own.varies_within || !own.is_uniform;
-        let goals =
-            if self.is_traced() { goals.telling_faces_apart(is_told_apart).keeping_origins() } else { goals };
+        let goals = if self.is_traced() { goals.keeping_origins() } else { goals };
         let parameters = match arguments.method {
             Method::Exact => exact::parameters(&arguments, &goals),
             _ => stepwise::parameters(&arguments),
