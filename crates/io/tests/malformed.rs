@@ -422,7 +422,7 @@ fn files_that_cannot_be_read() {
     assert_eq!(
         message("mesh.fbx"),
         at(
-            "mesh.fbx: the extension 'fbx' is not one that is known, expected .obj, .ply, .stl, .off, .gltf or .glb"
+            "mesh.fbx: the extension 'fbx' is not one that is known, expected .obj, .ply, .stl, .off, .gltf, .glb or .3mf"
         )
     );
 }
