@@ -7,7 +7,7 @@ use limitmesh::carry::carried;
 use limitmesh::mesh::{BuildOptions, PolygonSoup, Weld};
 use limitmesh::refine::{ExactOptions, exact};
 use limitmesh::scheme::Loop;
-use limitmesh_io::gltf::{Geometry, Joining};
+use limitmesh_io::gltf::{Geometry, Joining, MeshSoup, VertexAttribute};
 use limitmesh_io::threemf::{NewTriangles, Source};
 use limitmesh_io::{Asset, Format, Output, Package, WriteOptions, read_bytes, write_to};
 use zip::write::SimpleFileOptions;
@@ -50,6 +50,19 @@ fn build(soup: &PolygonSoup, options: &BuildOptions) {
     }
 }
 
+/// How a morph target moves the vertices of a mesh.
+fn displacement(own: &MeshSoup, target: usize) -> VertexAttribute {
+    let mut values = vec![0.0; 3 * own.soup.positions.len()];
+    for table in own.attributes.iter().filter(|table| table.target == Some(target) && table.is_displacement()) {
+        for (face, corners) in own.soup.faces.iter().zip(&table.corners) {
+            for (&v, &value) in face.iter().zip(corners) {
+                values[3 * v as usize..][..3].copy_from_slice(&table.values[3 * value as usize..][..3]);
+            }
+        }
+    }
+    VertexAttribute { name: "POSITION".to_owned(), width: 3, values, is_integer: false }
+}
+
 /// Takes the meshes out of a glTF document, puts them back, and reads what is written.
 pub fn edit(bytes: &[u8]) {
     let Ok(mut asset) = Asset::from_bytes(bytes, None) else { return };
@@ -60,7 +73,11 @@ pub fn edit(bytes: &[u8]) {
         for part in own.parts.iter().filter(|part| part.faces.len() <= LARGEST) {
             let faces = part.faces.clone().map(|face| own.soup.faces.get(face));
             let triangles: Vec<[u32; 3]> = faces.filter_map(|face| face.try_into().ok()).collect();
-            let _ = asset.replace(mesh, part.primitive, &Geometry { positions, normals: None, triangles: &triangles, attributes: &[] });
+            let targets: Vec<Vec<VertexAttribute>> =
+                (0..part.targets.len()).map(|target| vec![displacement(&own, target)]).collect();
+            let (normals, attributes, targets) = (None, &[][..], &targets[..]);
+            let geometry = Geometry { positions, normals, triangles: &triangles, attributes, targets };
+            let _ = asset.replace(mesh, part.primitive, &geometry);
         }
     }
     for format in [Format::Glb, Format::Gltf] {

@@ -66,8 +66,11 @@ impl<'a> LimitSurface<'a> {
         Ok(surface)
     }
 
-    /// [`Self::new`] for positions alone.
-    pub(crate) fn without_normals(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Result<Self, LimitError> {
+    /// [`Self::new`] for positions alone; normals are zero.
+    ///
+    /// # Errors
+    /// As for [`Self::new`].
+    pub fn without_normals(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Result<Self, LimitError> {
         let rules = Rules::of(scheme);
         let positions = rules.table().positions(mesh)?;
         let (sharpness, large) = (Sharpness::of(mesh), LargeRings::of(mesh));
@@ -106,20 +109,21 @@ impl<'a> LimitSurface<'a> {
         found
     }
 
-    /// The points over places of many faces, in order, on all threads: `places(i)` are those of face `faces[i]`.
-    pub(crate) fn over_all<'p>(
-        &self,
-        faces: &[u32],
-        places: impl Fn(usize) -> &'p [[f64; 3]] + Sync + Send,
-    ) -> Vec<SurfacePoint> {
-        let blocks = parallel::pieces_of(faces.len(), BLOCK, |block| {
-            block.flat_map(|at| self.over(FaceId(faces[at]), places(at))).collect::<Vec<_>>()
+    /// The points over places of many faces, in order, on all threads. Places of one face that stand together share its work.
+    pub fn at_all(&self, places: &[(FaceId, [f64; 3])]) -> Vec<SurfacePoint> {
+        let of_faces: Vec<&[(FaceId, [f64; 3])]> = places.chunk_by(|a, b| a.0 == b.0).collect();
+        let blocks = parallel::pieces_of(of_faces.len(), BLOCK, |block| {
+            let over = |own: &[(FaceId, [f64; 3])]| {
+                let at: Vec<[f64; 3]> = own.iter().map(|&(_, at)| at).collect();
+                self.over(own[0].0, &at)
+            };
+            block.flat_map(|face| over(of_faces[face])).collect::<Vec<_>>()
         });
         blocks.concat()
     }
 
     /// Why what was computed means nothing, if a stencil failed on the way.
-    pub(crate) fn failure(&self) -> Option<&LimitError> {
+    pub fn failure(&self) -> Option<&LimitError> {
         self.rules.failure()
     }
 

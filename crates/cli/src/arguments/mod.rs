@@ -1,5 +1,6 @@
 //! The command line: one file a command, help texts that say each option's unit, default and effect.
 
+mod asset;
 mod camera;
 mod channels;
 mod compare;
@@ -16,6 +17,7 @@ mod reproduce;
 mod shared;
 mod values;
 
+pub(crate) use asset::AssetArguments;
 pub(crate) use camera::cameras_in;
 pub(crate) use channels::ChannelArguments;
 pub(crate) use compare::CompareArguments;

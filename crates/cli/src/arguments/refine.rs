@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::values;
 use super::{
-    BuildArguments, ChannelArguments, ExactArguments, FeatureArguments, FileFormat, InterpolationArguments,
-    SchemeName, Seam,
+    AssetArguments, BuildArguments, ChannelArguments, ExactArguments, FeatureArguments, FileFormat,
+    InterpolationArguments, SchemeName, Seam,
 };
 use crate::failure::{UsageError, usage};
 use crate::output::is_standard_output;
@@ -154,6 +154,9 @@ pub(crate) struct RefineArguments {
 
     #[command(flatten)]
     pub(crate) exact: ExactArguments,
+
+    #[command(flatten)]
+    pub(crate) asset: AssetArguments,
 
     /// Greatest number of steps; each splits an edge at most once [default: 3]
     #[arg(long, value_name = "N", value_parser = values::levels, help_heading = STEPWISE)]

@@ -1,12 +1,15 @@
 //! The program as its users meet it: commands, files, exit codes, the JSON contract.
 
 mod asset;
+mod asset_morphs;
+mod asset_skins;
 mod channels;
 mod common;
 mod compare;
 mod concave;
 mod exact;
 mod examine;
+mod glb;
 mod interpolate;
 mod limits;
 mod measure;

@@ -14,6 +14,7 @@ pub use borders::borders;
 
 use std::collections::HashMap;
 
+use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::mesh::{Channel, ChannelError, Domain, Interpolation, Mesh, SeamRule};
 use crate::refine::{Origin, Traced};
@@ -173,16 +174,8 @@ fn smooth(
     let limit = |why: String| ChannelError::Limit { name: channel.name.clone(), why };
     let seams::ValueMesh { mut mesh, values } =
         value_mesh(control, channel, rule).map_err(|error| limit(error.to_string()))?;
-    // Faces with the places wanted there, which stand together.
-    let (mut faces, mut starts, mut at) = (Vec::new(), Vec::new(), Vec::with_capacity(wanted.len()));
-    for origin in wanted {
-        if faces.last() != Some(&origin.face) {
-            faces.push(origin.face);
-            starts.push(at.len());
-        }
-        at.push(origin.barycentric);
-    }
-    starts.push(at.len());
+    let places: Vec<(FaceId, [f64; 3])> =
+        wanted.iter().map(|origin| (FaceId(origin.face), origin.barycentric)).collect();
     let mut found = vec![0.0; channel.arity * wanted.len()];
     for first in (0..channel.arity).step_by(TOGETHER) {
         let own = first..channel.arity.min(first + TOGETHER);
@@ -199,7 +192,7 @@ fn smooth(
         mesh = mesh.with_positions(positions).map_err(|error| limit(error.to_string()))?;
         let surface =
             LimitSurface::without_normals(&mesh, scheme).map_err(|error| limit(error.to_string()))?;
-        let points = surface.over_all(&faces, |at_face| &at[starts[at_face]..starts[at_face + 1]]);
+        let points = surface.at_all(&places);
         if let Some(error) = surface.failure() {
             return Err(limit(error.to_string()));
         }

@@ -2,18 +2,21 @@
 //!
 //! Files have one vertex for each combination of values; a mesh that is refined has one for each point of its surface, and
 //! values at the corners of its faces. So each attribute becomes a table of values with an index for each corner: corners
-//! of one vertex whose values are the same, to the bit, share one, also across primitives.
+//! of one vertex whose values are the same, to the bit, share one, also across primitives. What morph targets add is a table for each
+//! target and attribute; positions are moved alike at all corners of a vertex.
 
 use super::parts::Names;
-use super::primitive::Primitive;
+use super::primitive::{AttributeName, Primitive};
 use std::collections::HashMap;
 
 /// A table of values, and which of them each corner of a mesh's soup has.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CornerAttribute {
-    /// Its name in the document, such as `TEXCOORD_0`.
+    /// Its name in the document, such as `TEXCOORD_0`; `targets[2].TEXCOORD_0` for what a morph target adds to it.
     pub name: String,
+    /// The number of the morph target that adds it.
+    pub target: Option<usize>,
     /// Numbers of a value.
     pub width: usize,
     /// One value after the other.
@@ -26,43 +29,70 @@ pub struct CornerAttribute {
     pub is_in: Vec<bool>,
 }
 
-/// The tables of all attributes but positions, normals and tangents; `vertex` gives the soup's vertex of a primitive's.
+impl CornerAttribute {
+    /// Its name without that of a morph target: `TEXCOORD_0`.
+    pub fn plain_name(&self) -> &str {
+        let added = self.target.and_then(|_| self.name.split_once('.'));
+        added.map_or(&self.name, |(_, name)| name)
+    }
+
+    /// Whether it says how a morph target moves vertices.
+    pub fn is_displacement(&self) -> bool {
+        self.target.is_some() && self.plain_name() == "POSITION"
+    }
+}
+
+/// The tables of all attributes but positions, normals and tangents, and of what morph targets add to any but the last two; `vertex` gives
+/// the soup's vertex of a primitive's.
 pub(super) fn tables(
     primitives: &[Primitive],
     names: &[Names],
     mut vertex: impl FnMut(usize, u32) -> u32,
 ) -> Vec<CornerAttribute> {
-    let mut kinds: Vec<(String, usize)> = Vec::new();
-    for attribute in primitives.iter().flat_map(|primitive| &primitive.attributes) {
-        match kinds.iter_mut().find(|(name, _)| *name == attribute.0) {
-            Some((_, width)) => *width = (*width).max(attribute.1.components),
-            None => kinds.push((attribute.0.clone(), attribute.1.components)),
+    let mut kinds: Vec<(&AttributeName, usize)> = Vec::new();
+    for (name, numbers) in primitives.iter().flat_map(|primitive| &primitive.attributes) {
+        match kinds.iter_mut().find(|(own, _)| *own == name) {
+            Some((_, width)) => *width = (*width).max(numbers.components),
+            None => kinds.push((name, numbers.components)),
         }
     }
     let mut tables = Vec::with_capacity(kinds.len());
-    for (name, width) in kinds {
-        let mut own =
-            primitives.iter().flat_map(|primitive| &primitive.attributes).filter(|own| own.0 == name);
-        let is_integer = name.starts_with('_') && own.all(|(_, numbers)| numbers.is_integer);
-        let (values, corners, is_in) = (Vec::new(), Vec::new(), Vec::new());
-        let mut table = CornerAttribute { name, width, values, corners, is_integer, is_in };
+    for (kind, width) in kinds {
+        let AttributeName { target, name } = kind;
+        let of_primitive =
+            |primitive: &'_ Primitive| primitive.attributes.iter().position(|own| own.0 == *kind);
+        let mut own = primitives
+            .iter()
+            .filter_map(|primitive| of_primitive(primitive).map(|at| &primitive.attributes[at].1));
+        let is_integer = name.starts_with('_') && own.all(|numbers| numbers.is_integer);
+        // Colours without alpha are opaque; what is added to them is not.
+        let missing = if target.is_none() { 1.0 } else { 0.0 };
+        let mut table = CornerAttribute {
+            name: target.map_or_else(|| name.clone(), |target| format!("targets[{target}].{name}")),
+            target: *target,
+            width,
+            values: Vec::new(),
+            corners: Vec::new(),
+            is_integer,
+            is_in: Vec::new(),
+        };
+        let is_displacement = table.is_displacement();
         let mut known: HashMap<(u32, Vec<u64>), u32> = HashMap::new();
         for (part, primitive) in primitives.iter().enumerate() {
-            let own =
-                primitive.attributes.iter().find(|(name, _)| *name == table.name).map(|(_, numbers)| numbers);
+            let own = of_primitive(primitive).map(|at| &primitive.attributes[at].1);
             table.is_in.push(own.is_some());
             for triangle in &primitive.triangles {
                 let corners = triangle.map(|v| {
-                    let mut value = vec![0.0; table.width];
+                    let mut value = vec![0.0; width];
                     if let Some(own) = own {
-                        // Colours without alpha are opaque.
-                        value.fill(if own.components < table.width { 1.0 } else { 0.0 });
+                        value.fill(if own.components < width { missing } else { 0.0 });
                         let start = v as usize * own.components;
                         value[..own.components].copy_from_slice(&own.values[start..start + own.components]);
                     }
                     let at = vertex(part, names[part].of_vertex[v as usize]);
-                    let bits = value.iter().map(|x| (x + 0.0).to_bits()).collect();
-                    let next = (table.values.len() / table.width) as u32;
+                    let bits =
+                        value.iter().filter(|_| !is_displacement).map(|x| (x + 0.0).to_bits()).collect();
+                    let next = (table.values.len() / width) as u32;
                     let index = *known.entry((at, bits)).or_insert(next);
                     if index == next {
                         table.values.extend(value);

@@ -139,11 +139,14 @@ impl Changes {
             let old = primitives.get(primitive).copied().ok_or_else(missing)?;
             let members = Members::of(old)?;
             let named = |(name, accessor): &(String, usize)| format!("{}:{}", quoted(name), first + accessor);
-            let attributes: Vec<String> = new.attributes.iter().map(named).collect();
+            let object = |all: &Vec<(String, usize)>| {
+                format!("{{{}}}", all.iter().map(named).collect::<Vec<_>>().join(","))
+            };
+            let targets: Vec<String> = new.targets.iter().map(object).collect();
             let mut changes = vec![
-                ("attributes", Some(format!("{{{}}}", attributes.join(",")))),
+                ("attributes", Some(object(&new.attributes))),
                 ("indices", Some((first + new.indices).to_string())),
-                ("targets", None),
+                ("targets", (!targets.is_empty()).then(|| format!("[{}]", targets.join(",")))),
             ];
             // Triangles are what a primitive without a mode has.
             if members.get("mode").is_some_and(|mode| mode != "4") {

@@ -42,7 +42,7 @@ pub(crate) fn write_fresh(
     // Where vertices have several normals, the writer is given a vertex for each.
     let normals = output.normals.filter(|_| output.corner_normals.is_none());
     let Triangles { positions, triangles } = output.surface;
-    let geometry = Geometry { positions, normals, triangles, attributes: &[] };
+    let geometry = Geometry { positions, normals, triangles, attributes: &[], targets: &[] };
     if !geometry.triangles.is_empty() {
         asset.replace(0, 0, &geometry).map_err(flawed)?;
     }

@@ -26,12 +26,14 @@ pub struct Geometry<'a> {
     pub triangles: &'a [[u32; 3]],
     /// What else there is at the vertices.
     pub attributes: &'a [VertexAttribute],
+    /// By morph target, what it adds to these, to positions and to normals: at least one attribute each.
+    pub targets: &'a [Vec<VertexAttribute>],
 }
 
 /// Values at vertices, such as texture coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VertexAttribute {
-    /// Its name, such as `TEXCOORD_0`.
+    /// Its name, such as `TEXCOORD_0`, also in a morph target.
     pub name: String,
     /// Numbers of a value: 1 to 4.
     pub width: usize,
@@ -64,13 +66,15 @@ pub(super) struct NewView {
 #[derive(Clone, Debug)]
 pub(super) struct NewPrimitive {
     pub(super) attributes: Vec<(String, usize)>,
+    /// By morph target.
+    pub(super) targets: Vec<Vec<(String, usize)>>,
     pub(super) indices: usize,
 }
 
 impl Appended {
     /// Appends a primitive's geometry; `place` names it.
     pub(super) fn add(&mut self, geometry: &Geometry<'_>, place: &str) -> Result<NewPrimitive> {
-        let Geometry { positions, normals, triangles, attributes: others } = *geometry;
+        let Geometry { positions, normals, triangles, attributes: others, targets } = *geometry;
         let normal_count = normals.map_or(positions.len(), <[_]>::len);
         if positions.is_empty() || triangles.is_empty() || normal_count != positions.len() {
             let (points, faces) = (positions.len(), triangles.len());
@@ -86,23 +90,30 @@ impl Appended {
             let met = format!("vertex {v} at {:?}", positions[v]);
             return Err(GltfFlaw::new(place, met, "coordinates that 32-bit floats can hold"));
         }
-        let (mut low, mut high) = (rounded[0], rounded[0]);
-        for p in &rounded {
-            (0..3).for_each(|i| (low[i], high[i]) = (low[i].min(p[i]), high[i].max(p[i])));
-        }
-        let wide = |p: [f32; 3]| p.map(f64::from);
-        let bounds = json!({"componentType": FLOAT, "count": rounded.len(), "type": "VEC3",
-            "min": wide(low), "max": wide(high)});
-        let position = self.push(floats(&rounded), OF_VERTICES, bounds);
+        let (low, high) = bounds(positions.as_flattened(), 3);
+        let bounded =
+            json!({"componentType": FLOAT, "count": rounded.len(), "type": "VEC3", "min": low, "max": high});
+        let position = self.push(floats(&rounded), OF_VERTICES, bounded);
         let mut attributes = vec![("POSITION".to_owned(), position)];
         if let Some(normals) = normals {
             let directions: Vec<[f32; 3]> = normals.iter().map(|&n| unit(n)).collect();
             let plain = json!({"componentType": FLOAT, "count": directions.len(), "type": "VEC3"});
             attributes.push(("NORMAL".to_owned(), self.push(floats(&directions), OF_VERTICES, plain)));
         }
-        for other in others {
-            attributes.push((other.name.clone(), self.attribute(other, positions.len(), place)?));
-        }
+        let mut add = |all: &[VertexAttribute], place: &str| -> Result<Vec<(String, usize)>> {
+            let number =
+                |own: &VertexAttribute| Ok((own.name.clone(), self.attribute(own, positions.len(), place)?));
+            all.iter().map(number).collect()
+        };
+        attributes.extend(add(others, &format!("{place}.attributes"))?);
+        let targets = targets.iter().enumerate().map(|(number, target)| {
+            let place = format!("{place}.targets[{number}]");
+            if target.is_empty() {
+                return Err(GltfFlaw::new(place, "nothing", "at least one attribute"));
+            }
+            add(target, &place)
+        });
+        let targets = targets.collect::<Result<_>>()?;
         let corners = triangles.as_flattened();
         let is_short = positions.len() <= usize::from(u16::MAX);
         let bytes = match is_short {
@@ -112,13 +123,13 @@ impl Appended {
         let component = if is_short { SHORT } else { INT };
         let of_indices = json!({"componentType": component, "count": corners.len(), "type": "SCALAR"});
         let indices = self.push(bytes, OF_INDICES, of_indices);
-        Ok(NewPrimitive { attributes, indices })
+        Ok(NewPrimitive { attributes, targets, indices })
     }
 
     /// Appends values at vertices.
     fn attribute(&mut self, attribute: &VertexAttribute, vertices: usize, place: &str) -> Result<usize> {
         let VertexAttribute { name, width, values, is_integer } = attribute;
-        let place = || format!("{place}.attributes.{name}");
+        let place = || format!("{place}.{name}");
         let Some(kind) = width.checked_sub(1).and_then(|at| ["SCALAR", "VEC2", "VEC3", "VEC4"].get(at))
         else {
             return Err(GltfFlaw::new(place(), format!("{width} numbers a value"), "1 to 4"));
@@ -151,7 +162,11 @@ impl Appended {
             }
             bytes.resize(end, 0);
         }
-        let accessor = json!({"componentType": component, "count": vertices, "type": kind});
+        let mut accessor = json!({"componentType": component, "count": vertices, "type": kind});
+        if name == "POSITION" {
+            let (low, high) = bounds(values, *width);
+            (accessor["min"], accessor["max"]) = (low.into(), high.into());
+        }
         let number = self.push(bytes, OF_VERTICES, accessor);
         if stride != width * size
             && let Some(view) = self.views.last_mut()
@@ -168,6 +183,18 @@ impl Appended {
         self.accessors.push(accessor);
         self.accessors.len() - 1
     }
+}
+
+/// The least and the greatest numbers of values as they are written.
+fn bounds(values: &[f64], width: usize) -> (Vec<f64>, Vec<f64>) {
+    let mut found = (vec![f64::INFINITY; width], vec![f64::NEG_INFINITY; width]);
+    for value in values.chunks_exact(width) {
+        for (i, &x) in value.iter().enumerate() {
+            let x = f64::from(x as f32);
+            (found.0[i], found.1[i]) = (found.0[i].min(x), found.1[i].max(x));
+        }
+    }
+    found
 }
 
 fn floats(rows: &[[f32; 3]]) -> Vec<u8> {

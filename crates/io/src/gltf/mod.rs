@@ -25,6 +25,7 @@ mod flaw;
 mod fresh;
 mod geometry;
 mod json;
+mod kinds;
 mod materials;
 mod parts;
 mod primitive;
@@ -225,6 +226,7 @@ impl Asset {
             let materials = self.materials_of(mesh).map_err(|flaw| self.told(flaw))?;
             names
                 .extend(own.parts.iter().flat_map(|part| &part.attributes).filter_map(|name| left_out(name)));
+            names.extend(own.has_targets().then_some("morph targets"));
             for placement in self.scene.shown(mesh) {
                 let first = all.positions.len();
                 if own.soup.positions.len() + first > MOST || own.soup.faces.len() + all.faces.len() > MOST {

@@ -1,23 +1,32 @@
 //! A mesh's primitives as one soup: vertices that are one are one, and those that move apart stay apart.
 //!
-//! Files split vertices at seams of texture coordinates and normals. Within a primitive vertices are one if position,
-//! displacements of all morph targets, and joints with weights above 0 are the same. Two primitives are joined along
-//! edges that are open in both and run oppositely, which a solid of several materials has; where they merely touch they
-//! are not.
+//! Files split vertices at seams of texture coordinates and normals. Within a primitive vertices are one if they are of one kind
+//! (`kinds`): position, displacements of all morph targets, and joints with weights above 0 are the same. Two primitives are
+//! joined along edges that are open in both and run oppositely, which a solid of several materials has; where they merely
+//! touch they are not.
 
 use super::attributes::{self, CornerAttribute};
+use super::kinds::Kinds;
 use super::primitive::Primitive;
 use limitmesh::PolygonSoup;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 /// Which vertices of a mesh become one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Joining {
-    /// Those that stand and move together, as said above.
+    /// Those that stand and move together: position, displacements of all morph targets, and joints with weights above 0 are the same.
     #[default]
     Together,
+    /// Those that stand together, even if skins or morph targets move them apart: as many are left, and the first of those
+    /// that become one says how it moves.
+    Ignoring {
+        /// What skins do.
+        skins: bool,
+        /// What morph targets do.
+        morphs: bool,
+    },
     /// None: the indices alone connect triangles.
     Never,
 }
@@ -32,6 +41,8 @@ pub struct Part {
     pub faces: Range<usize>,
     /// The names of its attributes, in the document's order or another.
     pub attributes: Vec<String>,
+    /// By morph target, the names of the attributes that it adds to.
+    pub targets: Vec<Vec<String>>,
 }
 
 /// Vertices at one place that were not made one.
@@ -40,6 +51,10 @@ pub struct Part {
 pub struct KeptApart {
     /// Because morph targets or joints move them differently.
     pub moving: usize,
+    /// Those of them that would be one but for their joints and weights alone.
+    pub by_skins: usize,
+    /// Those of them that would be one but for morph targets alone.
+    pub by_morphs: usize,
     /// Because they belong to primitives with no edge in common there.
     pub touching: usize,
 }
@@ -52,21 +67,28 @@ pub struct MeshSoup {
     pub soup: PolygonSoup,
     /// Which faces are which primitive's.
     pub parts: Vec<Part>,
-    /// Texture coordinates, colours, and what has a name of its own.
+    /// Texture coordinates, colours, what has a name of its own, and what morph targets add to these and to positions.
     pub attributes: Vec<CornerAttribute>,
     /// What stayed apart at one place.
     pub kept_apart: KeptApart,
     /// By vertex of the soup, the joints that move it with their weights above 0, by joint; empty without a skin.
     pub influences: Vec<Vec<(u32, f64)>>,
+}
+
+impl MeshSoup {
     /// Whether there are morph targets.
-    pub has_targets: bool,
+    pub fn has_targets(&self) -> bool {
+        self.parts.iter().any(|part| !part.targets.is_empty())
+    }
 }
 
 /// A vertex before primitives are joined: the primitive, and its number there among those that differ.
 type Local = (usize, u32);
 
 pub(super) fn join(primitives: Vec<Primitive>, joining: Joining) -> MeshSoup {
-    let names: Vec<Names> = primitives.iter().map(|primitive| Names::of(primitive, joining)).collect();
+    let kinds = Kinds::of(&primitives, joining);
+    let names: Vec<Names> =
+        primitives.iter().zip(kinds.all()).map(|(primitive, kinds)| Names::of(primitive, kinds)).collect();
     let mut first = Vec::with_capacity(names.len());
     let mut count = 0;
     for names in &names {
@@ -75,9 +97,8 @@ pub(super) fn join(primitives: Vec<Primitive>, joining: Joining) -> MeshSoup {
     }
     let number = |(part, v): Local| first[part] + v as usize;
     let mut roots: Vec<usize> = (0..count).collect();
-    if joining == Joining::Together && names.len() > 1 {
-        let keys = Keys::of(&primitives, &names);
-        for (a, b) in shared_edges(&primitives, &names, &keys) {
+    if joining != Joining::Never && names.len() > 1 {
+        for (a, b) in shared_edges(&primitives, &names, kinds.all()) {
             unite(&mut roots, number(a), number(b));
         }
     }
@@ -108,13 +129,13 @@ pub(super) fn join(primitives: Vec<Primitive>, joining: Joining) -> MeshSoup {
             primitive: primitive.index,
             faces: start..result.soup.faces.len(),
             attributes: primitive.names.clone(),
+            targets: primitive.targets.iter().map(|target| target.names.clone()).collect(),
         });
     }
     result.attributes =
         attributes::tables(&primitives, &names, |part, v| numbers[root(&mut roots, number((part, v)))]);
-    result.has_targets = primitives.iter().any(|primitive| !primitive.displacements.is_empty());
-    if joining == Joining::Together {
-        result.kept_apart = kept_apart(&primitives, &names, result.soup.positions.len());
+    if joining != Joining::Never {
+        result.kept_apart = kept_apart(&names, &kinds, result.soup.positions.len());
     }
     result
 }
@@ -128,7 +149,8 @@ pub(super) struct Names {
 }
 
 impl Names {
-    fn of(primitive: &Primitive, joining: Joining) -> Self {
+    /// By the kinds of the primitive's vertices.
+    fn of(primitive: &Primitive, kinds: &[u32]) -> Self {
         let mut of_vertex = vec![u32::MAX; primitive.positions.len()];
         let mut vertices: Vec<u32> = Vec::new();
         let mut known = HashMap::new();
@@ -137,10 +159,7 @@ impl Names {
                 continue;
             }
             let next = vertices.len() as u32;
-            let name = match joining {
-                Joining::Never => next,
-                Joining::Together => *known.entry(key(primitive, v)).or_insert(next),
-            };
+            let name = *known.entry(kinds[v as usize]).or_insert(next);
             if name == next {
                 vertices.push(v);
             }
@@ -150,46 +169,14 @@ impl Names {
     }
 }
 
-/// What has to be the same in vertices that are one: position, displacements, joints and weights, in bits.
-fn key(primitive: &Primitive, vertex: u32) -> Box<[u64]> {
-    let v = vertex as usize;
-    // −0.0 is 0.0.
-    let bits = |x: f64| (x + 0.0).to_bits();
-    let place = primitive.positions[v].map(bits);
-    let moved =
-        primitive.displacements.iter().flat_map(|all| all.get(v).copied().unwrap_or_default().map(bits));
-    let influences = primitive.influences.get(v).into_iter().flatten();
-    let skin = influences.flat_map(|&(joint, weight)| [u64::from(joint), bits(weight)]);
-    place.into_iter().chain(moved).chain(skin).collect()
-}
-
-/// Numbers of the keys, the same in all primitives.
-struct Keys {
-    of_part: Vec<Vec<u32>>,
-}
-
-impl Keys {
-    fn of(primitives: &[Primitive], names: &[Names]) -> Self {
-        let mut known = HashMap::new();
-        let of_part = primitives.iter().zip(names).map(|(primitive, names)| {
-            let number = |&v: &u32| {
-                let next = known.len() as u32;
-                *known.entry(key(primitive, v)).or_insert(next)
-            };
-            names.vertices.iter().map(number).collect()
-        });
-        Self { of_part: of_part.collect() }
-    }
-}
-
 /// Pairs of vertices at both ends of edges that are open in two primitives, run oppositely, and in no third.
-fn shared_edges(primitives: &[Primitive], names: &[Names], keys: &Keys) -> Vec<(Local, Local)> {
-    // By the keys of its ends from the lower to the higher: the primitives on each side.
+fn shared_edges(primitives: &[Primitive], names: &[Names], kinds: &[Vec<u32>]) -> Vec<(Local, Local)> {
+    // By the kinds of its ends from the lower to the higher: the primitives on each side.
     let mut sides: HashMap<[u32; 2], [Vec<(Local, Local)>; 2]> = HashMap::new();
     let mut order = Vec::new();
     for (part, (primitive, names)) in primitives.iter().zip(names).enumerate() {
         for [a, b] in open_edges(primitive, names) {
-            let [from, to] = [a, b].map(|v| keys.of_part[part][v as usize]);
+            let [from, to] = [a, b].map(|v| kinds[part][names.vertices[v as usize] as usize]);
             let edge = [from.min(to), from.max(to)];
             let entry = sides.entry(edge).or_insert_with(|| {
                 order.push(edge);
@@ -224,19 +211,25 @@ fn open_edges(primitive: &Primitive, names: &Names) -> Vec<[u32; 2]> {
     all
 }
 
-fn kept_apart(primitives: &[Primitive], names: &[Names], vertices: usize) -> KeptApart {
-    let place = |p: [f64; 3]| p.map(|x| (x + 0.0).to_bits());
-    let mut everywhere = std::collections::HashSet::new();
-    let (mut moving, mut distinct) = (0, 0);
-    for (primitive, names) in primitives.iter().zip(names) {
-        let places = names.vertices.iter().map(|&v| place(primitive.positions[v as usize]));
-        let own: std::collections::HashSet<_> = places.collect();
-        moving += names.vertices.len() - own.len();
+fn kept_apart(names: &[Names], kinds: &Kinds, vertices: usize) -> KeptApart {
+    let mut apart = KeptApart::default();
+    let (mut everywhere, mut distinct) = (HashSet::new(), 0);
+    for (part, names) in names.iter().enumerate() {
+        // How many vertices would be left by other kinds.
+        let left = |kinds: &[Vec<u32>]| {
+            let own = names.vertices.iter().map(|&v| kinds[part][v as usize]);
+            own.collect::<HashSet<u32>>()
+        };
+        let own = left(&kinds.places);
+        apart.moving += names.vertices.len() - own.len();
+        apart.by_skins += names.vertices.len() - left(&kinds.without_skins).len();
+        apart.by_morphs += names.vertices.len() - left(&kinds.without_morphs).len();
         distinct += own.len();
         everywhere.extend(own);
     }
-    let joined = distinct + moving - vertices;
-    KeptApart { moving, touching: (distinct - everywhere.len()).saturating_sub(joined) }
+    let joined = distinct + apart.moving - vertices;
+    apart.touching = (distinct - everywhere.len()).saturating_sub(joined);
+    apart
 }
 
 fn root(roots: &mut [usize], mut v: usize) -> usize {

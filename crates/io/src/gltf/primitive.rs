@@ -20,13 +20,30 @@ pub(super) struct Primitive {
     pub(super) index: usize,
     pub(super) positions: Vec<[f64; 3]>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// By morph target, how it moves the vertices; empty where it doesn't.
-    pub(super) displacements: Vec<Vec<[f64; 3]>>,
+    /// Its morph targets.
+    pub(super) targets: Vec<Target>,
     /// By vertex, the joints that move it with their weights above 0, by joint; empty without a skin.
     pub(super) influences: Vec<Vec<(u32, f64)>>,
     /// Attributes beside positions, normals, tangents, joints and weights, if these were asked for.
-    pub(super) attributes: Vec<(String, Numbers)>,
+    pub(super) attributes: Vec<(AttributeName, Numbers)>,
     /// Names of all attributes.
+    pub(super) names: Vec<String>,
+}
+
+/// Which attribute of a primitive: its own, or what a morph target adds to it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct AttributeName {
+    /// The morph target's number, for what it adds.
+    pub(super) target: Option<usize>,
+    pub(super) name: String,
+}
+
+/// A morph target: what it adds to a primitive's attributes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Target {
+    /// How it moves the vertices; empty where it doesn't.
+    pub(super) displacements: Vec<[f64; 3]>,
+    /// Names of all attributes that it adds to.
     pub(super) names: Vec<String>,
 }
 
@@ -93,9 +110,16 @@ impl Source {
         sort_influences(&mut influences);
         let mut others = Vec::new();
         for name in names.iter().filter(|name| with_attributes && is_carried(name)) {
-            others.extend(read(name, Some(count))?.map(|numbers| (name.clone(), numbers)));
+            let own = AttributeName { target: None, name: name.clone() };
+            others.extend(read(name, Some(count))?.map(|numbers| (own, numbers)));
         }
-        let displacements = self.displacements(at, count)?;
+        let mut targets = Vec::new();
+        for (number, target) in at.list("targets")?.iter().enumerate() {
+            let (target, added) = self.target(target, count, with_attributes)?;
+            targets.push(target);
+            let name = |name| AttributeName { target: Some(number), name };
+            others.extend(added.into_iter().map(|(own, numbers)| (name(own), numbers)));
+        }
         let corners = match (compressed, at.get("indices")) {
             (Some(stream), _) => checked(stream.indices, count, at)?,
             (None, Some(indices)) => checked(self.integers(&indices)?, count, &indices)?,
@@ -103,25 +127,34 @@ impl Source {
             (None, None) => (0..count as u32).collect(),
         };
         let triangles = triangles(&corners, mode);
-        Ok(Some(Primitive {
-            index,
-            positions,
-            triangles,
-            displacements,
-            influences,
-            attributes: others,
-            names,
-        }))
+        Ok(Some(Primitive { index, positions, triangles, targets, influences, attributes: others, names }))
     }
 
-    /// How morph targets move the vertices.
-    fn displacements(&self, at: &At<'_>, count: usize) -> Result<Vec<Vec<[f64; 3]>>> {
-        let targets = at.list("targets")?;
-        let moved = targets.iter().map(|target| match target.get("POSITION") {
-            None => Ok(Vec::new()),
-            Some(accessor) => self.numbers(&accessor, Some(count))?.points(&accessor),
-        });
-        moved.collect()
+    /// The morph target at `at` of a primitive with `count` vertices, and perhaps what it adds to attributes that are carried.
+    fn target(
+        &self,
+        at: &At<'_>,
+        count: usize,
+        with_attributes: bool,
+    ) -> Result<(Target, Vec<(String, Numbers)>)> {
+        let mut target = Target::default();
+        let mut added = Vec::new();
+        for (name, accessor) in at.members()? {
+            target.names.push(name.to_owned());
+            let is_displacement = name == "POSITION";
+            let is_read = is_displacement || with_attributes && is_carried(name);
+            if !is_read {
+                continue;
+            }
+            let numbers = self.numbers(&accessor, Some(count))?;
+            if is_displacement {
+                target.displacements = numbers.points(&accessor)?;
+            }
+            if with_attributes {
+                added.push((name.to_owned(), numbers));
+            }
+        }
+        Ok((target, added))
     }
 
     /// What is in the primitive's Draco stream, if it has one.
@@ -189,6 +222,7 @@ fn add_influences(influences: &mut [Vec<(u32, f64)>], joints: &Numbers, weights:
             let weight = weights.values.get(v * weights.components + i);
             if let (Some(&joint), Some(&weight)) = (joint, weight)
                 && weight > 0.0
+                && weight.is_finite()
             {
                 list.push((joint as u32, weight));
             }
@@ -196,8 +230,16 @@ fn add_influences(influences: &mut [Vec<(u32, f64)>], joints: &Numbers, weights:
     }
 }
 
+/// By joint, each once.
 fn sort_influences(influences: &mut [Vec<(u32, f64)>]) {
     for list in influences {
         list.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        list.dedup_by(|next, kept| {
+            let is_same = next.0 == kept.0;
+            if is_same {
+                kept.1 += next.1;
+            }
+            is_same
+        });
     }
 }

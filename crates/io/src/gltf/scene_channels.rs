@@ -23,7 +23,7 @@ impl SceneChannels {
     /// Adds a mesh once more; `materials` are those of its primitives. `is_mirrored` tells that faces run the other way round.
     pub(super) fn add(&mut self, mesh: &MeshSoup, materials: &[Option<usize>], is_mirrored: bool) {
         let corners = 3 * mesh.soup.faces.len();
-        for attribute in &mesh.attributes {
+        for attribute in mesh.attributes.iter().filter(|attribute| attribute.target.is_none()) {
             let channel = self.channel(attribute);
             let first = channel.value_count() as u32;
             let values = attribute.values.chunks_exact(attribute.width.max(1));

@@ -96,7 +96,13 @@ fn edits_touch_only_what_may_change() {
                     .replace(
                         mesh,
                         part.primitive,
-                        &Geometry { positions, normals: None, triangles: &triangles, attributes: &[] },
+                        &Geometry {
+                            positions,
+                            normals: None,
+                            triangles: &triangles,
+                            attributes: &[],
+                            targets: &[],
+                        },
                     )
                     .unwrap();
                 changed += 1;
@@ -157,6 +163,7 @@ fn compressed_meshes_are_those_that_were_compressed() {
                 normals: None,
                 triangles: &triangles,
                 attributes: &[],
+                targets: &[],
             },
         )
         .unwrap();

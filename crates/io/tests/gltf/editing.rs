@@ -2,7 +2,7 @@
 
 use super::support::{document, floats, glb, parts, triangles_of};
 use limitmesh::Triangles;
-use limitmesh_io::gltf::Geometry;
+use limitmesh_io::gltf::{Geometry, VertexAttribute};
 use limitmesh_io::{Asset, Format, Output, WriteOptions, read_bytes, write_to};
 use std::fs;
 
@@ -11,7 +11,7 @@ const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
 fn geometry() -> Geometry<'static> {
     const UP: [[f64; 3]; 4] = [[0.0, 0.0, 2.0], [0.0, 3.0, 4.0], [0.0; 3], [1.0, 0.0, 0.0]];
-    Geometry { positions: &SQUARE, normals: Some(&UP), triangles: &HALVES, attributes: &[] }
+    Geometry { positions: &SQUARE, normals: Some(&UP), triangles: &HALVES, attributes: &[], targets: &[] }
 }
 
 /// A triangle amid things that nobody knows, spelt in ways that no writer would.
@@ -67,7 +67,13 @@ fn short_indices_end_at_65535_vertices() {
             .replace(
                 0,
                 0,
-                &Geometry { positions: &positions, normals: None, triangles: &triangles, attributes: &[] },
+                &Geometry {
+                    positions: &positions,
+                    normals: None,
+                    triangles: &triangles,
+                    attributes: &[],
+                    targets: &[],
+                },
             )
             .unwrap();
         let written = asset.to_bytes(Format::Glb).unwrap();
@@ -156,4 +162,37 @@ fn triangles_from_elsewhere_become_a_document() {
         assert_eq!(soup.positions, SQUARE.map(|p| p.map(|x| f64::from(x as f32))));
         assert_eq!(soup.faces.iter().collect::<Vec<_>>(), HALVES.each_ref().map(|t| &t[..]));
     }
+}
+
+#[test]
+fn morph_targets_are_replaced_and_counted() {
+    let text = odd().replace(
+        r#""attributes":{"POSITION":0}"#,
+        r#""attributes":{"POSITION":0},"targets":[{"POSITION":0},{"NORMAL":0}]"#,
+    );
+    let mut asset = Asset::from_bytes(&glb(&text, &floats(&[0.0; 9])), None).unwrap();
+    let added = |name: &str, width: usize| VertexAttribute {
+        name: name.to_owned(),
+        width,
+        values: (0..4 * width).map(|i| i as f64 - 2.5).collect(),
+        is_integer: false,
+    };
+    let targets = [vec![added("POSITION", 3), added("TEXCOORD_0", 2)], vec![added("NORMAL", 3)]];
+    asset.replace(0, 0, &Geometry { targets: &targets, ..geometry() }).unwrap();
+    let (new, bin) = parts(&asset.to_bytes(Format::Glb).unwrap());
+    assert!(new.contains(r#""targets":[{"POSITION":3,"TEXCOORD_0":4},{"NORMAL":5}]"#), "{new}");
+    let json: serde_json::Value = serde_json::from_str(&new).unwrap();
+    let accessor = &json["accessors"][3];
+    assert_eq!(accessor["min"], serde_json::json!([-2.5, -1.5, -0.5]));
+    assert_eq!(accessor["max"], serde_json::json!([6.5, 7.5, 8.5]));
+    let view = &json["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
+    let start = view["byteOffset"].as_u64().unwrap() as usize;
+    assert_eq!(bin[start..start + 8], floats(&[-2.5, -1.5]));
+    let refused = |targets: &[Vec<VertexAttribute>]| {
+        let mut asset = Asset::from_bytes(&glb(&odd(), &floats(&[0.0; 9])), None).unwrap();
+        asset.replace(0, 0, &Geometry { targets, ..geometry() }).expect_err("a flaw").to_string()
+    };
+    assert!(refused(&[vec![]]).contains("meshes[0].primitives[0].targets[0]: met nothing"));
+    let short = VertexAttribute { values: vec![0.0; 9], ..added("POSITION", 3) };
+    assert!(refused(&[vec![short]]).contains("meshes[0].primitives[0].targets[0].POSITION: met 9 numbers"));
 }

@@ -72,8 +72,23 @@ fn what_morphs_apart_stays_apart() {
         r#"{{"attributes":{{"POSITION":{points}}},"targets":[{{"POSITION":{target}}},{{}}]}}"#
     ));
     let found = builder.read(Joining::Together);
-    assert!(found.has_targets);
+    assert!(found.has_targets());
     assert_eq!((found.soup.positions.len(), found.kept_apart.moving, found.kept_apart.touching), (5, 1, 0));
+    assert_eq!((found.kept_apart.by_skins, found.kept_apart.by_morphs), (0, 1));
+    // Joined all the same, they move as the first does.
+    let found = builder.read(Joining::Ignoring { skins: false, morphs: true });
+    assert_eq!((found.soup.positions.len(), found.kept_apart.moving), (4, 0));
+    let table = &found.attributes[0];
+    assert_eq!(
+        (table.name.as_str(), table.plain_name(), table.target),
+        ("targets[0].POSITION", "POSITION", Some(0))
+    );
+    for (face, corners) in found.soup.faces.iter().zip(&table.corners) {
+        for (&v, &value) in face.iter().zip(corners) {
+            let expected = if found.soup.positions[v as usize] == [1.0, 0.0, 0.0] { 1.0 } else { 0.0 };
+            assert_eq!(table.values[3 * value as usize..][..3], [0.0, 0.0, expected]);
+        }
+    }
 }
 
 #[test]
@@ -97,6 +112,9 @@ fn what_joints_move_apart_stays_apart() {
     ));
     let found = builder.read(Joining::Together);
     assert_eq!((found.soup.positions.len(), found.kept_apart.moving), (5, 1));
+    assert_eq!((found.kept_apart.by_skins, found.kept_apart.by_morphs), (1, 0));
+    let found = builder.read(Joining::Ignoring { skins: true, morphs: false });
+    assert_eq!((found.soup.positions.len(), found.kept_apart.moving), (4, 0));
 }
 
 #[test]

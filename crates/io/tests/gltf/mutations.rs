@@ -2,9 +2,24 @@
 //! written.
 
 use super::support::{document, floats, glb, shared};
-use limitmesh_io::gltf::{Geometry, Joining};
+use limitmesh_io::gltf::{Geometry, Joining, MeshSoup, VertexAttribute};
 use limitmesh_io::{Asset, Format};
 use proptest::prelude::*;
+
+/// How a target moves the vertices of a mesh, and nothing where it doesn't.
+fn added(own: &MeshSoup, target: usize) -> Vec<VertexAttribute> {
+    let mut values = vec![0.0; 3 * own.soup.positions.len()];
+    let tables =
+        own.attributes.iter().filter(|table| table.target == Some(target) && table.is_displacement());
+    for table in tables {
+        for (face, corners) in own.soup.faces.iter().zip(&table.corners) {
+            for (&v, &value) in face.iter().zip(corners) {
+                values[3 * v as usize..][..3].copy_from_slice(&table.values[3 * value as usize..][..3]);
+            }
+        }
+    }
+    vec![VertexAttribute { name: "POSITION".to_owned(), width: 3, values, is_integer: false }]
+}
 
 fn exercise(bytes: &[u8]) {
     let Ok(mut asset) = Asset::from_bytes(bytes, None) else { return };
@@ -12,6 +27,7 @@ fn exercise(bytes: &[u8]) {
     let _ = asset.scene_soup();
     for mesh in 0..asset.mesh_count().min(4) {
         let _ = asset.mesh(mesh, Joining::Never);
+        let _ = asset.mesh(mesh, Joining::Ignoring { skins: true, morphs: true });
         let Ok(own) = asset.mesh(mesh, Joining::Together) else { continue };
         let stretch = asset.stretch(mesh);
         assert!(stretch > 0.0 && stretch.is_finite());
@@ -20,11 +36,14 @@ fn exercise(bytes: &[u8]) {
         for part in &own.parts {
             let triangles: Vec<[u32; 3]> =
                 part.faces.clone().filter_map(|face| own.soup.faces.get(face).try_into().ok()).collect();
+            let targets: Vec<Vec<VertexAttribute>> =
+                (0..part.targets.len()).map(|target| added(&own, target)).collect();
             let geometry = Geometry {
                 positions: &own.soup.positions,
                 normals: None,
                 triangles: &triangles,
                 attributes: &[],
+                targets: &targets,
             };
             let _ = asset.replace(mesh, part.primitive, &geometry);
         }
@@ -47,12 +66,12 @@ fn seed() -> Vec<u8> {
                 "values":{"bufferView":2}}},
             {"count":4,"type":"VEC4","componentType":5121,"bufferView":2,"normalized":true},
             {"count":1,"type":"MAT4","componentType":5126,"bufferView":2},
-            {"count":2,"type":"VEC3","componentType":5126,"bufferView":2}],
+            {"count":2,"type":"VEC3","componentType":5126,"bufferView":2},
+            {"count":4,"type":"VEC3","componentType":5126}],
         "scene":0,"scenes":[{"nodes":[0,2]}],"skins":[{"joints":[1],"inverseBindMatrices":4}],
         "nodes":[{"mesh":0,"skin":0,"children":[1]},{"scale":[2,2,2]},
             {"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":5}}}}]"#;
-    let primitive =
-        r#""attributes":{"POSITION":0,"JOINTS_0":3,"WEIGHTS_0":3},"indices":1,"targets":[{"POSITION":2}]"#;
+    let primitive = r#""attributes":{"POSITION":0,"JOINTS_0":3,"WEIGHTS_0":3},"indices":1,"targets":[{"POSITION":2},{"POSITION":6,"COLOR_0":6}]"#;
     let mut bin = floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
     bin.extend([0, 1, 2, 0, 2, 3, 0, 0]);
     bin.extend(floats(&[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]));

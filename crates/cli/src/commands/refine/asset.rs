@@ -7,16 +7,17 @@ use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
 use limitmesh::Mesh;
-use limitmesh::mesh::{BuildOptions, Channel, Domain, MeshError, Semantic, Weld};
-use limitmesh_io::gltf::{CornerAttribute, Geometry, Joining, MeshSoup};
+use limitmesh::mesh::{BuildOptions, Channel, MeshError, Weld};
+use limitmesh_io::gltf::{KeptApart, MeshSoup};
 use limitmesh_io::{Asset, Format};
 use limitmesh_render::Style;
 
-use super::carried::{Carried, Vertices};
+use super::carried::Carried;
 use super::channels::Channels;
 use super::control::Control;
 use super::exact::{self, Goals};
-use super::{Refined, change_in_words, estimate, picture, stepwise, summary, turned_over};
+use super::put_back::{MOST_WIDE, PutBack, channel};
+use super::{change_in_words, estimate, picture, stepwise, summary, turned_over};
 use crate::arguments::{Extent, Length, Method, RefineArguments};
 use crate::bulk::Bulk;
 use crate::failure::{Outcome, usage};
@@ -49,17 +50,37 @@ struct Progressed {
     refining: Duration,
 }
 
+impl Progressed {
+    /// Notes which attributes of a mesh were left out: tangents, which follow from what is written, what is too wide, and
+    /// what is lost otherwise.
+    fn leave_out(&mut self, own: &MeshSoup, is_lost: impl Fn(&CornerAttribute) -> bool) {
+        let tables = own.attributes.iter().filter(|table| is_lost(table) || table.width > MOST_WIDE);
+        let mut names: Vec<String> = tables.map(|table| table.name.clone()).collect();
+        for part in &own.parts {
+            let own = part.attributes.iter().cloned();
+            let added = part.targets.iter().flatten().map(|name| format!("{name} of morph targets"));
+            names.extend(own.chain(added).filter(|name| name.starts_with("TANGENT")));
+        }
+        for name in names {
+            if !self.left_out.contains(&name) {
+                self.left_out.push(name);
+            }
+        }
+    }
+}
+
 impl Job {
     /// The job that a command line asks for, if that is to edit an asset.
     pub(super) fn of(arguments: &RefineArguments, output: Option<Format>) -> anyhow::Result<Option<Self>> {
         let path = arguments.input();
-        if input::builtin_name(path).is_some() || output.is_some_and(|format| !format.is_gltf()) {
-            return Ok(None);
-        }
-        let input = input::format_of(path, arguments.build.from)?;
-        if !input.is_gltf() {
-            return Ok(None);
-        }
+        let is_edited = input::builtin_name(path).is_none() && output.is_none_or(Format::is_gltf);
+        let input = if is_edited { Some(input::format_of(path, arguments.build.from)?) } else { None };
+        let Some(input) = input.filter(|format| format.is_gltf()) else {
+            return match arguments.asset.given() {
+                Some(option) => usage(format!("{option} is for glTF assets that stay glTF")),
+                None => Ok(None),
+            };
+        };
         let job = Self { arguments: arguments.clone(), input, output };
         job.check()?;
         Ok(Some(job))
@@ -128,24 +149,19 @@ impl Job {
         progress: &Progress,
     ) -> anyhow::Result<()> {
         let arguments = &self.arguments;
-        let joining = match arguments.build.options()?.weld {
-            Weld::Never => Joining::Never,
-            _ => Joining::Together,
-        };
+        let joining = arguments.asset.joining(arguments.build.options()?.weld);
         let mut own = asset.mesh(mesh, joining)?;
         if own.parts.is_empty() {
             return Ok(());
         }
         let name = asset.mesh_name(mesh);
-        let lost = if own.has_targets {
-            Some("morph targets are not carried along yet")
-        } else if !own.influences.is_empty() && !self.is_traced() {
-            Some("its skin is carried along with --method exact, without --optimize")
-        } else {
-            None
-        };
-        if let Some(what) = lost {
-            progress.note(format!("{name}: kept as it is: {what}"));
+        let moves = [(own.has_targets(), "morph targets"), (!own.influences.is_empty(), "its skin")];
+        let lost: Vec<&str> = moves.into_iter().filter(|&(has, _)| has).map(|(_, what)| what).collect();
+        if !lost.is_empty() && !self.is_traced() {
+            let (what, is) = (lost.join(" and "), if lost == ["its skin"] { "is" } else { "are" });
+            progress.note(format!(
+                "{name}: kept as it is: {what} {is} carried along with --method exact, without --optimize"
+            ));
             return Ok(());
         }
         let stretch = asset.stretch(mesh);
@@ -206,21 +222,23 @@ impl Job {
             faces: &before.faces,
             vertices: &vertices,
         };
-        put_back(asset, mesh, &own, (&refined, &carried), stretch)?;
+        let back = PutBack {
+            own: &own,
+            control: &featured.mesh,
+            channels: &channels,
+            refined: &refined,
+            carried: &carried,
+        };
+        for note in back.put(asset, mesh, (stretch, arguments.scheme))? {
+            progress.note(format!("{name}: {note}"));
+        }
         done.triangles += refined.mesh.face_count();
         done.refining += refining;
         if let Outcome::StoppedShort(why) = refined.outcome {
             done.short.push(format!("{name}: {why}"));
         }
-        let is_lost = |table: &&CornerAttribute| {
-            let is_dropped = arguments.channels.drops(&table.name);
-            is_dropped || refined.parents.is_empty() || table.width > MOST_WIDE
-        };
-        for table in own.attributes.iter().filter(is_lost) {
-            if !done.left_out.contains(&table.name) {
-                done.left_out.push(table.name.clone());
-            }
-        }
+        let is_known = !refined.parents.is_empty();
+        done.leave_out(&own, |table| !is_known || arguments.channels.drops(&table.name));
         done.reports.push(AssetMeshReport {
             mesh,
             scale: stretch,
@@ -240,9 +258,22 @@ impl Job {
         for line in diagnosis.repairs() {
             progress.note(format!("{name}: {line}"));
         }
-        if own.kept_apart.touching > 0 {
-            let vertices = counted(own.kept_apart.touching, "vertex", "vertices");
-            progress.note(format!("{name}: {vertices} of primitives that merely touch stay apart"));
+        let KeptApart { moving, by_skins, by_morphs, touching, .. } = own.kept_apart;
+        let vertices = |count| counted(count, "vertex", "vertices");
+        if moving > 0 {
+            let vertices = vertices(moving);
+            let because = match (by_skins > 0, by_morphs > 0) {
+                (true, false) => "of their joints and weights (--weld-ignores skin joins them)".to_owned(),
+                (false, true) => "of morph targets (--weld-ignores morphs joins them)".to_owned(),
+                _ => format!(
+                    "of joints and morph targets (--weld-ignores skin joins {by_skins}, morphs {by_morphs}, skin,morphs all)"
+                ),
+            };
+            progress.note(format!("{name}: {vertices} kept apart where others stand, because {because}"));
+        }
+        if touching > 0 {
+            progress
+                .note(format!("{name}: {} of primitives that merely touch stay apart", vertices(touching)));
         }
     }
 
@@ -353,71 +384,3 @@ impl Job {
         })
     }
 }
-
-/// Replaces the primitives of a mesh by the triangles that came of them, and attributes by their values there.
-fn put_back(
-    asset: &mut Asset,
-    mesh: usize,
-    own: &MeshSoup,
-    (refined, carried): (&Refined, &Carried<'_>),
-    stretch: f64,
-) -> anyhow::Result<()> {
-    let Some(normals) = &refined.normals else { anyhow::bail!("no normals were found") };
-    let (surface, normals) = normals.surface(&refined.mesh);
-    for (number, part) in own.parts.iter().enumerate() {
-        let is_known = !carried.parents.is_empty();
-        let is_own = |channel: &&Channel| {
-            let table = own.attributes.iter().find(|table| table.name == channel.name);
-            table.is_some_and(|table| table.is_in[number])
-        };
-        let channels: Vec<&Channel> = refined.channels.all().iter().filter(is_own).collect();
-        let is_skinned = is_known && part.attributes.iter().any(|name| name == "JOINTS_0");
-        let influences = (is_skinned && !own.influences.is_empty()).then_some(&own.influences[..]);
-        let mut vertices = Vertices::new(&channels, influences, surface.positions.len());
-        let (mut positions, mut directions) = (Vec::new(), Vec::new());
-        let mut triangles = Vec::new();
-        for (triangle, corners) in surface.triangles.iter().enumerate() {
-            if own.parts.len() > 1 && !part.faces.contains(&carried.input(triangle)) {
-                continue;
-            }
-            let of_mesh = refined.mesh.triangles()[triangle];
-            triangles.push([0, 1, 2].map(|corner| {
-                let v = corners[corner];
-                let place =
-                    vertices.need_places().then(|| carried.place(triangle, of_mesh[corner])).flatten();
-                let number = vertices.number(v, 3 * triangle + corner, place);
-                if number as usize == positions.len() {
-                    positions.push(surface.positions[v as usize].map(|x| x / stretch));
-                    directions.push(normals[v as usize]);
-                }
-                number
-            }));
-        }
-        // A primitive of which nothing is left, as it had no area, stays as it is.
-        if !triangles.is_empty() {
-            let (positions, normals) = (&positions[..], Some(&directions[..]));
-            let attributes = &vertices.into_attributes()[..];
-            asset.replace(
-                mesh,
-                part.primitive,
-                &Geometry { positions, normals, triangles: &triangles, attributes },
-            )?;
-        }
-    }
-    Ok(())
-}
-
-/// An attribute as a channel of the mesh's soup.
-fn channel(attribute: &CornerAttribute) -> Channel {
-    let semantic = match attribute.name.as_str() {
-        name if name.starts_with("TEXCOORD_") => Semantic::TextureCoordinates,
-        name if name.starts_with("COLOR_") => Semantic::Colour,
-        _ if attribute.is_integer => Semantic::Label,
-        _ => Semantic::Other,
-    };
-    Channel::new(attribute.name.clone(), semantic, Domain::Corner, attribute.width)
-        .with(attribute.values.clone(), attribute.corners.concat())
-}
-
-/// Numbers of a value at most that vertices of a file can have.
-const MOST_WIDE: usize = 4;

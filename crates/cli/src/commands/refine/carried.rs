@@ -1,8 +1,11 @@
-//! The vertices of an asset's file: what they carry, and what moves them, which is linear on each face of the input.
+//! The vertices of an asset's file: what they carry, and what moves them.
 
+use limitmesh::Mesh;
 use limitmesh::mesh::{Channel, FaceParts, Semantic};
 use limitmesh::refine::Origin;
 use limitmesh_io::gltf::VertexAttribute;
+
+use super::weights::{Joints, MOST_JOINTS};
 
 /// Triangles' corners as points of the input's faces.
 pub(super) struct Carried<'a> {
@@ -18,21 +21,42 @@ pub(super) struct Carried<'a> {
     pub(super) vertices: &'a [u32],
 }
 
-/// Vertices of the input with the weights that a point has of them.
-pub(super) type Mixture = [(u32, f64); 3];
-
 impl Carried<'_> {
     /// The input's face of a triangle.
     pub(super) fn input(&self, triangle: usize) -> usize {
         self.faces[self.parts.whole(self.parents[triangle]) as usize] as usize
     }
 
-    /// What a triangle's corner at a vertex is of the vertices of the input's face.
-    pub(super) fn place(&self, triangle: usize, vertex: u32) -> Option<Mixture> {
-        let parent = self.parents[triangle];
-        let own = self.origins[vertex as usize].in_face(self.control, parent)?;
-        let (whole, weights) = self.parts.on_whole(parent, own.barycentric);
-        Some([0, 1, 2].map(|corner| (self.vertices[3 * whole as usize + corner], weights[corner])))
+    /// Where a triangle's corner at a vertex is in its control face.
+    pub(super) fn control_place(&self, triangle: usize, vertex: u32) -> Option<Origin> {
+        self.origins[vertex as usize].in_face(self.control, self.parents[triangle])
+    }
+
+    /// What moves the control mesh's vertices, given what moves the input's: joints with weights that add up to 1, where there are any.
+    /// Vertices on divided faces are moved as the points are where they stand.
+    pub(super) fn influences(&self, control: &Mesh, input: &[Vec<(u32, f64)>]) -> Vec<Vec<(u32, f64)>> {
+        let mut lists = vec![Vec::new(); control.vertex_count()];
+        let mut is_met = vec![false; lists.len()];
+        for (corner, &v) in control.triangles().as_flattened().iter().enumerate() {
+            if std::mem::replace(&mut is_met[v as usize], true) {
+                continue;
+            }
+            let own = std::array::from_fn(|i| if i == corner % 3 { 1.0 } else { 0.0 });
+            let (whole, shares) = self.parts.on_whole((corner / 3) as u32, own);
+            let list: &mut Vec<(u32, f64)> = &mut lists[v as usize];
+            for (i, share) in shares.into_iter().enumerate().filter(|&(_, share)| share > 0.0) {
+                let input = &input[self.vertices[3 * whole as usize + i] as usize];
+                let total: f64 = input.iter().map(|&(_, weight)| weight).sum();
+                for &(joint, weight) in input {
+                    let weight = share * (weight / total);
+                    match list.iter_mut().find(|(own, _)| *own == joint) {
+                        Some((_, sum)) => *sum += weight,
+                        None => list.push((joint, weight)),
+                    }
+                }
+            }
+        }
+        lists
     }
 }
 
@@ -42,27 +66,20 @@ pub(super) struct Vertices<'a> {
     /// By vertex of the surface, the first of the file's; and by these the next of the same.
     first: Vec<u32>,
     next: Vec<u32>,
-    /// By vertex of the input's soup, what moves it, if that is carried along.
-    influences: Option<&'a [Vec<(u32, f64)>]>,
+    /// By vertex of the mesh, what moves it, if anything does.
+    moving: Option<&'a [Joints]>,
     /// What the file's vertices have.
     attributes: Vec<VertexAttribute>,
     joints: Vec<f64>,
     weights: Vec<f64>,
 }
 
-/// Joints at most that move a vertex of a file: more are not read by everyone.
-const MOST_JOINTS: usize = 4;
-
 /// No vertex.
 const NONE: u32 = u32::MAX;
 
 impl<'a> Vertices<'a> {
     /// None yet, for a surface with so many vertices.
-    pub(super) fn new(
-        channels: &'a [&'a Channel],
-        influences: Option<&'a [Vec<(u32, f64)>]>,
-        count: usize,
-    ) -> Self {
+    pub(super) fn new(channels: &'a [&'a Channel], moving: Option<&'a [Joints]>, count: usize) -> Self {
         let empty = |channel: &&Channel| VertexAttribute {
             name: channel.name.clone(),
             width: channel.arity,
@@ -71,18 +88,13 @@ impl<'a> Vertices<'a> {
         };
         let attributes = channels.iter().map(empty).collect();
         let (joints, weights) = (Vec::new(), Vec::new());
-        Self { channels, first: vec![NONE; count], next: Vec::new(), influences, attributes, joints, weights }
-    }
-
-    /// Whether places are asked for.
-    pub(super) fn need_places(&self) -> bool {
-        self.influences.is_some()
+        Self { channels, first: vec![NONE; count], next: Vec::new(), moving, attributes, joints, weights }
     }
 
     /// All attributes, when there are no more vertices.
     pub(super) fn into_attributes(self) -> Vec<VertexAttribute> {
         let mut all = self.attributes;
-        if self.influences.is_some() {
+        if self.moving.is_some() {
             let width = MOST_JOINTS;
             let joints =
                 VertexAttribute { name: "JOINTS_0".to_owned(), width, values: self.joints, is_integer: true };
@@ -97,9 +109,8 @@ impl<'a> Vertices<'a> {
         all
     }
 
-    /// The file's vertex for a corner of the surface at a vertex, which is at a place of the input's; a new one has the next number.
-    /// Without a place nothing moves it.
-    pub(super) fn number(&mut self, v: u32, corner: usize, place: Option<Mixture>) -> u32 {
+    /// The file's vertex for a corner of the surface at a vertex, which is one of the mesh; a new one has the next number.
+    pub(super) fn number(&mut self, v: u32, corner: usize, of_mesh: u32) -> u32 {
         let new = self.next.len() as u32;
         // As if it were new, until a vertex with these values is found.
         for (channel, attribute) in self.channels.iter().zip(&mut self.attributes) {
@@ -121,38 +132,12 @@ impl<'a> Vertices<'a> {
             last => self.next[last as usize] = new,
         }
         self.next.push(NONE);
-        if let Some(influences) = self.influences {
-            for (joint, weight) in mixed(influences, place.unwrap_or_default()) {
-                self.joints.push(f64::from(joint));
-                self.weights.push(weight);
-            }
+        for (joint, weight) in self.moving.iter().flat_map(|moving| moving[of_mesh as usize]) {
+            self.joints.push(f64::from(joint));
+            self.weights.push(weight);
         }
         new
     }
-}
-
-/// The joints that move a point of a face most, with weights that are linear between those of its corners and then add up to 1; ties by
-/// joint.
-fn mixed(influences: &[Vec<(u32, f64)>], mut place: Mixture) -> [(u32, f64); MOST_JOINTS] {
-    // By vertices, so that faces that share a point agree to the bit.
-    place.sort_unstable_by_key(|&(vertex, _)| vertex);
-    let mut all: Vec<(u32, f64)> = Vec::new();
-    for (vertex, share) in place.into_iter().filter(|&(_, share)| share > 0.0) {
-        for &(joint, weight) in &influences[vertex as usize] {
-            match all.iter_mut().find(|(own, _)| *own == joint) {
-                Some((_, sum)) => *sum += share * weight,
-                None => all.push((joint, share * weight)),
-            }
-        }
-    }
-    all.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-    all.truncate(MOST_JOINTS);
-    let total: f64 = all.iter().map(|&(_, weight)| weight).sum();
-    let mut result = [(0, 0.0); MOST_JOINTS];
-    for (place, (joint, weight)) in result.iter_mut().zip(all) {
-        *place = (joint, weight / total);
-    }
-    result
 }
 
 /// Whether two vertices have the same value in a file.

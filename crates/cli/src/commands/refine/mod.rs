@@ -13,7 +13,9 @@ mod jobs;
 mod normals;
 mod package;
 mod provenance;
+mod put_back;
 mod stepwise;
+mod weights;
 
 use std::borrow::Cow;
 use std::path::Path;
