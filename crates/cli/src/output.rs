@@ -64,9 +64,17 @@ pub(crate) fn write_mesh(
 }
 
 /// Writes an asset and what belongs to it, whole or not at all; gives files that it names and that were not found.
-pub(crate) fn write_asset(path: &Path, asset: &Asset, format: Format) -> anyhow::Result<Vec<PathBuf>> {
+pub(crate) fn write_asset(
+    path: &Path,
+    asset: &Asset,
+    (format, are_images_linked): (Format, bool),
+) -> anyhow::Result<Vec<PathBuf>> {
     let name = path.display().to_string();
-    Ok(interrupt::uninterrupted(name, || asset.write(path, format))?)
+    let write = || match are_images_linked {
+        true => asset.write_linked(path, format),
+        false => asset.write(path, format),
+    };
+    Ok(interrupt::uninterrupted(name, write)?)
 }
 
 /// Writes JSON to a file, or to standard output for `-`.

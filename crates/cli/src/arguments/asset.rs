@@ -11,6 +11,26 @@ const HEADING: &str = "Options of glTF assets";
 #[derive(Args, Debug, Clone, Default)]
 #[command(next_help_heading = HEADING)]
 pub(crate) struct AssetArguments {
+    /// Refine the meshes of this name alone; may be given several times [default: all]
+    ///
+    /// All else stays to the byte. A mesh without a name is called meshes[2], by its number.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) mesh: Vec<String>,
+
+    /// Refine the primitives with a material of this name alone; may be given several times [default: all]
+    ///
+    /// With --mesh, those of these meshes. Edges where they meet primitives that stay are kept straight, so that no gap opens.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) material: Vec<String>,
+
+    /// What lengths in per cent are of: the diagonal of the scene's bounding box, or of each mesh's as the scene shows it
+    #[arg(long, value_enum, value_name = "WHAT", default_value_t)]
+    pub(crate) relative_to: RelativeTo,
+
+    /// Leave images where they are: the new asset names those of the input, rather than copies beside it
+    #[arg(long)]
+    pub(crate) link_resources: bool,
+
     /// Make vertices at one place one, even if these move them apart [with a comma between several]
     ///
     /// Otherwise vertices become one where position, displacements of all morph targets, and joints with their weights are the
@@ -28,6 +48,16 @@ pub(crate) enum Mover {
     Morphs,
 }
 
+/// What lengths in per cent are of.
+#[derive(ValueEnum, Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum RelativeTo {
+    /// The scene
+    #[default]
+    Scene,
+    /// The mesh that is refined
+    Mesh,
+}
+
 impl AssetArguments {
     /// Which vertices of a mesh become one.
     pub(crate) fn joining(&self, weld: Weld) -> Joining {
@@ -40,6 +70,13 @@ impl AssetArguments {
 
     /// The first of these options that is given.
     pub(crate) fn given(&self) -> Option<&'static str> {
-        (!self.weld_ignores.is_empty()).then_some("--weld-ignores")
+        let all = [
+            (!self.mesh.is_empty(), "--mesh"),
+            (!self.material.is_empty(), "--material"),
+            (self.relative_to != RelativeTo::default(), "--relative-to"),
+            (self.link_resources, "--link-resources"),
+            (!self.weld_ignores.is_empty(), "--weld-ignores"),
+        ];
+        all.into_iter().find(|&(is_given, _)| is_given).map(|(_, option)| option)
     }
 }

@@ -17,7 +17,7 @@ mod reproduce;
 mod shared;
 mod values;
 
-pub(crate) use asset::AssetArguments;
+pub(crate) use asset::{AssetArguments, RelativeTo};
 pub(crate) use camera::cameras_in;
 pub(crate) use channels::ChannelArguments;
 pub(crate) use compare::CompareArguments;

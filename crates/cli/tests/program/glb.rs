@@ -113,6 +113,17 @@ impl Glb {
         Self { json, bytes: glb[bin + 8..bin + 8 + word(bin)].to_vec() }
     }
 
+    /// A text document, without the bytes of its buffers.
+    pub(crate) fn text(path: &Path) -> Self {
+        let json = serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON");
+        Self { json, bytes: Vec::new() }
+    }
+
+    /// The binary chunk.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
     /// The numbers of an accessor, one element after the other. Bounds that it has are checked.
     pub(crate) fn numbers(&self, accessor: &Value) -> Vec<f64> {
         let accessor = &self.json["accessors"][accessor.as_u64().expect("an index") as usize];

@@ -1,6 +1,7 @@
 //! The program as its users meet it: commands, files, exit codes, the JSON contract.
 
 mod asset;
+mod asset_choice;
 mod asset_morphs;
 mod asset_skins;
 mod channels;

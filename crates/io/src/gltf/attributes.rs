@@ -42,15 +42,16 @@ impl CornerAttribute {
     }
 }
 
-/// The tables of all attributes but positions, normals and tangents, and of what morph targets add to any but the last two; `vertex` gives
+/// The tables of all attributes of the primitives `wanted` but positions, normals and tangents, and of what morph targets add to any but the last two; `vertex` gives
 /// the soup's vertex of a primitive's.
 pub(super) fn tables(
     primitives: &[Primitive],
     names: &[Names],
+    wanted: &[usize],
     mut vertex: impl FnMut(usize, u32) -> u32,
 ) -> Vec<CornerAttribute> {
     let mut kinds: Vec<(&AttributeName, usize)> = Vec::new();
-    for (name, numbers) in primitives.iter().flat_map(|primitive| &primitive.attributes) {
+    for (name, numbers) in wanted.iter().flat_map(|&part| &primitives[part].attributes) {
         match kinds.iter_mut().find(|(own, _)| *own == name) {
             Some((_, width)) => *width = (*width).max(numbers.components),
             None => kinds.push((name, numbers.components)),
@@ -78,7 +79,8 @@ pub(super) fn tables(
         };
         let is_displacement = table.is_displacement();
         let mut known: HashMap<(u32, Vec<u64>), u32> = HashMap::new();
-        for (part, primitive) in primitives.iter().enumerate() {
+        for &part in wanted {
+            let primitive = &primitives[part];
             let own = of_primitive(primitive).map(|at| &primitive.attributes[at].1);
             table.is_in.push(own.is_some());
             for triangle in &primitive.triangles {

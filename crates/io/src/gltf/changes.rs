@@ -39,8 +39,8 @@ pub(super) struct Written {
 }
 
 impl Changes {
-    /// The document with the changes.
-    pub(super) fn apply(&self, source: &Source, place: &Place<'_>) -> Result<Written> {
+    /// The document with the changes; `way` is put before the names of images.
+    pub(super) fn apply(&self, source: &Source, place: &Place<'_>, way: Option<&str>) -> Result<Written> {
         let text = &source.container.text;
         let top = Members::of(text)?;
         let mut edits = Edits::new(text);
@@ -67,6 +67,9 @@ impl Changes {
         });
         append(&mut edits, text, &top, "accessors", new_accessors.collect())?;
         self.primitives_in(&top, &mut edits, accessors)?;
+        if let Some(way) = way.filter(|way| !way.is_empty()) {
+            link_images(&top, &mut edits, way)?;
+        }
         let text = self.without_idle_extension(source, edits.apply())?;
         let mut container = Container { text, ..Container::default() };
         let beside = match place {
@@ -191,6 +194,19 @@ impl Changes {
     }
 }
 
+/// Puts a way before the names of image files.
+fn link_images<'a>(top: &Members<'a>, edits: &mut Edits<'a>, way: &str) -> Result<()> {
+    for image in top.get("images").map_or_else(|| Ok(Vec::new()), items_of)? {
+        let Some(text) = Members::of(image)?.get("uri") else { continue };
+        if let Ok(Value::String(name)) = serde_json::from_str(text)
+            && let Ok(Uri::File(_)) = uri::parse(&name)
+        {
+            edits.replace(text, quoted(&format!("{way}{name}")));
+        }
+    }
+    Ok(())
+}
+
 /// Adds items to one of the document's arrays, which is made if there is none.
 fn append<'a>(
     edits: &mut Edits<'a>,
@@ -219,15 +235,21 @@ impl Source {
         self.buffer(&At::root(&zero))
     }
 
-    /// Files below the folder that a `uri` anywhere in the document names, but for that of the first buffer if it `is_taken`.
-    pub(super) fn files(&self, is_taken: bool) -> BTreeSet<PathBuf> {
+    /// Files below the folder that a `uri` anywhere in the document names, but for that of the first buffer if it `is_taken`, and for
+    /// those of images if they `are_linked`.
+    pub(super) fn files(&self, is_taken: bool, are_linked: bool) -> BTreeSet<PathBuf> {
         let mut found = BTreeSet::new();
         let first = self.json.get("buffers").and_then(|buffers| buffers.get(0)).filter(|_| is_taken);
+        let linked = self.json.get("images").and_then(Value::as_array).filter(|_| are_linked);
+        let is_linked =
+            |value: &Value| linked.is_some_and(|all| all.iter().any(|own| std::ptr::eq(own, value)));
         let mut waiting = vec![&self.json];
         while let Some(value) = waiting.pop() {
             match value {
                 Value::Array(items) => waiting.extend(items),
-                Value::Object(members) if !first.is_some_and(|first| std::ptr::eq(first, value)) => {
+                Value::Object(members)
+                    if !is_linked(value) && !first.is_some_and(|first| std::ptr::eq(first, value)) =>
+                {
                     if let Some(Value::String(uri)) = members.get("uri")
                         && let Ok(Uri::File(file)) = uri::parse(uri)
                     {

@@ -160,7 +160,20 @@ impl Asset {
     /// # Errors
     /// There is no such mesh, or an accessor breaks the rules; the flaw names it.
     pub fn mesh(&self, mesh: usize, joining: Joining) -> Result<MeshSoup, ReadError> {
-        self.read_mesh(mesh, joining, true).map_err(|flaw| self.told(flaw))
+        self.mesh_of(mesh, joining, |_| true)
+    }
+
+    /// [`Self::mesh`] of some of its primitives, given by their numbers.
+    ///
+    /// # Errors
+    /// As for [`Self::mesh`], also where it is another primitive's accessor.
+    pub fn mesh_of(
+        &self,
+        mesh: usize,
+        joining: Joining,
+        is_wanted: impl Fn(usize) -> bool,
+    ) -> Result<MeshSoup, ReadError> {
+        self.read_mesh(mesh, joining, true, is_wanted).map_err(|flaw| self.told(flaw))
     }
 
     /// A flaw as an error with the file's name.
@@ -170,10 +183,16 @@ impl Asset {
 
     /// A mesh's shape alone.
     fn shape(&self, mesh: usize) -> Result<MeshSoup, ReadError> {
-        self.read_mesh(mesh, Joining::Together, false).map_err(|flaw| self.told(flaw))
+        self.read_mesh(mesh, Joining::Together, false, |_| true).map_err(|flaw| self.told(flaw))
     }
 
-    fn read_mesh(&self, mesh: usize, joining: Joining, with_attributes: bool) -> Flawed<MeshSoup> {
+    fn read_mesh(
+        &self,
+        mesh: usize,
+        joining: Joining,
+        with_attributes: bool,
+        is_wanted: impl Fn(usize) -> bool,
+    ) -> Flawed<MeshSoup> {
         let meshes = self.source.root().list("meshes")?;
         let Some(at) = meshes.get(mesh) else {
             return Err(GltfFlaw::new(
@@ -190,7 +209,7 @@ impl Asset {
                     .filter(|found| !found.triangles.is_empty()),
             );
         }
-        Ok(parts::join(primitives, joining))
+        Ok(parts::join(&primitives, joining, is_wanted))
     }
 
     /// The corners of the box around everything that the scene shows; `None` if it shows no triangles.

@@ -9,6 +9,8 @@ use super::attributes::{self, CornerAttribute};
 use super::kinds::Kinds;
 use super::primitive::Primitive;
 use limitmesh::PolygonSoup;
+use limitmesh::mesh::CornerTag;
+use limitmesh::ring::INFINITELY_SHARP;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
@@ -71,6 +73,9 @@ pub struct MeshSoup {
     pub attributes: Vec<CornerAttribute>,
     /// What stayed apart at one place.
     pub kept_apart: KeptApart,
+    /// Edges along which the primitives that were asked for meet others. Their ends are corners of the soup, so that they stay straight
+    /// and the surface does not leave the triangles beside it.
+    pub borders: usize,
     /// By vertex of the soup, the joints that move it with their weights above 0, by joint; empty without a skin.
     pub influences: Vec<Vec<(u32, f64)>>,
 }
@@ -85,8 +90,13 @@ impl MeshSoup {
 /// A vertex before primitives are joined: the primitive, and its number there among those that differ.
 type Local = (usize, u32);
 
-pub(super) fn join(primitives: Vec<Primitive>, joining: Joining) -> MeshSoup {
-    let kinds = Kinds::of(&primitives, joining);
+/// The primitives that `is_wanted` by their numbers; the others are looked at for what they share with these.
+pub(super) fn join(
+    primitives: &[Primitive],
+    joining: Joining,
+    is_wanted: impl Fn(usize) -> bool,
+) -> MeshSoup {
+    let kinds = Kinds::of(primitives, joining);
     let names: Vec<Names> =
         primitives.iter().zip(kinds.all()).map(|(primitive, kinds)| Names::of(primitive, kinds)).collect();
     let mut first = Vec::with_capacity(names.len());
@@ -97,15 +107,24 @@ pub(super) fn join(primitives: Vec<Primitive>, joining: Joining) -> MeshSoup {
     }
     let number = |(part, v): Local| first[part] + v as usize;
     let mut roots: Vec<usize> = (0..count).collect();
+    let is_wanted: Vec<bool> = primitives.iter().map(|primitive| is_wanted(primitive.index)).collect();
+    let mut ends = Vec::new();
     if joining != Joining::Never && names.len() > 1 {
-        for (a, b) in shared_edges(&primitives, &names, kinds.all()) {
+        for (a, b) in shared_edges(primitives, &names, kinds.all()) {
             unite(&mut roots, number(a), number(b));
+            if is_wanted[a.0] != is_wanted[b.0] {
+                ends.push(number(a));
+            }
         }
     }
-    let mut result = MeshSoup::default();
+    // Two ends an edge.
+    let mut result = MeshSoup { borders: ends.len() / 2, ..MeshSoup::default() };
     let mut numbers = vec![u32::MAX; count];
     let is_skinned = primitives.iter().any(|primitive| !primitive.influences.is_empty());
     for (part, (primitive, names)) in primitives.iter().zip(&names).enumerate() {
+        if !is_wanted[part] {
+            continue;
+        }
         for (v, &vertex) in names.vertices.iter().enumerate() {
             let root = root(&mut roots, number((part, v as u32)));
             if numbers[root] == u32::MAX {
@@ -132,10 +151,17 @@ pub(super) fn join(primitives: Vec<Primitive>, joining: Joining) -> MeshSoup {
             targets: primitive.targets.iter().map(|target| target.names.clone()).collect(),
         });
     }
-    result.attributes =
-        attributes::tables(&primitives, &names, |part, v| numbers[root(&mut roots, number((part, v)))]);
+    let mut ends: Vec<u32> = ends.into_iter().map(|end| numbers[root(&mut roots, end)]).collect();
+    ends.sort_unstable();
+    ends.dedup();
+    let corner = |vertex| CornerTag { vertex, sharpness: INFINITELY_SHARP };
+    result.soup.corners = ends.into_iter().map(corner).collect();
+    let wanted: Vec<usize> = (0..primitives.len()).filter(|&part| is_wanted[part]).collect();
+    result.attributes = attributes::tables(primitives, &names, &wanted, |part, v| {
+        numbers[root(&mut roots, number((part, v)))]
+    });
     if joining != Joining::Never {
-        result.kept_apart = kept_apart(&names, &kinds, result.soup.positions.len());
+        result.kept_apart = kept_apart(&names, &kinds, &wanted, result.soup.positions.len());
     }
     result
 }
@@ -211,10 +237,11 @@ fn open_edges(primitive: &Primitive, names: &Names) -> Vec<[u32; 2]> {
     all
 }
 
-fn kept_apart(names: &[Names], kinds: &Kinds, vertices: usize) -> KeptApart {
+fn kept_apart(names: &[Names], kinds: &Kinds, wanted: &[usize], vertices: usize) -> KeptApart {
     let mut apart = KeptApart::default();
     let (mut everywhere, mut distinct) = (HashSet::new(), 0);
-    for (part, names) in names.iter().enumerate() {
+    for &part in wanted {
+        let names = &names[part];
         // How many vertices would be left by other kinds.
         let left = |kinds: &[Vec<u32>]| {
             let own = names.vertices.iter().map(|&v| kinds[part][v as usize]);

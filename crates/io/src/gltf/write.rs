@@ -1,7 +1,7 @@
 //! Writing a document: one GLB, or the text with a file of bytes; and copies of the files that it names.
 
 use super::changes::{Place, Written};
-use super::{Asset, GltfFlaw};
+use super::{Asset, GltfFlaw, uri};
 use crate::error::WriteError;
 use crate::format::Format;
 use crate::write::{WholeFile, write_together};
@@ -19,12 +19,28 @@ impl Asset {
     /// The system refuses, a file that would be replaced is not the one that is to be copied there, or a buffer that
     /// has to be moved cannot be read.
     pub fn write(&self, path: &Path, format: Format) -> Result<Vec<PathBuf>, WriteError> {
+        self.write_with(path, format, None)
+    }
+
+    /// [`Self::write`], with images left where they are: the new document names those of the old one by the way from its own folder.
+    ///
+    /// # Errors
+    /// As for [`Self::write`]; or there is no such way, as from one drive to another.
+    pub fn write_linked(&self, path: &Path, format: Format) -> Result<Vec<PathBuf>, WriteError> {
+        let reason = |reason| WriteError::File { path: path.to_owned(), reason };
+        let from = self.path.as_ref().and_then(|path| path.parent());
+        let way = from.map(|from| way(path.parent().unwrap_or(Path::new("")), from)).transpose();
+        self.write_with(path, format, way.map_err(reason)?.as_deref())
+    }
+
+    /// `way` leads from the new document's folder to the old one's, for images that stay there.
+    fn write_with(&self, path: &Path, format: Format, way: Option<&str>) -> Result<Vec<PathBuf>, WriteError> {
         let is_glb = format == Format::Glb;
         let folder = path.parent().unwrap_or(Path::new(""));
-        let files = self.source.files(is_glb);
+        let files = self.source.files(is_glb, way.is_some());
         let name = self.name_beside(path, &files);
         let place = if is_glb { Place::Chunk } else { Place::File(&name) };
-        let Written { container, beside } = self.written(&place)?;
+        let Written { container, beside } = self.written(&place, way)?;
         let mut whole = Vec::new();
         let mut missing = Vec::new();
         for file in files {
@@ -66,12 +82,12 @@ impl Asset {
     /// It is larger than a GLB can be, or a buffer that has to be moved cannot be read.
     pub fn to_bytes(&self, format: Format) -> Result<Vec<u8>, WriteError> {
         let place = if format == Format::Glb { Place::Chunk } else { Place::Inside };
-        let container = self.written(&place)?.container;
+        let container = self.written(&place, None)?.container;
         if format == Format::Glb { glb(&container) } else { Ok(container.text.into_bytes()) }
     }
 
-    fn written(&self, place: &Place<'_>) -> Result<Written, WriteError> {
-        self.changes.apply(&self.source, place).map_err(|flaw| WriteError::Gltf { flaw })
+    fn written(&self, place: &Place<'_>, way: Option<&str>) -> Result<Written, WriteError> {
+        self.changes.apply(&self.source, place, way).map_err(|flaw| WriteError::Gltf { flaw })
     }
 
     /// A name for the new bytes that none of the document's own files has.
@@ -88,4 +104,22 @@ fn glb(container: &super::container::Container) -> Result<Vec<u8>, WriteError> {
         let flaw = GltfFlaw::new("the GLB", "more bytes than its 32-bit length can tell", "less than 4 GiB");
         WriteError::Gltf { flaw }
     })
+}
+
+/// The way from a folder to another as a URI has it, with a slash at its end; nothing if they are one.
+fn way(from: &Path, to: &Path) -> std::io::Result<String> {
+    let whole = |folder: &Path| {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        folder.canonicalize()
+    };
+    let (from, to) = (whole(from)?, whole(to)?);
+    let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
+    let none = || std::io::Error::other(format!("there is no way from it to {}", to.display()));
+    let mut way = "../".repeat(from.components().count() - shared);
+    for part in to.components().skip(shared) {
+        let std::path::Component::Normal(name) = part else { return Err(none()) };
+        way.push_str(&uri::escaped(name.to_str().ok_or_else(none)?));
+        way.push('/');
+    }
+    Ok(way)
 }

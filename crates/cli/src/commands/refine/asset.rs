@@ -17,8 +17,9 @@ use super::channels::Channels;
 use super::control::Control;
 use super::exact::{self, Goals};
 use super::put_back::{MOST_WIDE, PutBack, channel};
+use super::selection::Selection;
 use super::{change_in_words, estimate, picture, stepwise, summary, turned_over};
-use crate::arguments::{Extent, Length, Method, RefineArguments};
+use crate::arguments::{ConcaveCorners, Extent, Length, Method, RefineArguments, RelativeTo};
 use crate::bulk::Bulk;
 use crate::failure::{Outcome, usage};
 use crate::format::counted;
@@ -128,29 +129,37 @@ impl Job {
             anyhow::bail!("{name}: the scene shows no triangles that could be refined");
         };
         let diagonal = low.iter().zip(high).map(|(a, b)| (b - a).powi(2)).sum::<f64>().sqrt();
-        if let Some(within) = self.arguments.interpolation.within(diagonal, self.arguments.build.unit)? {
+        let diagonal = match self.arguments.asset.relative_to {
+            RelativeTo::Scene => Some(diagonal),
+            RelativeTo::Mesh => None,
+        };
+        if let Some(diagonal) = diagonal
+            && let Some(within) = self.arguments.interpolation.within(diagonal, self.arguments.build.unit)?
+        {
             self.arguments.interpolation.interpolate_within =
                 Some(Extent::Length(Length { value: within, unit: None }));
         }
+        let selection = Selection::new(&asset, &self.arguments.asset)?;
         let mut done = Progressed::default();
         for mesh in 0..asset.mesh_count() {
-            self.mesh(mesh, &mut asset, diagonal, &mut done, progress)?;
+            self.mesh((mesh, &selection), &mut asset, diagonal, &mut done, progress)?;
         }
         self.finish(&asset, &name, reading, done, progress)
     }
 
-    /// Refines a mesh and puts it back, unless there is nothing to refine, or more than can be carried along.
+    /// Refines a mesh and puts it back, unless there is nothing to refine, or more than can be carried along. Lengths in per cent are of
+    /// `diagonal`, or of the mesh's own.
     fn mesh(
         &self,
-        mesh: usize,
+        (mesh, selection): (usize, &Selection),
         asset: &mut Asset,
-        diagonal: f64,
+        diagonal: Option<f64>,
         done: &mut Progressed,
         progress: &Progress,
     ) -> anyhow::Result<()> {
         let arguments = &self.arguments;
         let joining = arguments.asset.joining(arguments.build.options()?.weld);
-        let mut own = asset.mesh(mesh, joining)?;
+        let mut own = asset.mesh_of(mesh, joining, |primitive| selection.has(mesh, primitive))?;
         if own.parts.is_empty() {
             return Ok(());
         }
@@ -184,9 +193,9 @@ impl Job {
         let channels = narrow.map(on_mesh).collect::<Result<_, _>>()?;
         let of_corners: Vec<u32> = own.soup.faces.iter().flatten().copied().collect();
         let vertices: Vec<u32> = trace.corners.iter().map(|&corner| of_corners[corner as usize]).collect();
-        let control = Control::new((built, diagnosis, trace.faces), Some(diagonal), arguments, progress)?;
         let arguments = self.of_mesh(&own, done)?;
-        let goals = Goals::new(&arguments, &control.featured.mesh, diagonal)?;
+        let control = Control::new((built, diagnosis, trace.faces), diagonal, &arguments, progress)?;
+        let goals = Goals::new(&arguments, &control.featured.mesh, control.diagonal)?;
         // After collapses, triangles reach over several faces.
         let goals = if self.is_traced() { goals.keeping_origins() } else { goals };
         let parameters = match arguments.method {
@@ -258,6 +267,11 @@ impl Job {
         for line in diagnosis.repairs() {
             progress.note(format!("{name}: {line}"));
         }
+        if own.borders > 0 {
+            let edges = counted(own.borders, "edge", "edges");
+            progress
+                .note(format!("{name}: {edges} where primitives meet others that stay are kept straight"));
+        }
         let KeptApart { moving, by_skins, by_morphs, touching, .. } = own.kept_apart;
         let vertices = |count| counted(count, "vertex", "vertices");
         if moving > 0 {
@@ -289,6 +303,10 @@ impl Job {
         // A flat region has triangles across borders, and across the faces that values belong to.
         let is_kept = |own: &CornerAttribute| !arguments.channels.drops(&own.name);
         let has_values = own.attributes.iter().any(is_kept) || !own.influences.is_empty();
+        if own.borders > 0 {
+            // Where they stay straight around a corner of 180° and more, the surface would fold over.
+            arguments.features.concave_corners.get_or_insert(ConcaveCorners::Divided);
+        }
         arguments.exact.divide_flat |= self.is_traced() && (own.parts.len() > 1 || has_values);
         Ok(arguments)
     }
@@ -335,7 +353,7 @@ impl Job {
         if output::is_standard_output(path) {
             output::write_file(path, &asset.to_bytes(format)?)?;
         } else {
-            let missing = output::write_asset(path, asset, format)?;
+            let missing = output::write_asset(path, asset, (format, arguments.asset.link_resources))?;
             for file in missing {
                 progress.note(format!("{name}: {} is named in it, and was not found", file.display()));
             }

@@ -14,6 +14,7 @@ mod normals;
 mod package;
 mod provenance;
 mod put_back;
+mod selection;
 mod stepwise;
 mod weights;
 
