@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use limitmesh::Mesh;
 use limitmesh::mesh::{BuildOptions, Channel, MeshError, Weld};
-use limitmesh_io::gltf::{KeptApart, MeshSoup};
+use limitmesh_io::gltf::{CornerAttribute, KeptApart, MeshSoup};
 use limitmesh_io::{Asset, Format};
 use limitmesh_render::Style;
 

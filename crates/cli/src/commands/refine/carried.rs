@@ -32,6 +32,13 @@ impl Carried<'_> {
         self.origins[vertex as usize].in_face(self.control, self.parents[triangle])
     }
 
+    /// What a triangle's corner at a vertex is of the vertices of the input's face.
+    pub(super) fn place(&self, triangle: usize, vertex: u32) -> Option<[(u32, f64); 3]> {
+        let own = self.control_place(triangle, vertex)?;
+        let (whole, weights) = self.parts.on_whole(own.face, own.barycentric);
+        Some([0, 1, 2].map(|corner| (self.vertices[3 * whole as usize + corner], weights[corner])))
+    }
+
     /// What moves the control mesh's vertices, given what moves the input's: joints with weights that add up to 1, where there are any.
     /// Vertices on divided faces are moved as the points are where they stand.
     pub(super) fn influences(&self, control: &Mesh, input: &[Vec<(u32, f64)>]) -> Vec<Vec<(u32, f64)>> {

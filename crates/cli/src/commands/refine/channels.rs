@@ -2,7 +2,7 @@
 
 use limitmesh::Mesh;
 use limitmesh::carry::carried;
-use limitmesh::mesh::{Channel, Domain, FaceParts, Semantic};
+use limitmesh::mesh::{Channel, Domain, FaceParts};
 use limitmesh::refine::Traced;
 use limitmesh_io::{Format, Output, holds, values_lost};
 
