@@ -6,6 +6,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::common::{counts, file, folder, run, soup};
+use crate::glb::Glb;
 
 /// A text document with its buffer in it: positions of eight corners of a cube (accessor 0), and indices of its sides but the top,
 /// of the top, and of a line; joints and weights of the corners (4 and 5), which are the first joint's below and the second's above.
@@ -99,16 +100,21 @@ fn tolerances_are_the_scenes() {
 fn materials_keep_their_border_and_stay_joined() {
     let folder = folder();
     let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, "");
-    for (output, options) in [("out.glb", ""), ("sharp.gltf", "--crease-angle 30")] {
+    for (output, options) in [
+        ("out.glb", "--tolerance 2%"),
+        ("few.glb", "--tolerance 2% --optimize"),
+        ("steps.glb", "--method uniform --levels 2"),
+        ("sharp.gltf", "--tolerance 2% --crease-angle 30"),
+    ] {
         let output = folder.path().join(output);
-        run(&format!("refine {{}} -o {{}} --tolerance 2% {options}"), &[&input, &output]).expect(0);
+        run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(0);
         // Read back, joined again along the border: closed.
         let whole = run("info {} --json", &[&output]).expect(0).json();
         assert_eq!(whole["mesh"]["watertight"], true);
         let primitives = &whole["asset"]["meshes"][0]["primitives"];
         assert_eq!((&primitives[0]["material"], &primitives[1]["material"]), (&"body".into(), &"lid".into()));
         assert_eq!((&primitives[2]["mode"], &primitives[2]["indices"]), (&"lines".into(), &2.into()));
-        if options.is_empty() {
+        if !options.contains("crease") {
             continue;
         }
         // With sharp edges the cube is itself, and the lid is what is on top.
@@ -159,14 +165,18 @@ fn values_are_linear_on_the_faces_they_come_from() {
             side.is_integer && side.values.chunks(4).all(|id| id[0] <= 1.0 && id[1..] == [9.0, 0.0, 0.0])
         );
     }
-    // Where triangles reach over many faces there is nothing to carry values by.
+    // Where triangles reach over many faces, too, values are those of the faces that their corners are from.
     let single = cube(&folder, "single.gltf", r#"{"mesh":0}"#, r#","_HEAT":0"#);
     let text = std::fs::read_to_string(&single).expect("text").replace(r#""count":30"#, r#""count":36"#);
     let (before, rest) =
         text.split_once(r#"{"attributes":{"POSITION":0,"_HEAT":0},"indices":2"#).expect("the lid");
     let rest = rest.split_once("},").expect("the line").1;
     let single = file(&folder, "single.gltf", &format!("{before}{rest}"));
-    run("refine {} -o {} --optimize", &[&single, &output]).expect(0).saying("left out: _HEAT");
+    let told = run("refine {} -o {} --optimize --tolerance 1%", &[&single, &output]).expect(0).stderr;
+    assert!(!told.contains("left out"), "{told}");
+    let mesh = first_mesh(&output);
+    let heat = mesh.attributes.iter().find(|table| table.name == "_HEAT").expect("a table");
+    assert!(heat.values.chunks(3).all(|p| p.iter().any(|x| x.abs() == 1.0)), "points of the cube");
 }
 
 #[test]
@@ -175,8 +185,17 @@ fn skins_are_carried_along() {
     let output = folder.path().join("out.glb");
     let nodes = r#"{"mesh":0,"skin":0},{},{"translation":[0,0,5]}],"skins":[{"joints":[1,2]}"#;
     let input = cube(&folder, "in.gltf", nodes, r#","JOINTS_0":4,"WEIGHTS_0":5"#);
-    run("refine {} -o {} --tolerance 1%", &[&input, &output]).expect(0);
-    let mesh = first_mesh(&output);
+    for options in ["--tolerance 1% --optimize", "--method uniform --limit", "--tolerance 1%"] {
+        run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(0);
+        check_weights(&first_mesh(&output));
+    }
+    // In its pose it is longer by as much as its second joint is away.
+    let soup = soup(&output);
+    let height = soup.positions.iter().fold(0.0f64, |most, p| most.max(p[2]));
+    assert!(height > 4.5, "{height}");
+}
+
+fn check_weights(mesh: &limitmesh_io::gltf::MeshSoup) {
     assert_eq!(mesh.influences.len(), mesh.soup.positions.len());
     // Weights are the height of the corners, so they are the height of the surface.
     for (p, influences) in mesh.soup.positions.iter().zip(&mesh.influences) {
@@ -187,24 +206,28 @@ fn skins_are_carried_along() {
         };
         assert!((weight(1) - up).abs() < 1e-6 && (weight(0) + weight(1) - 1.0).abs() < 1e-6);
     }
-    // In its pose it is longer by as much as its second joint is away.
-    let soup = soup(&output);
-    let height = soup.positions.iter().fold(0.0f64, |most, p| most.max(p[2]));
-    assert!(height > 4.5, "{height}");
 }
 
+/// A target that moves vertices by where they are moves those of the result by where these are.
 #[test]
-fn what_cannot_be_carried_along_is_told() {
+fn targets_are_carried_through_collapses_and_steps() {
     let folder = folder();
     let output = folder.path().join("out.glb");
     let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, "");
     let text = std::fs::read_to_string(&input).expect("text");
     let input =
         file(&folder, "in.gltf", &text.replace(r#""indices":"#, r#""targets":[{"POSITION":0}],"indices":"#));
-    let kept = "meshes[0] 'Box': kept as it is: morph targets are carried along with --method exact";
-    run("refine {} -o {} --optimize", &[&input, &output]).expect(0).saying(kept);
-    let found = run("info {} --json", &[&output]).expect(0).json();
-    assert_eq!(found["asset"]["meshes"][0]["primitives"][0]["indices"], 30);
+    for options in ["--tolerance 1% --optimize", "--method uniform --limit"] {
+        run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(0);
+        let found = Glb::read(&output);
+        let primitive = found.primitive(0);
+        let [at, moved] =
+            [&primitive["attributes"], &primitive["targets"][0]].map(|all| found.points(&all["POSITION"]));
+        assert!(at.len() > 30 && at.len() == moved.len());
+        for (p, q) in at.iter().zip(&moved) {
+            assert!((0..3).all(|i| (p[i] - q[i]).abs() < 1e-6), "{p:?} {q:?}");
+        }
+    }
 }
 
 #[test]
@@ -218,7 +241,6 @@ fn what_has_no_meaning_for_a_scene_is_refused() {
     refused("--camera 0,0,5,0,0,0,0,1,0,45,100x100", "stand in a scene");
     refused("--angle 5 --view 0,0,1", "stand in a scene");
     refused("--weld 0.1", "--weld can be 0 or none");
-    refused("--method uniform", "several primitives");
     refused("--provenance", "PLY");
     assert!(!output.exists());
     let broken = file(&folder, "broken.gltf", r#"{"asset":{"version":"2.0"},"nodes":[{"children":[0]}]}"#);

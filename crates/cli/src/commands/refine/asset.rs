@@ -7,7 +7,8 @@ use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
 use limitmesh::Mesh;
-use limitmesh::mesh::{BuildOptions, Channel, MeshError, Weld};
+use limitmesh::carry::borders;
+use limitmesh::mesh::{BuildOptions, Channel, Domain, MeshError, Semantic, Weld};
 use limitmesh_io::gltf::{CornerAttribute, KeptApart, MeshSoup};
 use limitmesh_io::{Asset, Format};
 use limitmesh_render::Style;
@@ -19,7 +20,7 @@ use super::exact::{self, Goals};
 use super::put_back::{MOST_WIDE, PutBack, channel};
 use super::selection::Selection;
 use super::{change_in_words, estimate, picture, stepwise, summary, turned_over};
-use crate::arguments::{ConcaveCorners, Extent, Length, Method, RefineArguments, RelativeTo};
+use crate::arguments::{ConcaveCorners, Extent, Featured, Length, Method, RefineArguments, RelativeTo};
 use crate::bulk::Bulk;
 use crate::failure::{Outcome, usage};
 use crate::format::counted;
@@ -164,15 +165,6 @@ impl Job {
             return Ok(());
         }
         let name = asset.mesh_name(mesh);
-        let moves = [(own.has_targets(), "morph targets"), (!own.influences.is_empty(), "its skin")];
-        let lost: Vec<&str> = moves.into_iter().filter(|&(has, _)| has).map(|(_, what)| what).collect();
-        if !lost.is_empty() && !self.is_traced() {
-            let (what, is) = (lost.join(" and "), if lost == ["its skin"] { "is" } else { "are" });
-            progress.note(format!(
-                "{name}: kept as it is: {what} {is} carried along with --method exact, without --optimize"
-            ));
-            return Ok(());
-        }
         let stretch = asset.stretch(mesh);
         own.soup.positions.iter_mut().flatten().for_each(|x| *x *= stretch);
         let options = BuildOptions::default().weld(Weld::Never).strict(arguments.build.strict);
@@ -188,16 +180,16 @@ impl Job {
         own.soup.channels = own.attributes.iter().map(channel).collect();
         arguments.channels.apply(&mut own.soup.channels)?;
         let on_mesh = |channel: &Channel| channel.on_mesh(&own.soup, &built, &trace);
-        let narrow =
-            own.soup.channels.iter().filter(|channel| channel.arity <= MOST_WIDE && self.is_traced());
+        let narrow = own.soup.channels.iter().filter(|channel| channel.arity <= MOST_WIDE);
         let channels = narrow.map(on_mesh).collect::<Result<_, _>>()?;
         let of_corners: Vec<u32> = own.soup.faces.iter().flatten().copied().collect();
         let vertices: Vec<u32> = trace.corners.iter().map(|&corner| of_corners[corner as usize]).collect();
-        let arguments = self.of_mesh(&own, done)?;
+        let arguments = self.of_mesh(&own, done);
         let control = Control::new((built, diagnosis, trace.faces), diagonal, &arguments, progress)?;
-        let goals = Goals::new(&arguments, &control.featured.mesh, control.diagonal)?;
-        // After collapses, triangles reach over several faces.
-        let goals = if self.is_traced() { goals.keeping_origins() } else { goals };
+        let mut channels = Channels::of_asset(channels, &arguments);
+        channels.on_parts(&control.featured.concave.parts, &control.featured.mesh);
+        let kept = kept_edges(&own, &control, &channels);
+        let goals = Goals::new(&arguments, &control.featured.mesh, control.diagonal)?.keeping_origins(kept);
         let parameters = match arguments.method {
             Method::Exact => exact::parameters(&arguments, &goals),
             _ => stepwise::parameters(&arguments),
@@ -207,13 +199,12 @@ impl Job {
             return estimate::run(&control.featured.mesh, &goals, &arguments, told, progress);
         }
         let Control { featured, before, bulk, diagnosis, interpolation, .. } = control;
-        let mut channels = Channels::of_asset(channels, &arguments);
-        channels.on_parts(&featured.concave.parts, &featured.mesh);
         let start = Instant::now();
         let mut refined = match arguments.method {
             Method::Exact => exact::run((&featured, &before, &channels), &goals, &arguments, progress)?,
             _ => {
-                stepwise::run(featured.mesh.clone(), &Channels::default(), &arguments, self.output, progress)?
+                let traced = (featured.mesh.clone(), &channels, true);
+                stepwise::run(traced, &arguments, self.output, progress)?
             }
         };
         let refining = start.elapsed();
@@ -224,8 +215,7 @@ impl Job {
             progress.note(format!("{name}: {note}"));
         }
         let carried = Carried {
-            origins: &refined.origins,
-            parents: &refined.parents,
+            trail: &refined.trail,
             control: featured.mesh.triangles(),
             parts: &featured.concave.parts,
             faces: &before.faces,
@@ -246,8 +236,7 @@ impl Job {
         if let Outcome::StoppedShort(why) = refined.outcome {
             done.short.push(format!("{name}: {why}"));
         }
-        let is_known = !refined.parents.is_empty();
-        done.leave_out(&own, |table| !is_known || arguments.channels.drops(&table.name));
+        done.leave_out(&own, |table| arguments.channels.drops(&table.name));
         done.reports.push(AssetMeshReport {
             mesh,
             scale: stretch,
@@ -292,14 +281,9 @@ impl Job {
     }
 
     /// The arguments for a mesh: its share of the cap, and what keeps the borders of several primitives.
-    fn of_mesh(&self, own: &MeshSoup, done: &Progressed) -> anyhow::Result<RefineArguments> {
+    fn of_mesh(&self, own: &MeshSoup, done: &Progressed) -> RefineArguments {
         let mut arguments = self.arguments.clone();
         arguments.max_triangles = Some(arguments.max_triangles().saturating_sub(done.triangles).max(1));
-        if own.parts.len() > 1 && !self.is_traced() {
-            return usage(
-                "a mesh of several primitives keeps the borders between them with --method exact, without --optimize",
-            );
-        }
         // A flat region has triangles across borders, and across the faces that values belong to.
         let is_kept = |own: &CornerAttribute| !arguments.channels.drops(&own.name);
         let has_values = own.attributes.iter().any(is_kept) || !own.influences.is_empty();
@@ -307,13 +291,8 @@ impl Job {
             // Where they stay straight around a corner of 180° and more, the surface would fold over.
             arguments.features.concave_corners.get_or_insert(ConcaveCorners::Divided);
         }
-        arguments.exact.divide_flat |= self.is_traced() && (own.parts.len() > 1 || has_values);
-        Ok(arguments)
-    }
-
-    /// Whether it is known of triangles which face they came from, and where on it.
-    fn is_traced(&self) -> bool {
-        self.arguments.method == Method::Exact && !self.arguments.exact.optimize
+        arguments.exact.divide_flat |= own.parts.len() > 1 || has_values;
+        arguments
     }
 
     fn input_report(&self, name: &str, own: &MeshSoup) -> InputReport {
@@ -401,4 +380,21 @@ impl Job {
             false => Outcome::StoppedShort(done.short.join("\n")),
         })
     }
+}
+
+/// Edges of a control mesh that stay when others are collapsed: where attributes change, and between primitives.
+fn kept_edges(own: &MeshSoup, control: &Control, channels: &Channels) -> Vec<[u32; 2]> {
+    let Featured { mesh, concave } = &control.featured;
+    let primitive = |face: usize| {
+        let input = control.before.faces[concave.parts.whole(face as u32) as usize] as usize;
+        own.parts.iter().position(|part| part.faces.contains(&input)).unwrap_or(0) as u32
+    };
+    let values = (0..own.parts.len()).map(|part| part as f64).collect();
+    let primitives = Channel::new("primitives", Semantic::Label, Domain::Face, 1)
+        .with(values, (0..mesh.face_count()).map(primitive).collect());
+    let mut kept = borders(channels.all(), mesh);
+    kept.extend(borders(&[primitives], mesh));
+    kept.sort_unstable();
+    kept.dedup();
+    kept
 }

@@ -7,12 +7,30 @@ use limitmesh_io::gltf::VertexAttribute;
 
 use super::weights::{Joints, MOST_JOINTS};
 
+/// Where a refined mesh came from on its control mesh; nothing where nobody asked.
+#[derive(Default)]
+pub(super) struct Trail {
+    /// Of the vertices.
+    pub(super) origins: Vec<Origin>,
+    /// The control face of each triangle, of several one.
+    pub(super) parents: Vec<u32>,
+    /// After collapses, where triangles reach over several control faces: of corners on edges that tell sides apart, ascending.
+    pub(super) sides: Option<Vec<(u32, Origin)>>,
+}
+
+impl Trail {
+    /// Where a triangle's corner at a vertex came from, on its triangle's side of edges.
+    fn of(&self, (triangle, corner): (usize, usize), vertex: u32, control: &[[u32; 3]]) -> Option<Origin> {
+        let origin = self.origins[vertex as usize];
+        let Some(sides) = &self.sides else { return origin.in_face(control, self.parents[triangle]) };
+        let own = sides.binary_search_by_key(&((3 * triangle + corner) as u32), |&(corner, _)| corner);
+        Some(own.map_or(origin, |at| sides[at].1))
+    }
+}
+
 /// Triangles' corners as points of the input's faces.
 pub(super) struct Carried<'a> {
-    /// Of the vertices of the refined mesh.
-    pub(super) origins: &'a [Origin],
-    /// The control face of each triangle.
-    pub(super) parents: &'a [u32],
+    pub(super) trail: &'a Trail,
     /// The control mesh's faces, and where these are in those of the mesh that was read.
     pub(super) control: &'a [[u32; 3]],
     pub(super) parts: &'a FaceParts,
@@ -24,17 +42,17 @@ pub(super) struct Carried<'a> {
 impl Carried<'_> {
     /// The input's face of a triangle.
     pub(super) fn input(&self, triangle: usize) -> usize {
-        self.faces[self.parts.whole(self.parents[triangle]) as usize] as usize
+        self.faces[self.parts.whole(self.trail.parents[triangle]) as usize] as usize
     }
 
-    /// Where a triangle's corner at a vertex is in its control face.
-    pub(super) fn control_place(&self, triangle: usize, vertex: u32) -> Option<Origin> {
-        self.origins[vertex as usize].in_face(self.control, self.parents[triangle])
+    /// Where a triangle's corner, which is at a vertex, came from on the control mesh.
+    pub(super) fn control_place(&self, triangle: usize, corner: usize, vertex: u32) -> Option<Origin> {
+        self.trail.of((triangle, corner), vertex, self.control)
     }
 
-    /// What a triangle's corner at a vertex is of the vertices of the input's face.
-    pub(super) fn place(&self, triangle: usize, vertex: u32) -> Option<[(u32, f64); 3]> {
-        let own = self.control_place(triangle, vertex)?;
+    /// What a triangle's corner, which is at a vertex, is of the vertices of the input's face.
+    pub(super) fn place(&self, triangle: usize, corner: usize, vertex: u32) -> Option<[(u32, f64); 3]> {
+        let own = self.control_place(triangle, corner, vertex)?;
         let (whole, weights) = self.parts.on_whole(own.face, own.barycentric);
         Some([0, 1, 2].map(|corner| (self.vertices[3 * whole as usize + corner], weights[corner])))
     }

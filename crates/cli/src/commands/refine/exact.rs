@@ -8,6 +8,7 @@ use limitmesh::refine::{Exact, ExactOptions, ExactStop, Origin, exact_observed};
 use limitmesh::{Mesh, Triangles};
 use limitmesh_io::{Format, WriteOptions};
 
+use super::carried::Trail;
 use super::channels::Channels;
 use super::input_distance::InputDistance;
 use super::normals::Normals;
@@ -92,9 +93,10 @@ impl Goals {
         })
     }
 
-    /// The same, where the result is to tell where vertices and triangles came from.
-    pub(super) fn keeping_origins(mut self) -> Self {
-        self.keeps_origins = true;
+    /// The same, where the result is to tell where vertices and triangles came from, and edges of the control mesh stay along which sides
+    /// are told apart.
+    pub(super) fn keeping_origins(mut self, kept_edges: Vec<[u32; 2]>) -> Self {
+        (self.keeps_origins, self.kept_edges) = (true, kept_edges);
         self
     }
 
@@ -205,16 +207,18 @@ pub(super) fn run(
     let wanted = written(arguments).is_some_and(|(format, _)| Normals::are_held(format))
         || arguments.picture.is_some();
     let normals = wanted.then(|| Normals::of_exact(&mut found));
-    let Exact { mesh, origins, parents, pixels, open_cones, stop, levels, .. } = found;
+    let Exact {
+        mesh, origins, parents, is_optimized, side_origins, pixels, open_cones, stop, levels, ..
+    } = found;
     let places = (&before.faces[..], &concave.parts);
     let provenance = arguments.exact.provenance.then(|| Provenance::new(&origins, parents.clone(), places));
-    let (origins, parents) = if goals.keeps_origins { (origins, parents) } else { Default::default() };
+    let sides = is_optimized.then_some(side_origins);
+    let trail = if goals.keeps_origins { Trail { origins, parents, sides } } else { Trail::default() };
     Ok(Refined {
         mesh,
         normals,
         channels,
-        origins,
-        parents,
+        trail,
         provenance,
         achieved,
         inverted: Some(inverted),

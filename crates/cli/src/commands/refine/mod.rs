@@ -25,7 +25,6 @@ use std::time::{Duration, Instant};
 use limitmesh::Mesh;
 use limitmesh::criterion::{View, Viewpoint};
 use limitmesh::mesh::Tags;
-use limitmesh::refine::Origin;
 use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
 
@@ -57,8 +56,7 @@ struct Refined {
     channels: Channels,
     provenance: Option<Provenance>,
     /// Where vertices came from, and the control face of each triangle, if that was to be kept and is known.
-    origins: Vec<Origin>,
-    parents: Vec<u32>,
+    trail: carried::Trail,
     /// How near the mesh is to the limit surface: sentences of a line each.
     achieved: Vec<String>,
     /// Triangles that are turned over against the limit surface; not known of the stepwise methods.
@@ -140,7 +138,7 @@ fn refine(
     let start = Instant::now();
     let mut refined = match &goals {
         Some(goals) => exact::run((&control, &read, &channels), goals, arguments, progress)?,
-        None => stepwise::run(control.mesh, &channels, arguments, Some(format), progress)?,
+        None => stepwise::run((control.mesh, &channels, false), arguments, Some(format), progress)?,
     };
     let refining = start.elapsed();
 

@@ -142,7 +142,7 @@ impl Job {
         arguments.exact.divide_flat |= self.is_traced() && (own.varies_within || !own.is_uniform);
         let control = Control::new((built, diagnosis, faces), Some(diagonal), &arguments, progress)?;
         let goals = Goals::new(&arguments, &control.featured.mesh, diagonal)?;
-        let goals = if self.is_traced() { goals.keeping_origins() } else { goals };
+        let goals = if self.is_traced() { goals.keeping_origins(Vec::new()) } else { goals };
         let parameters = match arguments.method {
             Method::Exact => exact::parameters(&arguments, &goals),
             _ => stepwise::parameters(&arguments),
@@ -158,8 +158,7 @@ impl Job {
                 exact::run((&featured, &before, &Channels::default()), &goals, &arguments, progress)?
             }
             _ => stepwise::run(
-                featured.mesh.clone(),
-                &Channels::default(),
+                (featured.mesh.clone(), &Channels::default(), self.is_traced()),
                 &arguments,
                 Some(Format::ThreeMf),
                 progress,
@@ -173,8 +172,7 @@ impl Job {
             progress.note(format!("{name}: {note}"));
         }
         let carried = Carried {
-            origins: &refined.origins,
-            parents: &refined.parents,
+            trail: &refined.trail,
             control: featured.mesh.triangles(),
             parts: &featured.concave.parts,
             faces: &before.faces,
@@ -207,15 +205,13 @@ impl Job {
             return Some(format!("{} names its vertices or triangles by number", own.others.join(", ")));
         }
         let needs_sources = !own.is_uniform || own.varies_within;
-        (needs_sources && !self.is_traced()).then(|| {
-            "its triangles carry different things, which follow with --method exact, without --optimize"
-                .to_owned()
-        })
+        (needs_sources && !self.is_traced())
+            .then(|| "its triangles carry different things, which do not follow with --optimize".to_owned())
     }
 
     /// Whether it is known of triangles which face they came from, and where on it.
     fn is_traced(&self) -> bool {
-        self.arguments.method == Method::Exact && !self.arguments.exact.optimize
+        !self.arguments.exact.optimize
     }
 
     /// Replaces the triangles of an object.
@@ -229,20 +225,20 @@ impl Job {
             refined.mesh.positions().iter().map(|p| p.map(|x| x / stretch)).collect();
         let triangles = refined.mesh.triangles();
         let source = |triangle: usize| {
-            if carried.parents.is_empty() {
+            if carried.trail.parents.is_empty() {
                 return Source { face: 0, corners: None };
             }
             let face = carried.input(triangle);
-            let corner = |vertex: u32| {
+            let corner = |corner: usize| {
                 let mut weights = [0.0; 3];
-                for (own, weight) in carried.place(triangle, vertex)? {
+                for (own, weight) in carried.place(triangle, corner, triangles[triangle][corner])? {
                     // A repair may have put a corner of another triangle there.
                     let is_own = own as usize / 3 == face;
                     weights[own as usize % 3] += if is_own { weight } else { 0.0 };
                 }
                 Some(weights)
             };
-            let [a, b, c] = triangles[triangle].map(corner);
+            let [a, b, c] = [0, 1, 2].map(corner);
             let corners = a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]);
             Source { face, corners }
         };

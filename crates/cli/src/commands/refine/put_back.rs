@@ -131,7 +131,7 @@ impl PutBack<'_> {
 
     /// The weights of the refined mesh's joints, if it has a skin and its vertices know where they are from.
     fn weights(&self, scheme: SchemeName) -> anyhow::Result<Option<Weights>> {
-        let Carried { origins, .. } = *self.carried;
+        let origins = &self.carried.trail.origins;
         if origins.is_empty() || self.own.influences.is_empty() {
             return Ok(None);
         }
@@ -217,7 +217,7 @@ impl PutBack<'_> {
             for (corner, &v) in corners.iter().enumerate() {
                 if !std::mem::replace(&mut is_met[v as usize], true) {
                     let of_mesh = self.refined.mesh.triangles()[triangle][corner];
-                    let place = self.carried.control_place(triangle, of_mesh);
+                    let place = self.carried.control_place(triangle, corner, of_mesh);
                     wanted.extend(place.map(|place| (v, (FaceId(place.face), place.barycentric))));
                 }
             }

@@ -9,6 +9,7 @@ use limitmesh::refine::{
 };
 use limitmesh_io::Format;
 
+use super::carried::Trail;
 use super::channels::Channels;
 use super::normals::Normals;
 use super::{Refined, view, view_report};
@@ -31,14 +32,13 @@ fn levels(arguments: &RefineArguments) -> usize {
 
 /// Refines, and moves the vertices to the limit if asked.
 pub(super) fn run(
-    control: Mesh,
-    channels: &Channels,
+    (control, channels, keeps_origins): (Mesh, &Channels, bool),
     arguments: &RefineArguments,
     format: Option<Format>,
     progress: &Progress,
 ) -> anyhow::Result<Refined> {
-    let keeps_origins = !channels.all().is_empty();
-    let refined = refine(&control, keeps_origins, arguments, progress)?;
+    let is_traced = keeps_origins || !channels.all().is_empty();
+    let refined = refine(&control, is_traced, arguments, progress)?;
     let channels = channels.refined(&control, &refined, arguments)?;
     drop(control);
     let Refinement { mesh, steps, stop, origins, parents, .. } = refined;
@@ -48,8 +48,7 @@ pub(super) fn run(
         normals,
         channels,
         provenance: None,
-        origins,
-        parents,
+        trail: Trail { origins, parents, sides: None },
         achieved: Vec::new(),
         inverted: None,
         how: counted(steps.len(), "step", "steps") + early,
