@@ -7,11 +7,13 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 use limitmesh::mesh::{BuildOptions, Channel, Diagnosis, MeshError, Weld};
 use limitmesh::{Mesh, PolygonSoup};
+use limitmesh_io::channels::NORMALS;
 use limitmesh_io::gltf::Contents;
 use limitmesh_io::threemf::PackageContents;
 use limitmesh_io::{Asset, Format, Package};
 
-use crate::arguments::{BuildArguments, ChannelArguments, FileFormat};
+use crate::arguments::{BuildArguments, ChannelArguments, CreasesFrom, FileFormat};
+use crate::creases::Hints;
 use crate::failure::usage;
 use crate::format::{counted, thousands};
 use crate::progress::Progress;
@@ -30,12 +32,32 @@ pub(crate) struct Soup {
     pub(crate) format: &'static str,
     /// Positions, polygons and tags.
     pub(crate) soup: PolygonSoup,
+    /// Normals of its corners or vertices, which say where edges were meant to be sharp.
+    pub(crate) normals: Option<Channel>,
     /// The glTF document, if it was one, and what else that holds.
     pub(crate) asset: Option<(Asset, Contents)>,
     /// What else a 3MF package holds.
     pub(crate) package: Option<PackageContents>,
     /// Time taken to read or generate it.
     pub(crate) reading: Duration,
+}
+
+impl Input {
+    /// What it tells of sharp edges beside tags.
+    pub(crate) fn hints(&self) -> Hints<'_> {
+        Hints { normals: self.normals.as_ref(), channels: &self.channels }
+    }
+
+    /// Its mesh with the edges sharp that are to be, by what it tells.
+    ///
+    /// # Errors
+    /// It tells nothing of that kind.
+    pub(crate) fn with_creases(self, from: CreasesFrom) -> anyhow::Result<Self> {
+        match self.hints().tags(&self.mesh, from, &self.name)? {
+            Some(tags) => Ok(Self { mesh: self.mesh.with_tags(tags)?, ..self }),
+            None => Ok(self),
+        }
+    }
 }
 
 /// A control mesh and where it came from.
@@ -52,6 +74,8 @@ pub(crate) struct Input {
     pub(crate) diagnosis: Diagnosis,
     /// The input's face that each face of the mesh is from.
     pub(crate) face_inputs: Vec<u32>,
+    /// Normals of the corners, as the file has them.
+    pub(crate) normals: Option<Channel>,
     /// What corners and faces of the mesh carry.
     pub(crate) channels: Vec<Channel>,
     /// Files that describe the materials that channels name.
@@ -96,7 +120,10 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
             (soup, format.extension())
         }
     };
-    Ok(Soup { name, format, soup, asset: document, package: held, reading: start.elapsed() })
+    let mut soup: PolygonSoup = soup;
+    let normals = soup.channels.iter().position(|channel| channel.name == NORMALS);
+    let normals = normals.map(|at| soup.channels.remove(at));
+    Ok(Soup { name, format, soup, normals, asset: document, package: held, reading: start.elapsed() })
 }
 
 /// Opens a glTF document: a file, or standard input for `-`.
@@ -210,13 +237,15 @@ pub(crate) fn load_for(
 
 fn connect(read: Soup, build: &BuildArguments, kept: &[&str], progress: &Progress) -> anyhow::Result<Input> {
     let options = &build.options()?;
-    let Soup { name, format, mut soup, asset, reading, .. } = read;
+    let Soup { name, format, mut soup, normals, asset, reading, .. } = read;
     progress.stage(format!("connecting {}", counted(soup.faces.len(), "face", "faces")));
     let start = Instant::now();
     let (mesh, diagnosis, trace) =
         Mesh::from_soup_traced(&soup, options).map_err(|error| describe(&name, error))?;
     let channels = soup.channels.iter().map(|channel| channel.on_mesh(&soup, &mesh, &trace));
     let channels: Vec<Channel> = channels.collect::<Result<_, _>>().with_context(|| name.clone())?;
+    let normals =
+        normals.map(|own| own.on_mesh(&soup, &mesh, &trace)).transpose().with_context(|| name.clone())?;
     let material_libraries = std::mem::take(&mut soup.material_libraries);
     let near = nearly_closed(&soup, &mesh, options);
     let left_out = std::mem::take(&mut soup.left_out);
@@ -241,6 +270,7 @@ fn connect(read: Soup, build: &BuildArguments, kept: &[&str], progress: &Progres
         mesh,
         diagnosis,
         face_inputs,
+        normals,
         channels,
         material_libraries,
         asset: asset.map(|(asset, _)| asset),

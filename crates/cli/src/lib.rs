@@ -10,6 +10,7 @@
 mod arguments;
 mod bulk;
 mod commands;
+mod creases;
 mod dihedral;
 mod embedded;
 mod failure;

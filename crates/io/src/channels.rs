@@ -1,24 +1,35 @@
-//! Names of channels that several formats share, and which format holds which.
+//! Names of channels that files give no names, and which format holds which.
 
 use limitmesh::mesh::{Channel, Domain, Semantic};
 
 use crate::format::Format;
+use crate::write::WriteOptions;
 
 /// The channel of texture coordinates where a format gives them no name of their own.
 pub const TEXTURE: &str = "texture coordinates";
 /// Colours where a format gives them no name.
 pub(crate) const COLOUR: &str = "colours";
+/// Colours of faces where a format gives them no name.
+pub(crate) const FACE_COLOUR: &str = "colours of faces";
+/// Attributes of facets in binary STL files.
+pub(crate) const ATTRIBUTE: &str = "attributes of facets";
+/// Normals of corners: where they differ between two faces, their edge was meant to be sharp. They are found anew, so no file holds them.
+pub const NORMALS: &str = "normals";
 /// Names of objects.
-pub(crate) const OBJECT: &str = "names of objects";
+pub const OBJECT: &str = "names of objects";
 /// Groups.
-pub(crate) const GROUP: &str = "groups";
+pub const GROUP: &str = "groups";
 /// The channel of materials, by face.
 pub const MATERIAL: &str = "materials";
 /// Smoothing groups.
-pub(crate) const SMOOTHING_GROUP: &str = "smoothing groups";
+pub const SMOOTHING_GROUP: &str = "smoothing groups";
 
 /// Whether files of a format have a place for a channel.
-pub fn holds(format: Format, channel: &Channel) -> bool {
+pub fn holds(format: Format, options: &WriteOptions, channel: &Channel) -> bool {
+    if channel.name == NORMALS {
+        return false;
+    }
+    let is_named = |name: &str| channel.domain == Domain::Face && channel.name == name;
     match format {
         Format::Obj => match (channel.semantic, channel.domain) {
             (Semantic::TextureCoordinates, _) => true,
@@ -33,7 +44,11 @@ pub fn holds(format: Format, channel: &Channel) -> bool {
             Semantic::Label => channel.labels.is_empty(),
             _ => true,
         },
-        Format::Stl | Format::Off | Format::Gltf | Format::Glb | Format::ThreeMf => false,
+        Format::Off => channel.semantic == Semantic::Colour && [3, 4].contains(&channel.arity),
+        // One in text, the other in bytes.
+        Format::Stl if options.ascii => is_named(OBJECT),
+        Format::Stl => is_named(ATTRIBUTE) && channel.arity == 1,
+        Format::Gltf | Format::Glb | Format::ThreeMf => false,
     }
 }
 
@@ -59,8 +74,9 @@ pub(crate) fn by_vertex(channel: &Channel, vertices: usize, triangles: &[[u32; 3
 
 /// How many vertices have several values of a channel of which a format holds one: these get the first of their corners'.
 pub fn values_lost(format: Format, channel: &Channel, triangles: &[[u32; 3]], vertices: usize) -> usize {
+    let options = WriteOptions::default();
     let is_by_corner = channel.semantic == Semantic::TextureCoordinates;
-    if channel.domain != Domain::Corner || is_by_corner || !holds(format, channel) {
+    if channel.domain != Domain::Corner || is_by_corner || !holds(format, &options, channel) {
         return 0;
     }
     by_vertex(channel, vertices, triangles).1

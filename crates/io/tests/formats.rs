@@ -283,6 +283,10 @@ fn extensions_in_capitals_and_small_letters() {
 }
 
 /// What reading `bytes` says that it left out.
+fn find(soup: &PolygonSoup, name: &str) -> Channel {
+    soup.channels.iter().find(|channel| channel.name == name).unwrap_or_else(|| panic!("{name}")).clone()
+}
+
 fn left_out(bytes: &[u8], format: Format) -> Vec<String> {
     read_bytes(bytes, format).unwrap().left_out
 }
@@ -383,9 +387,6 @@ fn ply_files_hold_channels() {
         3 0 1 2 0 6 0 0 1 0 1 1\n3 0 2 3 1 6 0.5 0.5 0.25 0.25 0 1\n";
     let soup = read_bytes(text.as_bytes(), Format::Ply).unwrap();
     assert!(soup.left_out.is_empty(), "{:?}", soup.left_out);
-    let find = |soup: &PolygonSoup, name: &str| -> Channel {
-        soup.channels.iter().find(|channel| channel.name == name).unwrap_or_else(|| panic!("{name}")).clone()
-    };
     let values = |channel: &Channel| -> Vec<f64> {
         (0..channel.indices.len()).flat_map(|element| channel.value(element).to_vec()).collect()
     };
@@ -471,28 +472,49 @@ fn what_a_ply_file_held_and_a_soup_cannot_is_named() {
 }
 
 #[test]
-fn what_an_stl_file_held_and_a_soup_cannot_is_named() {
+fn stl_solids_and_attributes_are_read_and_written_back() {
     let solid = |name: &str| {
         format!(
             "solid{name}\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n\
              endsolid{name}\n"
         )
     };
-    assert!(left_out(solid("").as_bytes(), Format::Stl).is_empty());
-    assert_eq!(left_out(solid(" gear").as_bytes(), Format::Stl), ["the solid's name"]);
-    assert_eq!(left_out(solid("").repeat(2).as_bytes(), Format::Stl), ["that these are 2 solids"]);
-    let named = left_out((solid(" a") + &solid(" b")).as_bytes(), Format::Stl);
-    assert_eq!(named, ["that these are 2 solids, and their names"]);
-    let mut binary = vec![0; 84 + 50];
-    binary[80] = 1;
-    // The corners are where they like to be: only what stands beside them is of interest.
-    binary[84 + 12..84 + 16].copy_from_slice(&1f32.to_le_bytes());
-    assert!(left_out(&binary, Format::Stl).is_empty());
-    binary[84 + 49] = 0x80;
-    let attributes = "attributes of facets, which some programs use for colours";
-    assert_eq!(left_out(&binary, Format::Stl), [attributes]);
+    let bytes = [solid(" a b"), solid(""), solid(" gr\u{f6}\u{df}e"), solid(" a b")].concat();
+    let soup = read_bytes(bytes.as_bytes(), Format::Stl).unwrap();
+    assert!(
+        soup.left_out.is_empty()
+            && read_bytes(solid("").as_bytes(), Format::Stl).unwrap().channels.is_empty()
+    );
+    let names = find(&soup, "names of objects");
+    assert_eq!(
+        (names.indices.as_slice(), names.labels.as_slice()),
+        (&[0, 1, 2, 0][..], &["a b", "", "gr\u{f6}\u{df}e"].map(str::to_owned)[..])
+    );
+    let triangles: Vec<[u32; 3]> = soup.faces.iter().map(|face| face.try_into().unwrap()).collect();
+    let surface = Triangles { positions: &soup.positions, triangles: &triangles };
+    let write = |ascii: bool, channels: &[Channel]| {
+        let mut bytes = Vec::new();
+        let output = Output::new(surface).channels(channels);
+        write_to(&mut bytes, Format::Stl, &output, &WriteOptions::default().ascii(ascii)).unwrap();
+        bytes
+    };
+    // What is a solid in one file is one in the other, line by line.
+    let lines = |bytes: &[u8]| -> Vec<String> {
+        let text = String::from_utf8(bytes.to_vec()).unwrap();
+        text.lines().filter(|line| line.contains("solid")).map(str::to_owned).collect()
+    };
+    assert_eq!(lines(&write(true, &soup.channels)), lines(bytes.as_bytes()));
+    let mut binary = write(false, &soup.channels);
+    assert!(read_bytes(&binary, Format::Stl).unwrap().channels.is_empty());
+    // The two bytes at the end of the second facet and of the last.
+    binary[84 + 50 + 48..84 + 100].copy_from_slice(&0x8421u16.to_le_bytes());
+    binary[84 + 150 + 48..].copy_from_slice(&7u16.to_le_bytes());
+    let soup = read_bytes(&binary, Format::Stl).unwrap();
+    let values: Vec<f64> = (0..4).map(|face| find(&soup, "attributes of facets").value(face)[0]).collect();
+    assert_eq!(values, [0.0, f64::from(0x8421), 0.0, 7.0]);
+    assert_eq!(write(false, &soup.channels), binary);
     binary.extend([0; 3]);
-    assert_eq!(left_out(&binary, Format::Stl), [attributes, "3 bytes after the last facet"]);
+    assert_eq!(left_out(&binary, Format::Stl), ["3 bytes after the last facet"]);
 }
 
 #[test]
@@ -506,13 +528,65 @@ fn what_an_off_file_held_and_a_soup_cannot_is_named() {
     assert!(off("OFF", "", " 0", "\n# the end\n").is_empty());
     // Announced, and not there.
     assert!(off("COFF", "", "", "").is_empty());
-    assert_eq!(off("OFF", " 255 0 0", "", ""), ["colours"]);
-    assert_eq!(off("COFF", " 255 0 0 255", "", ""), ["colours"]);
+    for column in [" 255 0 0", " 255 0 0 255", " 0.5 1e0 0"] {
+        assert!(off("COFF", column, column, "").is_empty(), "{column}");
+    }
+    for column in [" 300 0 0", " red", " 1.5 0 0", " -1 0 0", " 7", " 1 2"] {
+        assert_eq!(off("OFF", column, column, ""), ["colours", "colours of faces"], "{column}");
+    }
     assert_eq!(off("NOFF", " 0 0 1", "", ""), ["normals"]);
-    assert_eq!(
-        off("STCNOFF", " 255 0 0 255 0 0 1 0.5 0.5", "", ""),
-        ["texture coordinates", "normals", "colours"]
-    );
-    assert_eq!(off("OFF", "", " 255 0 0", ""), ["colours of faces"]);
+    assert_eq!(off("STCNOFF", " 255 0 0 255 0 0 1 0.5 0.5", "", ""), ["texture coordinates", "normals"]);
     assert_eq!(off("OFF", "", "", "3 0 1 2\n"), ["what stands after the last face"]);
+}
+
+/// Colours of vertices and faces, in both of the ways in which files have them: read, and written as they were.
+#[test]
+fn off_colours_are_read_and_written_back() {
+    for (of_vertices, of_faces, expected) in [
+        (["255 0 0 51", "0 255 0 255", "0 0 255 0", "0 0 0 255"], "51 102 255 255", [1.0, 0.0, 0.0, 0.2]),
+        (
+            ["1.0 0.0 0.0 0.2", "0.0 1.0 0.0 1.0", "0.0 0.0 1.0 0.0", "0.0 0.0 0.0 1.0"],
+            "0.2 0.4 1.0 1.0",
+            [1.0, 0.0, 0.0, 0.2],
+        ),
+    ] {
+        let [a, b, c, d] = of_vertices;
+        let text = format!(
+            "COFF\n4 2 0\n0 0 0 {a}\n1 0 0 {b}\n0 1 0 {c}\n0 0 1 {d}\n3 0 1 2 {of_faces}\n3 0 2 3 {of_faces}\n"
+        );
+        let soup = read_bytes(text.as_bytes(), Format::Off).unwrap();
+        let (colours, faces) = (find(&soup, "colours"), find(&soup, "colours of faces"));
+        for (i, x) in expected.into_iter().enumerate() {
+            assert!((colours.value(0)[i] - x).abs() < 1e-7);
+            assert!((faces.value(1)[i] - [0.2, 0.4, 1.0, 1.0][i]).abs() < 1e-7);
+        }
+        let triangles = [[0, 1, 2], [0, 2, 3]];
+        let surface = Triangles { positions: &soup.positions, triangles: &triangles };
+        let mut bytes = Vec::new();
+        let output = Output::new(surface).channels(&soup.channels);
+        write_to(&mut bytes, Format::Off, &output, &WriteOptions::default()).unwrap();
+        assert_eq!(String::from_utf8(bytes).unwrap(), text);
+    }
+    // Three numbers, not everywhere: Geomview's grey there.
+    let text = "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0 0 128 255\n";
+    let soup = read_bytes(text.as_bytes(), Format::Off).unwrap();
+    assert_eq!(find(&soup, "colours of faces").value(0), [0.666; 3]);
+    assert_eq!(find(&soup, "colours of faces").value(1), [0.0, 128.0 / 255.0, 1.0]);
+}
+
+/// Names in any encoding come out as the bytes that they were.
+#[test]
+fn obj_names_are_the_same_bytes_again() {
+    let text =
+        b"mtllib gr\xf6\xdfe.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\ng \xff\xfe \xe6\x9c\xa8\nusemtl \x80\nf 1 2 3\n";
+    let soup = read_bytes(text, Format::Obj).unwrap();
+    let surface = Triangles { positions: &soup.positions, triangles: &[[0, 1, 2]] };
+    let mut bytes = Vec::new();
+    let output = Output::new(surface).channels(&soup.channels).material_libraries(&soup.material_libraries);
+    write_to(&mut bytes, Format::Obj, &output, &WriteOptions::default()).unwrap();
+    for line in
+        text.split(|&b| b == b'\n').filter(|line| line.first().is_some_and(|&c| c != b'v' && c != b'f'))
+    {
+        assert!(bytes.split(|&b| b == b'\n').any(|own| own == line), "{line:x?}");
+    }
 }

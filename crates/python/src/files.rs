@@ -79,7 +79,7 @@ pub(crate) fn save(
     run(py, 1, None, move |_| {
         let surface = Triangles { positions: &positions, triangles: &triangles };
         let (held, lost): (Vec<_>, Vec<_>) =
-            channels.into_iter().partition(|channel| limitmesh_io::holds(format, channel));
+            channels.into_iter().partition(|channel| limitmesh_io::holds(format, &WriteOptions::default().ascii(ascii), channel));
         let mut output = Output::new(surface).channels(&held).material_libraries(&material_libraries);
         if let Some(normals) = &normals {
             output = output.normals(normals);

@@ -6,6 +6,7 @@ use limitmesh::mesh::{BoundaryRule, MeshError};
 use serde::Serialize;
 
 use super::values;
+use crate::failure::usage;
 
 /// The shape of a surface's boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
@@ -30,6 +31,21 @@ pub(crate) enum ConcaveCorners {
     AsTagged,
 }
 
+/// What in a file says that edges are sharp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum CreasesFrom {
+    /// Its tags alone
+    #[default]
+    None,
+    /// Normals that differ between the two faces (vn of OBJ, nx of PLY)
+    Normals,
+    /// Different smoothing groups, or none (s of OBJ)
+    SmoothingGroups,
+    /// Borders of materials, or of whatever else whole numbers name faces by
+    Materials,
+}
+
 /// A control mesh with its tags.
 pub(crate) struct Featured {
     pub(crate) mesh: Mesh,
@@ -46,12 +62,18 @@ pub(crate) struct FeatureArguments {
     #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
     pub(crate) crease_angle: Option<f64>,
 
+    /// Keep edges sharp that the file's normals, smoothing groups or materials say are sharp [default: none]
+    ///
+    /// Beside --crease-angle and the tags of the file. For OBJ, PLY, OFF and STL files.
+    #[arg(long, value_enum, value_name = "WHAT", hide_default_value = true, default_value_t)]
+    pub(crate) creases_from: CreasesFrom,
+
     /// What becomes of open boundaries [default: smooth]
     #[arg(long, value_enum, value_name = "RULE")]
     pub(crate) boundary: Option<Boundary>,
 
-    /// What becomes of corners that take 180° or more between two sharp edges [default: as-tagged; divided with --crease-angle,
-    /// or with --boundary corners or fixed]
+    /// What becomes of corners that take 180° or more between two sharp edges [default: as-tagged; divided with --crease-angle
+    /// or --creases-from, or with --boundary corners or fixed]
     #[arg(long, value_enum, value_name = "RULE")]
     pub(crate) concave_corners: Option<ConcaveCorners>,
 }
@@ -59,12 +81,28 @@ pub(crate) struct FeatureArguments {
 impl FeatureArguments {
     /// Whether any is given.
     pub(crate) fn are_given(&self) -> bool {
-        self.crease_angle.is_some() || self.boundary.is_some() || self.concave_corners.is_some()
+        self.crease_angle.is_some()
+            || self.creases_from != CreasesFrom::None
+            || self.boundary.is_some()
+            || self.concave_corners.is_some()
+    }
+
+    /// Refuses what has no meaning for assets and packages.
+    ///
+    /// # Errors
+    /// Edges are to be sharp by what only other files tell.
+    pub(crate) fn check_of_scene(&self) -> anyhow::Result<()> {
+        match self.creases_from {
+            CreasesFrom::None => Ok(()),
+            _ => usage("--creases-from is for OBJ, PLY, OFF and STL files; --crease-angle is for all"),
+        }
     }
 
     /// What becomes of concave corners, by the other options where it was not said.
     pub(crate) fn concave_corners(&self) -> ConcaveCorners {
-        let is_asked = self.crease_angle.is_some() || self.boundary.unwrap_or_default() != Boundary::Smooth;
+        let is_asked = self.crease_angle.is_some()
+            || self.creases_from != CreasesFrom::None
+            || self.boundary.unwrap_or_default() != Boundary::Smooth;
         let usual = if is_asked { ConcaveCorners::Divided } else { ConcaveCorners::AsTagged };
         self.concave_corners.unwrap_or(usual)
     }

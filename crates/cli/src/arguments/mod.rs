@@ -22,7 +22,7 @@ pub(crate) use camera::cameras_in;
 pub(crate) use channels::ChannelArguments;
 pub(crate) use compare::CompareArguments;
 pub(crate) use exact::ExactArguments;
-pub(crate) use features::{Boundary, ConcaveCorners, FeatureArguments, Featured};
+pub(crate) use features::{Boundary, ConcaveCorners, CreasesFrom, FeatureArguments, Featured};
 pub(crate) use info::InfoArguments;
 pub(crate) use interpolation::InterpolationArguments;
 pub(crate) use measure::MeasureArguments;

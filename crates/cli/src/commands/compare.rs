@@ -22,7 +22,8 @@ use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport};
 
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    let control = input::load(&arguments.input, &arguments.build, progress)?.mesh;
+    let input = input::load(&arguments.input, &arguments.build, progress)?;
+    let control = input.with_creases(arguments.features.creases_from)?.mesh;
     let control = arguments.features.apply(control)?.mesh;
     let scheme = arguments.scheme.scheme();
     let diagonal = control.diagonal();
@@ -130,6 +131,7 @@ impl Judge<'_> {
             error: None,
             boundary: self.arguments.features.boundary.unwrap_or_default(),
             crease_angle_degrees: self.arguments.features.crease_angle,
+            creases_from: self.arguments.features.creases_from,
             interpolate_within: self
                 .arguments
                 .interpolation

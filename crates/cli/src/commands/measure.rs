@@ -135,7 +135,8 @@ fn load_reference(
     let scheme = arguments.scheme.unwrap_or_default();
     let report = describe(&input);
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
-    let mesh = arguments.features.apply(input.mesh)?.mesh;
+    let mesh = input.with_creases(arguments.features.creases_from)?.mesh;
+    let mesh = arguments.features.apply(mesh)?.mesh;
     let (mesh, _) = interpolation::apply(
         mesh,
         (arguments.interpolation, arguments.build.unit),
@@ -158,6 +159,7 @@ fn load_reference(
         chosen: arguments.reference_levels.is_none(),
         boundary: arguments.features.boundary.unwrap_or_default(),
         crease_angle_degrees: arguments.features.crease_angle,
+        creases_from: arguments.features.creases_from,
         interpolate_within: arguments.interpolation.within(whole.diagonal, arguments.build.unit)?,
         concave_corners: arguments.features.concave_corners(),
     };

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::certified::CertifiedReport;
 use super::diagnosis::DiagnosisReport;
-use crate::arguments::{Boundary, ConcaveCorners, SchemeName};
+use crate::arguments::{Boundary, ConcaveCorners, CreasesFrom, SchemeName};
 use crate::format::number;
 
 /// What a sampled distance is, in every report of one.
@@ -54,6 +54,8 @@ pub(crate) struct LimitReport {
     pub(crate) error: Option<f64>,
     pub(crate) boundary: Boundary,
     pub(crate) crease_angle_degrees: Option<f64>,
+    /// What in the file says that edges are sharp, beside tags.
+    pub(crate) creases_from: CreasesFrom,
     /// How near it passes to the vertices of the control mesh; null where these are its control points.
     pub(crate) interpolate_within: Option<f64>,
     pub(crate) concave_corners: ConcaveCorners,

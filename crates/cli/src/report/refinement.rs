@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::diagnosis::DiagnosisReport;
 use super::{InputReport, InterpolationReport};
-use crate::arguments::{Boundary, ConcaveCorners, Method, RefineArguments, SchemeName, Seam};
+use crate::arguments::{Boundary, ConcaveCorners, CreasesFrom, Method, RefineArguments, SchemeName, Seam};
 use crate::bulk::Bulk;
 use crate::format::{lower_bound, upper_bound};
 
@@ -138,6 +138,8 @@ pub(crate) struct ParametersReport {
     pub(crate) limit: bool,
     pub(crate) boundary: Boundary,
     pub(crate) crease_angle_degrees: Option<f64>,
+    /// What in the file says that edges are sharp, beside tags.
+    pub(crate) creases_from: CreasesFrom,
     /// How near the limit surface is to pass to the input's vertices, in the mesh's unit; null where these are the control points.
     pub(crate) interpolate_within: Option<f64>,
     pub(crate) concave_corners: ConcaveCorners,
@@ -164,6 +166,7 @@ impl ParametersReport {
             limit: false,
             boundary: arguments.features.boundary.unwrap_or_default(),
             crease_angle_degrees: arguments.features.crease_angle,
+            creases_from: arguments.features.creases_from,
             interpolate_within: None,
             concave_corners: arguments.features.concave_corners(),
             max_triangles: arguments.max_triangles(),

@@ -11,6 +11,7 @@ mod concave;
 mod exact;
 mod examine;
 mod glb;
+mod hints;
 mod interpolate;
 mod limits;
 mod measure;

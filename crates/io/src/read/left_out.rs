@@ -44,12 +44,6 @@ impl LeftOut {
         self.is_met[kind as usize] = true;
     }
 
-    /// Whether a kind has been met.
-    #[inline]
-    pub(super) fn has(&self, kind: Kind) -> bool {
-        self.is_met[kind as usize]
-    }
-
     /// Notes something else by its own words.
     pub(super) fn other(&mut self, words: String) {
         if self.others.len() < MOST_OTHERS && !self.others.contains(&words) {

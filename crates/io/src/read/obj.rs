@@ -2,7 +2,8 @@
 //!
 //! Indices of faces count from 1, negative ones back from the latest vertex; a face may stand before its
 //! vertices. Indices of tags count from 0, as in OpenSubdiv's shapes. Texture coordinates, colours after the coordinates,
-//! objects, groups, materials and smoothing groups become channels; normals, weights and all other statements are passed over, and
+//! objects, groups, materials and smoothing groups become channels, and so do normals, which say where edges were meant to be sharp;
+//! weights and all other statements are passed over, and
 //! what there was of them is told.
 
 mod attributes;
@@ -10,6 +11,7 @@ mod attributes;
 use super::left_out::{Kind, LeftOut};
 use super::push_face;
 use crate::error::Flaw;
+use crate::names;
 use crate::scan::{Scanner, Syntax, integer, number, quoted};
 use attributes::{Attributes, LabelKind};
 use limitmesh::mesh::{CornerTag, CreaseTag, PolygonFaces, PolygonSoup};
@@ -86,6 +88,7 @@ impl Reader<'_> {
                 b"f" | b"fo" => self.face()?,
                 b"t" => self.tag()?,
                 b"vt" => self.texture()?,
+                b"vn" => self.normal(),
                 b"usemtl" => self.label(LabelKind::Material),
                 b"o" => self.label(LabelKind::Object),
                 b"g" => self.label(LabelKind::Group),
@@ -117,7 +120,6 @@ impl Reader<'_> {
     /// Notes a statement that has no place in a soup, unless it says nothing.
     fn pass_over(&mut self, keyword: &[u8]) {
         let kind = match keyword {
-            b"vn" => Kind::Normals,
             b"vp" => Kind::Parameters,
             b"l" => Kind::Lines,
             b"p" => Kind::Points,
@@ -187,6 +189,14 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// `vn X Y Z`; one that is no direction says nothing.
+    fn normal(&mut self) {
+        self.left_out.note(Kind::Normals);
+        let numbers = [(); 3].map(|()| self.scanner.word().and_then(number).filter(|x: &f64| x.is_finite()));
+        let normal = if let [Some(x), Some(y), Some(z)] = numbers { [x, y, z] } else { [0.0; 3] };
+        self.attributes.normal(normal);
+    }
+
     /// What faces from here on belong to.
     fn label(&mut self, kind: LabelKind) {
         let name = self.rest();
@@ -197,7 +207,7 @@ impl Reader<'_> {
     fn rest(&mut self) -> String {
         let mut words = Vec::new();
         while let Some(word) = self.scanner.word() {
-            words.push(String::from_utf8_lossy(word));
+            words.push(names::read(word));
         }
         words.join(" ")
     }
@@ -206,9 +216,12 @@ impl Reader<'_> {
         self.polygon.clear();
         while let Some(word) = self.scanner.word() {
             let index = self.corner(word)?;
-            if let Some(texture) = self.texture_of(word) {
-                let corner = self.soup.faces.corner_count() + self.polygon.len();
+            let corner = self.soup.faces.corner_count() + self.polygon.len();
+            if let Some(texture) = named(word, 1, self.attributes.texture_count()) {
                 self.attributes.texture_of_corner(corner, texture);
+            }
+            if let Some(normal) = named(word, 2, self.attributes.normal_count()) {
+                self.attributes.normal_of_corner(corner, normal);
             }
             if index as usize >= self.soup.positions.len() {
                 self.highest_corner.note(index, self.scanner.line());
@@ -240,20 +253,6 @@ impl Reader<'_> {
             )
             .element("face", face)
         })
-    }
-
-    /// The texture coordinate, counted from 0, that a corner names, if it does.
-    #[inline]
-    fn texture_of(&self, word: &[u8]) -> Option<u32> {
-        let texture = word.split(|&b| b == b'/').nth(1).filter(|part| !part.is_empty())?;
-        let latest = self.attributes.texture_count() as i64;
-        let index = match integer(texture) {
-            Some(index) if index > 0 => Some(index - 1),
-            Some(index) if index < 0 => Some(latest + index),
-            _ => None,
-        };
-        // What names nothing is found with what names too much.
-        Some(index.and_then(|i| u32::try_from(i).ok()).unwrap_or(u32::MAX - 1))
     }
 
     /// `t NAME INTEGERS/FLOATS/STRINGS` and that many values. Names other than `crease` and `corner` are
@@ -342,4 +341,17 @@ impl Reader<'_> {
         }
         Ok(())
     }
+}
+
+/// What a corner such as `7/2/3` names in its part `place`, counted from 0, if it does; so many there are so far.
+#[inline]
+fn named(corner: &[u8], place: usize, count: usize) -> Option<u32> {
+    let part = corner.split(|&b| b == b'/').nth(place).filter(|part| !part.is_empty())?;
+    let index = match integer(part) {
+        Some(index) if index > 0 => Some(index - 1),
+        Some(index) if index < 0 => Some(count as i64 + index),
+        _ => None,
+    };
+    // What names nothing is found with what names too much.
+    Some(index.and_then(|i| u32::try_from(i).ok()).unwrap_or(u32::MAX - 1))
 }

@@ -1,15 +1,18 @@
 //! Geomview OFF in text: the keyword, three counts, vertices, faces.
 //!
 //! The keyword may carry `C`, `N`, `ST` for columns of colours, normals and texture coordinates, and may be
-//! missing altogether. What follows the coordinates or the indices on a line is passed over, and so are lines after the
-//! last face; what there was is told. Indices count from 0.
+//! missing altogether. Colours of vertices and of faces (`off/colours`) become channels; normals, texture coordinates and lines after
+//! the last face are passed over, and what there was is told. Indices count from 0.
+
+mod colours;
 
 use super::left_out::{Kind, LeftOut};
 use super::{check_count, push_face};
 use crate::error::Flaw;
 use crate::format::off_prefix;
 use crate::scan::{Scanner, Syntax, integer, quoted};
-use limitmesh::mesh::{PolygonFaces, PolygonSoup};
+use colours::Colours;
+use limitmesh::mesh::{Domain, PolygonFaces, PolygonSoup};
 
 /// Least bytes of a vertex: `0 0 0` and the end of its line.
 const LEAST_VERTEX: usize = 6;
@@ -21,29 +24,38 @@ const LEAST_INDEX: usize = 2;
 pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     let mut scanner = Scanner::new(bytes, Syntax { comments: true, continuations: false });
     let (prefix, vertices, faces) = read_header(&mut scanner)?;
-    let (positions, has_columns) = read_vertices(&mut scanner, vertices)?;
     let mut left_out = LeftOut::default();
+    // Normals stand before colours.
+    let normals = if prefix.contains(&b'N') { 3 } else { 0 };
+    let mut colours = Colours::default();
+    let (positions, has_columns) = read_vertices(&mut scanner, vertices, normals, &mut colours)?;
     if has_columns {
         note_columns(prefix, &mut left_out);
     }
-    let faces = read_faces(&mut scanner, faces, vertices, &mut left_out)?;
+    let mut of_faces = Colours::default();
+    let faces = read_faces(&mut scanner, faces, vertices, &mut of_faces)?;
     scanner.skip_empty_lines();
     if !scanner.is_at_end() {
         left_out.other("what stands after the last face".to_owned());
     }
-    Ok(PolygonSoup { positions, faces, left_out: left_out.in_words(), ..PolygonSoup::default() })
+    let mut channels = Vec::new();
+    match colours.channel(crate::channels::COLOUR, Domain::Vertex, vertices) {
+        Ok(channel) => channels.extend(channel),
+        Err(_) => left_out.note(Kind::Colours),
+    }
+    match of_faces.channel(crate::channels::FACE_COLOUR, Domain::Face, faces.len()) {
+        Ok(channel) => channels.extend(channel),
+        Err(_) => left_out.note(Kind::FaceColours),
+    }
+    Ok(PolygonSoup { positions, faces, channels, left_out: left_out.in_words(), ..PolygonSoup::default() })
 }
 
-/// What the columns after the coordinates are, by the letters before the keyword; colours without any.
+/// What the columns after the coordinates are that have no place, by the letters before the keyword.
 fn note_columns(prefix: &[u8], left_out: &mut LeftOut) {
-    let named = [(b"C", Kind::Colours), (b"N", Kind::Normals), (b"T", Kind::TextureCoordinates)];
-    for (letter, kind) in named {
-        if prefix.contains(&letter[0]) {
+    for (letter, kind) in [(b'N', Kind::Normals), (b'T', Kind::TextureCoordinates)] {
+        if prefix.contains(&letter) {
             left_out.note(kind);
         }
-    }
-    if prefix.is_empty() {
-        left_out.note(Kind::Colours);
     }
 }
 
@@ -87,15 +99,24 @@ fn room(scanner: &Scanner<'_>, count: usize, least: usize) -> usize {
     count.min(scanner.remaining() / least + 1)
 }
 
-/// The positions, and whether anything follows them on their lines.
-fn read_vertices(scanner: &mut Scanner<'_>, count: usize) -> Result<(Vec<[f64; 3]>, bool), Flaw> {
+/// The positions, and whether anything follows them on their lines: after so many numbers of normals, colours.
+fn read_vertices(
+    scanner: &mut Scanner<'_>,
+    count: usize,
+    normals: usize,
+    colours: &mut Colours,
+) -> Result<(Vec<[f64; 3]>, bool), Flaw> {
     let mut positions = Vec::with_capacity(room(scanner, count, LEAST_VERTEX));
     let mut has_columns = false;
     for index in 0..count {
         scanner.skip_empty_lines();
         let point = scanner.point().map_err(|flaw| flaw.element("vertex", index))?;
         positions.push(point);
-        has_columns = has_columns || scanner.word().is_some();
+        let mut skipped = 0;
+        while skipped < normals && scanner.word().is_some() {
+            skipped += 1;
+        }
+        has_columns |= skipped > 0 || colours.read(scanner, index);
         scanner.next_line();
     }
     Ok((positions, has_columns))
@@ -105,7 +126,7 @@ fn read_faces(
     scanner: &mut Scanner<'_>,
     count: usize,
     vertices: usize,
-    left_out: &mut LeftOut,
+    colours: &mut Colours,
 ) -> Result<PolygonFaces, Flaw> {
     let lines = room(scanner, count, LEAST_FACE);
     // Most faces are triangles.
@@ -114,21 +135,10 @@ fn read_faces(
     for index in 0..count {
         read_face(scanner, vertices, &mut polygon).map_err(|flaw| flaw.element("face", index))?;
         push_face(&mut faces, &polygon, || scanner.place())?;
-        if !left_out.has(Kind::FaceColours) && has_colours(scanner) {
-            left_out.note(Kind::FaceColours);
-        }
+        colours.read(scanner, index);
         scanner.next_line();
     }
     Ok(faces)
-}
-
-/// Whether a face's line goes on; a lone 0 says that there are no colours.
-fn has_colours(scanner: &mut Scanner<'_>) -> bool {
-    match scanner.word() {
-        None => false,
-        Some(b"0") => scanner.word().is_some(),
-        Some(_) => true,
-    }
 }
 
 fn read_face(scanner: &mut Scanner<'_>, vertices: usize, polygon: &mut Vec<u32>) -> Result<(), Flaw> {

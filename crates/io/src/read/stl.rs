@@ -1,15 +1,18 @@
 //! STL, ASCII and binary: three vertices a facet, not merged.
 //!
 //! A file is binary if its length is what the count at byte 80 asks for; otherwise ASCII if it begins with
-//! `solid` and goes on with `facet` or `endsolid`; otherwise binary. Names of solids, attributes of facets and bytes after
-//! the last binary facet are passed over, which is told; facet normals follow from the corners.
+//! `solid` and goes on with `facet` or `endsolid`; otherwise binary. Names of solids and attributes of facets become channels; bytes
+//! after the last binary facet are passed over, which is told; facet normals follow from the corners.
 
 use super::left_out::trailing_bytes;
 use super::{check_count, push_face};
+use crate::channels;
 use crate::error::{Flaw, Place};
 use crate::format::{is_ascii_stl, is_binary_stl, stl_facet_count};
+use crate::names;
 use crate::scan::{Scanner, Syntax};
-use limitmesh::mesh::{PolygonFaces, PolygonSoup};
+use limitmesh::mesh::{Channel, Domain, PolygonFaces, PolygonSoup, Semantic, Storage};
+use std::collections::HashMap;
 
 const HEADER: usize = 84;
 const FACET: usize = 50;
@@ -36,7 +39,7 @@ fn read_binary(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     }
     check_count(3 * u64::from(promised), "vertices", Place::Byte(80))?;
     let mut soup = with_room(count);
-    let mut has_attributes = false;
+    let mut attributes: Vec<f64> = Vec::new();
     for (index, facet) in facets.chunks_exact(FACET).take(count).enumerate() {
         let mut corners = [[0.0; 3]; 3];
         // The normal's 12 bytes come first, two attribute bytes last.
@@ -49,12 +52,19 @@ fn read_binary(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
             corners[i / 3][i % 3] = f64::from(value);
         }
         push_facet(&mut soup, corners, || Place::Byte(HEADER + index * FACET))?;
-        has_attributes |= facet[48..] != [0, 0];
+        // Some programs use them for colours; most write none.
+        let attribute = u16::from_le_bytes([facet[48], facet[49]]);
+        if attribute != 0 || !attributes.is_empty() {
+            attributes.resize(index, 0.0);
+            attributes.push(f64::from(attribute));
+        }
     }
-    let attributes =
-        has_attributes.then(|| "attributes of facets, which some programs use for colours".to_owned());
-    let trailing = trailing_bytes(facets.len() - FACET * count, "facet");
-    soup.left_out = attributes.into_iter().chain(trailing).collect();
+    if !attributes.is_empty() {
+        let channel = Channel::new(channels::ATTRIBUTE, Semantic::Label, Domain::Face, 1);
+        let channel = channel.stored(Storage::Integer);
+        soup.channels.push(channel.with(attributes, (0..promised).collect()));
+    }
+    soup.left_out.extend(trailing_bytes(facets.len() - FACET * count, "facet"));
     Ok(soup)
 }
 
@@ -77,7 +87,8 @@ fn read_ascii(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     let mut text = Text { scanner: Scanner::new(bytes, Syntax::default()) };
     let mut soup = with_room(facets);
     text.keyword(&["solid"])?;
-    let (mut solids, mut has_name) = (1, text.name());
+    let mut solids = Solids::default();
+    solids.begin(text.name(), 0);
     loop {
         match text.keyword(&["facet", "endsolid"])? {
             0 => {
@@ -89,25 +100,50 @@ fn read_ascii(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
             _ => {
                 text.scanner.next_line();
                 if !text.another_solid()? {
-                    soup.left_out = left_out(solids, has_name);
+                    soup.channels.extend(solids.channel(soup.faces.len()));
                     return Ok(soup);
                 }
-                solids += 1;
-                has_name |= text.name();
+                solids.begin(text.name(), soup.faces.len());
             }
         }
     }
 }
 
-/// What an ASCII file of so many solids held beside its facets.
-fn left_out(solids: usize, has_name: bool) -> Vec<String> {
-    let words = match (solids, has_name) {
-        (1, false) => return Vec::new(),
-        (1, true) => "the solid's name".to_owned(),
-        (_, false) => format!("that these are {solids} solids"),
-        (_, true) => format!("that these are {solids} solids, and their names"),
-    };
-    vec![words]
+/// The solids of an ASCII file.
+#[derive(Default)]
+struct Solids {
+    names: Vec<String>,
+    numbers: HashMap<String, u32>,
+    /// From which face on which name holds.
+    starts: Vec<(usize, u32)>,
+}
+
+impl Solids {
+    fn begin(&mut self, name: String, face: usize) {
+        let number = *self.numbers.entry(name).or_insert_with_key(|name| {
+            self.names.push(name.clone());
+            self.names.len() as u32 - 1
+        });
+        self.starts.push((face, number));
+    }
+
+    /// The names of all faces' solids, if any has one.
+    fn channel(self, faces: usize) -> Option<Channel> {
+        let Self { names, starts, .. } = self;
+        if faces == 0 || names.iter().all(String::is_empty) {
+            return None;
+        }
+        let mut indices = Vec::with_capacity(faces);
+        for (at, &(_, number)) in starts.iter().enumerate() {
+            let end = starts.get(at + 1).map_or(faces, |&(face, _)| face);
+            indices.resize(end, number);
+        }
+        let values = (0..names.len()).map(|number| number as f64).collect();
+        let mut channel =
+            Channel::new(channels::OBJECT, Semantic::Label, Domain::Face, 1).with(values, indices);
+        channel.labels = names;
+        Some(channel)
+    }
 }
 
 struct Text<'a> {
@@ -144,11 +180,14 @@ impl Text<'_> {
         Ok(corners)
     }
 
-    /// Steps over the rest of a solid's first line; whether that has a name.
-    fn name(&mut self) -> bool {
-        let has_name = self.scanner.word().is_some();
+    /// The rest of a solid's first line.
+    fn name(&mut self) -> String {
+        let mut words = Vec::new();
+        while let Some(word) = self.scanner.word() {
+            words.push(names::read(word));
+        }
         self.scanner.next_line();
-        has_name
+        words.join(" ")
     }
 
     /// Whether another solid follows, whose keyword is then stepped over.

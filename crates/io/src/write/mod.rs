@@ -284,14 +284,15 @@ fn check(output: &Output<'_>, format: Format, options: &WriteOptions) -> Result<
     if let Some(quality) = output.quality.filter(|_| format == Format::Ply) {
         check_finite("quality", quality, 1, format, false)?;
     }
-    for channel in output.channels.iter().filter(|channel| crate::holds(format, channel)) {
+    for channel in output.channels.iter().filter(|channel| crate::holds(format, options, channel)) {
         channel.check(vertices, 3 * triangles.len(), triangles.len())?;
         if channel.value_count() == 0 && vertices > 0 {
             return Err(WriteError::NoValues { name: channel.name.clone() });
         }
     }
     let names = output.channels.iter().flat_map(|channel| &channel.labels).chain(output.material_libraries);
-    if let Some(name) = names.filter(|_| format == Format::Obj).find(|name| name.contains(['\n', '\r'])) {
+    let mut names = names.filter(|_| format == Format::Obj || format == Format::Stl && options.ascii);
+    if let Some(name) = names.find(|name| name.contains(['\n', '\r'])) {
         return Err(WriteError::LineBreak { name: name.clone() });
     }
     if format == Format::Ply { property::check(output) } else { Ok(()) }

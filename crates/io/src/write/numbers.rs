@@ -38,6 +38,12 @@ impl<'w> Pieces<'w> {
         self.bytes(text.strip_suffix(".0").unwrap_or(text).as_bytes());
     }
 
+    /// Adds a blank and this number as an `f32` with a point or an exponent, also where it is whole.
+    pub(super) fn pointed(&mut self, value: f64) {
+        self.buffer.push(b' ');
+        self.bytes(zmij::Buffer::new().format(value as f32).as_bytes());
+    }
+
     /// Adds a blank and the fewest digits that read back as exactly this `f32`.
     #[inline]
     pub(super) fn single(&mut self, value: f32) {

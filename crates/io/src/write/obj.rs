@@ -3,6 +3,7 @@
 use super::Output;
 use super::numbers::Pieces;
 use crate::channels;
+use crate::names;
 use limitmesh::mesh::{Channel, Domain, Semantic};
 use std::io::{self, Write};
 
@@ -18,7 +19,7 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
     let mut out = Pieces::new(writer);
     for library in output.material_libraries {
         out.bytes(b"mtllib ");
-        out.bytes(library.as_bytes());
+        out.bytes(&names::write(library));
         out.end_line()?;
     }
     vertices(&mut out, output)?;
@@ -74,10 +75,9 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
 
 /// Vertices, with their colours.
 fn vertices(out: &mut Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
-    let colours = output
-        .channels
-        .iter()
-        .find(|channel| channel.semantic == Semantic::Colour && crate::holds(crate::Format::Obj, channel));
+    let colours = output.channels.iter().find(|channel| {
+        channel.semantic == Semantic::Colour && crate::holds(crate::Format::Obj, &Default::default(), channel)
+    });
     let (count, triangles) = (output.surface.positions.len(), output.surface.triangles);
     let colours = colours.map(|channel| (channel, channels::by_vertex(channel, count, triangles).0));
     for (vertex, position) in output.surface.positions.iter().enumerate() {
@@ -129,6 +129,6 @@ fn change_of_label(
     }
     out.bytes(statement);
     out.bytes(b" ");
-    out.bytes(name.as_bytes());
+    out.bytes(&names::write(name));
     out.end_line()
 }

@@ -34,7 +34,9 @@ impl<'a> Columns<'a> {
     pub(super) fn of(output: &Output<'a>) -> Self {
         let mut found = Self::default();
         let (vertices, triangles) = (output.surface.positions.len(), output.surface.triangles);
-        for channel in output.channels.iter().filter(|channel| crate::holds(Format::Ply, channel)) {
+        for channel in
+            output.channels.iter().filter(|channel| crate::holds(Format::Ply, &Default::default(), channel))
+        {
             if channel.domain == Domain::Face {
                 let values = Rc::new(channel.indices.clone());
                 let is_taken = |name: &str| {

@@ -1,7 +1,11 @@
 //! STL, binary (`f32`) or ASCII (all digits): the corners of each facet and its normal.
 
 use super::Output;
+use super::WriteOptions;
 use super::numbers::Pieces;
+use crate::format::Format;
+use crate::names;
+use limitmesh::mesh::Channel;
 use std::io::{self, Write};
 
 /// First bytes of a binary file. They must not begin with `solid`, by which some readers know ASCII files.
@@ -24,6 +28,7 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) ->
 fn write_binary(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
     out.bytes(&HEADER);
     let triangles = output.surface.triangles.len();
+    let attributes = find(output, false);
     // Checked before: no more than u32::MAX.
     out.bytes(&(triangles as u32).to_le_bytes());
     for face in 0..triangles {
@@ -32,15 +37,29 @@ fn write_binary(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
         {
             out.bytes(&value.to_le_bytes());
         }
-        out.bytes(&[0, 0]);
+        let attribute = attributes.map_or(0.0, |channel| channel.value(face)[0]);
+        out.bytes(&(attribute as u16).to_le_bytes());
         out.end()?;
     }
     out.finish()
 }
 
 fn write_ascii(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
-    out.bytes(b"solid limitmesh\n");
+    let solids = find(output, true);
+    let name = |face: usize| {
+        let name = solids.and_then(|channel| channel.labels.get(channel.indices[face] as usize));
+        name.map_or_else(|| b"limitmesh".to_vec(), |name| names::write(name))
+    };
+    let mut solid = None;
     for face in 0..output.surface.triangles.len() {
+        let number = solids.map_or(0, |channel| channel.indices[face]);
+        if solid.is_none_or(|(own, _)| own != number) {
+            if let Some((_, before)) = solid {
+                named(&mut out, b"endsolid", &name(before))?;
+            }
+            named(&mut out, b"solid", &name(face))?;
+            solid = Some((number, face));
+        }
         let corners = output.surface.corners(face);
         out.bytes(b"facet normal");
         facet_normal(corners).iter().for_each(|&x| out.single(x));
@@ -53,8 +72,27 @@ fn write_ascii(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
         out.bytes(b"endloop\nendfacet");
         out.end_line()?;
     }
-    out.bytes(b"endsolid limitmesh\n");
+    match solid {
+        Some((_, face)) => named(&mut out, b"endsolid", &name(face))?,
+        None => out.bytes(b"solid limitmesh\nendsolid limitmesh\n"),
+    }
     out.finish()
+}
+
+/// A keyword with the name of a solid.
+fn named(out: &mut Pieces<'_>, keyword: &[u8], name: &[u8]) -> io::Result<()> {
+    out.bytes(keyword);
+    if !name.is_empty() {
+        out.bytes(b" ");
+        out.bytes(name);
+    }
+    out.end_line()
+}
+
+/// The channel that a file holds: in text the names of solids, else attributes.
+fn find<'a>(output: &Output<'a>, ascii: bool) -> Option<&'a Channel> {
+    let options = WriteOptions::default().ascii(ascii);
+    output.channels.iter().find(|channel| crate::holds(Format::Stl, &options, channel))
 }
 
 /// The unit normal of a facet; zero, as the format asks, where its corners lie on one line.

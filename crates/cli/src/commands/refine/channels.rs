@@ -4,7 +4,7 @@ use limitmesh::Mesh;
 use limitmesh::carry::carried;
 use limitmesh::mesh::{Channel, Domain, FaceParts};
 use limitmesh::refine::Traced;
-use limitmesh_io::{Format, Output, holds, values_lost};
+use limitmesh_io::{Format, Output, WriteOptions, holds, values_lost};
 
 use crate::arguments::RefineArguments;
 use crate::format::counted;
@@ -36,7 +36,8 @@ impl Channels {
         if !dropped.is_empty() {
             progress.note(format!("left out: {} (by --channel)", names(&dropped)));
         }
-        let reaches = |channel: &Channel| holds(format, channel);
+        let options = WriteOptions::default().ascii(arguments.ascii);
+        let reaches = |channel: &Channel| holds(format, &options, channel);
         let (kept, lost): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(reaches);
         if !lost.is_empty() {
             progress.note(format!("left out: {} (the output's format has no place for them)", names(&lost)));

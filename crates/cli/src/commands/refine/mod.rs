@@ -29,7 +29,7 @@ use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
 
 use super::{interpolation, picture};
-use crate::arguments::{Method, RefineArguments, Unit};
+use crate::arguments::{CreasesFrom, Method, RefineArguments, Unit};
 use crate::bulk::Bulk;
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds};
@@ -89,13 +89,22 @@ fn refine(
     progress: &Progress,
 ) -> anyhow::Result<Outcome> {
     if let Some(asset) = asset::Job::of(arguments, format)? {
+        arguments.features.check_of_scene()?;
         return asset.run(progress);
     }
     if let Some(package) = package::Job::of(arguments, format)? {
+        arguments.features.check_of_scene()?;
         return package.run(progress);
     }
     let kept: &[&str] = if format.is_some_and(Normals::are_held) { &["normals"] } else { &[] };
     let input = input::load_for(arguments.input(), &arguments.build, (kept, &arguments.channels), progress)?;
+    if let Some(note) = format.and_then(|format| lost_tags(input.mesh.tags(), format)) {
+        progress.note(note);
+    }
+    if let Some(note) = split_normals(&input, arguments) {
+        progress.note(note);
+    }
+    let input = input.with_creases(arguments.features.creases_from)?;
     let input_report = InputReport {
         path: input.name,
         format: input.format,
@@ -107,9 +116,6 @@ fn refine(
     let mut channels =
         Channels::of_input(input.channels, input.material_libraries, (format, arguments), progress);
     let Input { mesh, diagnosis, face_inputs, reading, building, .. } = input;
-    if let Some(note) = format.and_then(|format| lost_tags(mesh.tags(), format)) {
-        progress.note(note);
-    }
     let control = Control::new((mesh, diagnosis, face_inputs), None, arguments, progress)?;
     let Control { featured: control, diagnosis, before: read, bulk: before, interpolation, diagonal } =
         control;
@@ -191,6 +197,18 @@ fn refine(
         picture::draw(path, surface, normals, view, &style, picture::SIZE)?;
     }
     Ok(outcome)
+}
+
+/// Tells about normals that say that edges are sharp, where nothing says what to do about that.
+fn split_normals(input: &Input, arguments: &RefineArguments) -> Option<String> {
+    if arguments.features.crease_angle.is_some() || arguments.features.creases_from != CreasesFrom::None {
+        return None;
+    }
+    let edges = input.hints().split_edges(&input.mesh);
+    let have = counted(edges, "edge has", "edges have");
+    (edges > 0).then(|| {
+        format!("{have} different normals on both sides; --creases-from normals keeps such edges sharp")
+    })
 }
 
 /// Tells about tags of the input that the output's format has no place for.

@@ -29,6 +29,9 @@ pub(super) struct Attributes {
     texture_arity: usize,
     /// By corner, its texture coordinate; corners beyond have none.
     texture_corners: Vec<u32>,
+    normals: Vec<[f64; 3]>,
+    /// By corner, its normal; corners beyond have none.
+    normal_corners: Vec<u32>,
     /// By vertex, its colour; vertices beyond have none.
     colours: Vec<Option<[f64; 3]>>,
     labels: [Labels; LABELS.len()],
@@ -58,6 +61,36 @@ impl Attributes {
     pub(super) fn texture_of_corner(&mut self, corner: usize, texture: u32) {
         self.texture_corners.resize(corner, NONE);
         self.texture_corners.push(texture);
+    }
+
+    pub(super) fn normal_count(&self) -> usize {
+        self.normals.len()
+    }
+
+    pub(super) fn normal(&mut self, normal: [f64; 3]) {
+        self.normals.push(normal);
+    }
+
+    /// A corner's normal.
+    pub(super) fn normal_of_corner(&mut self, corner: usize, normal: u32) {
+        self.normal_corners.resize(corner, NONE);
+        self.normal_corners.push(normal);
+    }
+
+    /// The channel of normals, if there are any, and all that are named.
+    fn normals(&mut self, corners: usize) -> Option<Channel> {
+        let (normals, mut indices) =
+            (std::mem::take(&mut self.normals), std::mem::take(&mut self.normal_corners));
+        let missing = normals.len() as u32;
+        if indices.is_empty() || indices.iter().any(|&index| index >= missing && index != NONE) {
+            return None;
+        }
+        indices.resize(corners, NONE);
+        // Corners without one have none that could differ.
+        indices.iter_mut().filter(|index| **index == NONE).for_each(|index| *index = missing);
+        let values = normals.into_iter().chain([[0.0; 3]]).flatten().collect();
+        let channel = Channel::new(channels::NORMALS, Semantic::Other, Domain::Corner, 3);
+        Some(channel.with(values, indices))
     }
 
     /// A vertex's colour.
@@ -93,10 +126,10 @@ impl Attributes {
     }
 
     /// All as channels of a soup.
-    pub(super) fn channels(self, vertices: usize, faces: usize, corners: usize) -> Vec<Channel> {
+    pub(super) fn channels(mut self, vertices: usize, faces: usize, corners: usize) -> Vec<Channel> {
         let is_wrong = self.has_wrong_textures();
-        let Self { textures, texture_arity, mut texture_corners, mut colours, labels } = self;
-        let mut found = Vec::new();
+        let mut found: Vec<Channel> = self.normals(corners).into_iter().collect();
+        let Self { textures, texture_arity, mut texture_corners, mut colours, labels, .. } = self;
         if !texture_corners.is_empty() && !is_wrong {
             texture_corners.resize(corners, NONE);
             let arity = texture_arity.max(2);

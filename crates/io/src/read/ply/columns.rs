@@ -1,7 +1,7 @@
 //! What a PLY file's vertices and faces have beside positions and indices: one number each, or a list of texture coordinates.
 //!
 //! Numbers that belong together by their names become one channel: `s, t`, `u, v` or `texture_u, texture_v`, and `red, green, blue`
-//! with `alpha`, whose bytes stand for 0 to 1. Of the others, whole numbers name something, and floating-point ones are interpolated.
+//! with `alpha`, whose bytes stand for 0 to 1; `nx, ny, nz` say where edges were meant to be sharp. Of the others, whole numbers name something, and floating-point ones are interpolated.
 
 use limitmesh::mesh::{Channel, Domain, Semantic, Storage};
 
@@ -20,8 +20,11 @@ const GROUPS: [(&[&str], Semantic); 6] = [
     (&["r", "g", "b"], Semantic::Colour),
 ];
 
-/// What is not carried: normals are found anew.
+/// What is not carried.
 const PASSED_OVER: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
+
+/// What says where edges were meant to be sharp.
+const NORMALS: [&str; 3] = ["nx", "ny", "nz"];
 
 /// The numbers of an element that are kept, as they are read.
 pub(super) struct Columns {
@@ -40,9 +43,14 @@ impl Columns {
     /// Those of an element's single numbers.
     pub(super) fn of(element: &Element) -> Self {
         let (mut of_property, mut columns) = (Vec::new(), Vec::new());
+        let is_scalar = |&at: &usize| matches!(element.properties[at].kind, Kind::Scalar(_));
+        let has_normals = element.name == "vertex"
+            && NORMALS.iter().all(|name| element.find(&[name]).as_ref().is_some_and(is_scalar));
+        let is_passed_over =
+            |name: &str| PASSED_OVER.contains(&name) && !(has_normals && NORMALS.contains(&name));
         for property in &element.properties {
             let kept = match property.kind {
-                Kind::Scalar(scalar) if !PASSED_OVER.contains(&property.name.as_str()) => Some(scalar),
+                Kind::Scalar(scalar) if !is_passed_over(&property.name) => Some(scalar),
                 _ => None,
             };
             of_property.push(kept.map(|_| columns.len()));
@@ -74,12 +82,13 @@ impl Columns {
         let (mut found, mut lost) = (Vec::new(), Vec::new());
         self.columns.retain(|column| {
             let is_whole = column.values.len() == count && column.values.iter().all(|x| x.is_finite());
-            if !is_whole {
+            if !is_whole && !NORMALS.contains(&column.name.as_str()) {
                 lost.push(column.name.clone());
             }
             is_whole
         });
         let mut columns = self.columns;
+        found.extend(normals(&mut columns, domain, count));
         for (names, semantic) in GROUPS {
             let place = |name: &&str| columns.iter().position(|column| column.name == *name);
             let Some(places) = names.iter().map(place).collect::<Option<Vec<usize>>>() else { continue };
@@ -107,6 +116,19 @@ impl Columns {
         }
         (found, lost)
     }
+}
+
+/// The channel of normals, if all three numbers are there; then none of them is in the columns any more.
+fn normals(columns: &mut Vec<Column>, domain: Domain, count: usize) -> Option<Channel> {
+    let places = NORMALS.map(|name| columns.iter().position(|column| column.name == name));
+    let found = places.iter().copied().collect::<Option<Vec<usize>>>().map(|places| {
+        let values = (0..count).flat_map(|element| places.iter().map(move |&at| (at, element)));
+        let values = values.map(|(at, element)| columns[at].values[element]).collect();
+        let channel = Channel::new(crate::channels::NORMALS, Semantic::Other, domain, 3);
+        channel.stored(Storage::Single).with(values, (0..count as u32).collect())
+    });
+    columns.retain(|column| !NORMALS.contains(&column.name.as_str()));
+    found
 }
 
 fn storage(scalar: Scalar) -> Storage {

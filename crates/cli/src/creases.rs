@@ -1,0 +1,105 @@
+//! Edges that a file says are sharp in other words than by tags: by normals that differ between two faces, by smoothing groups, by
+//! the borders of materials.
+
+use limitmesh::Mesh;
+use limitmesh::mesh::{Channel, CreaseTag, Domain, Semantic, Tags};
+use limitmesh::{FaceId, HalfEdgeId};
+use limitmesh_io::channels::{GROUP, MATERIAL, OBJECT, SMOOTHING_GROUP};
+
+use crate::arguments::CreasesFrom;
+use crate::failure::usage;
+
+/// Normals are one if they differ by less: their numbers are rounded, by 4 digits and more.
+const SAME: f64 = 1e-3;
+
+/// What a file tells of its edges, on a mesh's corners and faces.
+pub(crate) struct Hints<'a> {
+    pub(crate) normals: Option<&'a Channel>,
+    pub(crate) channels: &'a [Channel],
+}
+
+impl Hints<'_> {
+    /// The sharp edges, each once.
+    ///
+    /// # Errors
+    /// The file tells nothing of that kind.
+    fn edges(&self, mesh: &Mesh, from: CreasesFrom, name: &str) -> anyhow::Result<Vec<HalfEdgeId>> {
+        let of_faces =
+            |channel: &&Channel| channel.domain == Domain::Face && channel.semantic == Semantic::Label;
+        let labels = |is_own: &dyn Fn(&str) -> bool| -> Vec<&Channel> {
+            self.channels.iter().filter(of_faces).filter(|channel| is_own(&channel.name)).collect()
+        };
+        let (found, what) = match from {
+            CreasesFrom::None => return Ok(Vec::new()),
+            CreasesFrom::Normals => match self.normals {
+                Some(normals) => return Ok(split_edges(mesh, normals)),
+                None => (Vec::new(), "normals"),
+            },
+            CreasesFrom::SmoothingGroups => (labels(&|name| name == SMOOTHING_GROUP), "smoothing groups"),
+            CreasesFrom::Materials => {
+                (labels(&|name| ![OBJECT, GROUP, SMOOTHING_GROUP].contains(&name)), MATERIAL)
+            }
+        };
+        if found.is_empty() {
+            return usage(format!("--creases-from: {name} has no {what}"));
+        }
+        let is_border =
+            |a: FaceId, b: FaceId| found.iter().any(|channel| differ(channel, a.index(), b.index()));
+        Ok(inner_edges(mesh, |h, twin| is_border(h.face(), twin.face())))
+    }
+
+    /// The tags of a mesh with these edges sharp; nothing where there are none.
+    ///
+    /// # Errors
+    /// The file tells nothing of that kind.
+    pub(crate) fn tags(&self, mesh: &Mesh, from: CreasesFrom, name: &str) -> anyhow::Result<Option<Tags>> {
+        let edges = self.edges(mesh, from, name)?;
+        if edges.is_empty() {
+            return Ok(None);
+        }
+        let mut tags = mesh.tags().clone();
+        let crease = |&h: &HalfEdgeId| CreaseTag {
+            vertices: mesh.topology().ends(h).map(|v| v.0),
+            sharpness: f64::INFINITY,
+        };
+        tags.creases.extend(edges.iter().map(crease));
+        Ok(Some(tags))
+    }
+
+    /// How many edges have normals that differ between their faces.
+    pub(crate) fn split_edges(&self, mesh: &Mesh) -> usize {
+        self.normals.map_or(0, |normals| split_edges(mesh, normals).len())
+    }
+}
+
+/// Edges inside, once each, that are as asked.
+fn inner_edges(mesh: &Mesh, is_own: impl Fn(HalfEdgeId, HalfEdgeId) -> bool) -> Vec<HalfEdgeId> {
+    let topology = mesh.topology();
+    let inner = |h: &HalfEdgeId| topology.twin(*h).is_some_and(|twin| *h < twin && is_own(*h, twin));
+    topology.half_edges().filter(inner).collect()
+}
+
+/// Edges at one end of which the normals of their faces differ: at the other they are one where the crease ends.
+fn split_edges(mesh: &Mesh, normals: &Channel) -> Vec<HalfEdgeId> {
+    let unit = |h: HalfEdgeId| {
+        let own = normals.value(h.index());
+        let length = own.iter().map(|x| x * x).sum::<f64>().sqrt();
+        (length > 0.0).then(|| [0, 1, 2].map(|i| own.get(i).copied().unwrap_or(0.0) / length))
+    };
+    let differ = |a: HalfEdgeId, b: HalfEdgeId| match (unit(a), unit(b)) {
+        (Some(a), Some(b)) => (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>() > SAME * SAME,
+        _ => false,
+    };
+    inner_edges(mesh, |h, twin| differ(h, twin.next()) || differ(h.next(), twin))
+}
+
+/// Whether the edge between two faces is a border of what they are labelled with.
+fn differ(channel: &Channel, a: usize, b: usize) -> bool {
+    let (own, other) = (channel.indices[a], channel.indices[b]);
+    // Faces in no smoothing group are smooth with no other.
+    let is_off = |number: u32| {
+        channel.name == SMOOTHING_GROUP
+            && channel.labels.get(number as usize).is_some_and(|name| name == "off" || name == "0")
+    };
+    if channel.labels.is_empty() { channel.value(a) != channel.value(b) } else { own != other || is_off(own) }
+}
