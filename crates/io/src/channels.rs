@@ -21,6 +21,8 @@ pub const OBJECT: &str = "names of objects";
 pub const GROUP: &str = "groups";
 /// The channel of materials, by face.
 pub const MATERIAL: &str = "materials";
+/// What a solid without a name is called in STL files, which have to call it something; no name when read.
+pub(crate) const UNNAMED_SOLID: &str = "limitmesh";
 /// Smoothing groups.
 pub const SMOOTHING_GROUP: &str = "smoothing groups";
 

@@ -78,8 +78,9 @@ pub(crate) fn save(
     let format = Format::from_path(&path).map_err(|why| OptionError::new_err(why.to_string()))?;
     run(py, 1, None, move |_| {
         let surface = Triangles { positions: &positions, triangles: &triangles };
-        let (held, lost): (Vec<_>, Vec<_>) =
-            channels.into_iter().partition(|channel| limitmesh_io::holds(format, &WriteOptions::default().ascii(ascii), channel));
+        let (held, lost): (Vec<_>, Vec<_>) = channels
+            .into_iter()
+            .partition(|channel| limitmesh_io::holds(format, &WriteOptions::default().ascii(ascii), channel));
         let mut output = Output::new(surface).channels(&held).material_libraries(&material_libraries);
         if let Some(normals) = &normals {
             output = output.normals(normals);

@@ -130,7 +130,7 @@ impl Solids {
     /// The names of all faces' solids, if any has one.
     fn channel(self, faces: usize) -> Option<Channel> {
         let Self { names, starts, .. } = self;
-        if faces == 0 || names.iter().all(String::is_empty) {
+        if faces == 0 || names.iter().all(|name| name.is_empty() || name == channels::UNNAMED_SOLID) {
             return None;
         }
         let mut indices = Vec::with_capacity(faces);

@@ -3,6 +3,7 @@
 use super::Output;
 use super::WriteOptions;
 use super::numbers::Pieces;
+use crate::channels::UNNAMED_SOLID;
 use crate::format::Format;
 use crate::names;
 use limitmesh::mesh::Channel;
@@ -48,7 +49,7 @@ fn write_ascii(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
     let solids = find(output, true);
     let name = |face: usize| {
         let name = solids.and_then(|channel| channel.labels.get(channel.indices[face] as usize));
-        name.map_or_else(|| b"limitmesh".to_vec(), |name| names::write(name))
+        name.map_or_else(|| UNNAMED_SOLID.as_bytes().to_vec(), |name| names::write(name))
     };
     let mut solid = None;
     for face in 0..output.surface.triangles.len() {
@@ -74,7 +75,10 @@ fn write_ascii(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
     }
     match solid {
         Some((_, face)) => named(&mut out, b"endsolid", &name(face))?,
-        None => out.bytes(b"solid limitmesh\nendsolid limitmesh\n"),
+        None => {
+            named(&mut out, b"solid", UNNAMED_SOLID.as_bytes())?;
+            named(&mut out, b"endsolid", UNNAMED_SOLID.as_bytes())?;
+        }
     }
     out.finish()
 }

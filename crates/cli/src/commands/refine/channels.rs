@@ -64,12 +64,9 @@ impl Channels {
         }
     }
 
-    /// Whether triangles must not reach over several faces: something differs between these.
-    pub(super) fn tell_faces_apart(&self) -> bool {
-        let is_one = |channel: &Channel| {
-            channel.domain == Domain::Face && channel.indices.iter().all(|&index| index == channel.indices[0])
-        };
-        !self.channels.iter().all(is_one)
+    /// Whether one has other values in another place of a face.
+    pub(super) fn vary_within_faces(&self) -> bool {
+        self.channels.iter().any(|channel| channel.domain != Domain::Face)
     }
 
     /// Those of the refined mesh.

@@ -59,8 +59,8 @@ pub(super) struct Goals {
 impl Goals {
     /// The same where the control mesh carries channels.
     pub(super) fn carrying(mut self, channels: &Channels, control: &Mesh) -> Self {
-        self.tells_faces_apart = channels.tell_faces_apart();
         self.kept_edges = borders(channels.all(), control);
+        self.tells_faces_apart = channels.vary_within_faces() || !self.kept_edges.is_empty();
         self
     }
 
