@@ -1,7 +1,7 @@
 //! `--creases-from`: edges that normals, smoothing groups or materials say are sharp; the witness is a cube, which stays itself where
 //! all its edges are sharp and gets round where none is.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
@@ -35,7 +35,7 @@ fn cube(folder: &TempDir, normals: bool, before: &dyn Fn(usize) -> String) -> Pa
 }
 
 /// The volume of what is refined from a file.
-fn volume(input: &PathBuf, options: &str) -> f64 {
+fn volume(input: &Path, options: &str) -> f64 {
     let output = input.with_extension("ply");
     let command = format!("refine {{}} -o {{}} --tolerance 0.5% --report - {options}");
     let report = run(&command, &[input, &output]).expect(0).json();
