@@ -91,14 +91,16 @@ fn borders_to_what_stays_do_not_open() {
         .saying("4 edges where primitives meet others that stay are kept straight");
     let glb = Glb::read(&output);
     let points = glb.points(&glb.primitive(0)["attributes"]["POSITION"]);
-    let mut sides: HashSet<[u32; 2]> = HashSet::new();
-    for [a, b, c] in glb.triangles(0) {
+    // By places: where sharp edges divide the corners around the rim, vertices stand once for each side.
+    let place = |v: u32| points[v as usize].map(f64::to_bits);
+    let mut sides: HashSet<[[u64; 3]; 2]> = HashSet::new();
+    for [a, b, c] in glb.triangles(0).into_iter().map(|corners| corners.map(place)) {
         sides.extend([[a, b], [b, c], [c, a]]);
     }
-    let open: Vec<[u32; 2]> = sides.iter().copied().filter(|&[a, b]| !sides.contains(&[b, a])).collect();
+    let open: Vec<[[u64; 3]; 2]> = sides.iter().copied().filter(|&[a, b]| !sides.contains(&[b, a])).collect();
     // The rim is the lid's square as it was, and surrounds it once.
     let mut length = 0.0;
-    for end in open.iter().map(|edge| edge.map(|v| points[v as usize])) {
+    for end in open.iter().map(|edge| edge.map(|place| place.map(f64::from_bits))) {
         for p in end {
             assert_eq!(p[2], 1.0);
             assert!((p[0].abs().max(p[1].abs()) - 1.0).abs() < 1e-7, "{p:?}");

@@ -91,7 +91,7 @@ fn defaults_of_the_paper_s_method_are_ten_degrees_three_levels_loop_all() {
     let expected = serde_json::json!({
         "method": "limit-normal", "angle_degrees": 10.0, "levels": 3, "scheme": "loop", "seam": "all",
         "exact": null, "view": null, "limit": false, "boundary": "smooth", "crease_angle_degrees": null, "interpolate_within": null,
-        "concave_corners": "as-tagged",
+        "creases_from": "none", "concave_corners": "as-tagged",
         "max_triangles": 50_000_000, "weld": 0.0, "strict": false
     });
     assert_eq!(parameters, expected);
