@@ -391,7 +391,7 @@ fn content_under_another_name() {
         (&stl, "a binary STL file", Some(Format::Stl)),
         (b"glTF\x02\0\0\0", "a binary glTF file", None),
         (b"\x1f\x8b\x08", "gzip data", None),
-        (b"PK\x03\x04", "a ZIP archive", None),
+        (b"PK\x03\x04", "a ZIP archive", Some(Format::ThreeMf)),
         (b"{\"asset\":{}}", "JSON, as glTF is", None),
         (b"<?xml version=\"1.0\"?>", "XML or HTML", None),
         (b"version https://git-lfs.github.com/spec/v1\n", "a Git LFS pointer, not the file itself", None),

@@ -108,8 +108,6 @@ fn damaged_files_say_where() {
         not_finite.contains("OBJ line 1, vertex 0: met 'inf', expected a finite number for x"),
         "{not_finite}"
     );
-    let other = message("assets/featuretype.3MF");
-    assert!(other.contains("'3MF'"), "{other}");
 }
 
 /// What is read is written in every format and read again: equal in all but STL, where it is equal as `f32`.
@@ -119,8 +117,9 @@ fn models_survive_every_format() {
     let target = tempfile::tempdir().unwrap();
     for name in ["skull_low.obj", "goathead_be.ply", "featuretype.stl", "mannequin.off"] {
         let mut soup = read(&folder.join(name)).unwrap();
-        // What was left out is not written.
+        // What was left out is not written here, nor what else there is beside the shape.
         soup.left_out.clear();
+        soup.channels.clear();
         let triangles: Vec<[u32; 3]> = soup.faces.iter().map(|f| f.try_into().unwrap()).collect();
         let output = Output::new(limitmesh::Triangles { positions: &soup.positions, triangles: &triangles });
         for extension in ["obj", "ply", "off"] {
