@@ -17,10 +17,17 @@ struct State {
     asked: Option<Signal>,
     doing: String,
     written: Vec<String>,
+    /// Whether signals are only noted.
+    is_left_to_caller: bool,
 }
 
-static STATE: Mutex<State> =
-    Mutex::new(State { writing: None, asked: None, doing: String::new(), written: Vec::new() });
+static STATE: Mutex<State> = Mutex::new(State {
+    writing: None,
+    asked: None,
+    doing: String::new(),
+    written: Vec::new(),
+    is_left_to_caller: false,
+});
 
 fn state() -> MutexGuard<'static, State> {
     STATE.lock().unwrap_or_else(PoisonError::into_inner)
@@ -78,8 +85,38 @@ fn end(signal: Signal) {
             eprintln!("{}{} is written to its end first", line_start(), name);
             state.asked = Some(signal);
         }
+        None if state.is_left_to_caller => state.asked = Some(signal),
         None => exit(&state, signal),
     }
+}
+
+/// From now on signals are only noted: the caller has work of its own to end. It asks [`is_asked`], and then calls
+/// [`end_as_asked`].
+pub(crate) fn leave_to_caller() {
+    state().is_left_to_caller = true;
+}
+
+/// Whether a signal wants the program to end.
+pub(crate) fn is_asked() -> bool {
+    state().asked.is_some()
+}
+
+/// Ends the program if a signal wants that; the file of that name is there, as far as the work went.
+pub(crate) fn end_as_asked(written: String) {
+    let mut state = state();
+    state.written.push(written);
+    if let Some(signal) = state.asked {
+        exit(&state, signal);
+    }
+}
+
+/// Ends the program, as SIGTERM does, when its standard input ends: when whoever started it is no more, or wants that.
+pub(crate) fn end_with_standard_input() {
+    std::thread::spawn(|| {
+        // An error is an end, too.
+        let _ = std::io::copy(&mut std::io::stdin().lock(), &mut std::io::sink());
+        end(Signal { name: "the end of standard input", number: 15 });
+    });
 }
 
 /// Says what was cancelled, and exits with what shells report for a program that a signal ended.

@@ -35,11 +35,11 @@ use progress::Progress;
 pub use embedded::{Failure, Host, Refined, examined, refine_files};
 
 /// The program with a command line, whose first word is the program's name; gives its exit code. Where the command line makes no sense, or
-/// asks for help, the process ends here.
-pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
+/// asks for help, the process ends here. `again` starts this program in another process: its file, and what comes before the arguments.
+pub fn program(words: impl IntoIterator<Item = OsString>, again: &[OsString]) -> u8 {
     let arguments = Arguments::parse_from(words);
     let progress = Progress::new(arguments.global.quiet);
-    let result = prepare(&arguments).and_then(|()| run(&arguments.command, &progress));
+    let result = prepare(&arguments).and_then(|()| run(&arguments, again, &progress));
     progress.clear();
     match result {
         Ok(Outcome::Done) => 0,
@@ -72,12 +72,16 @@ fn exit_with_usage(command: &Command, what: &str) -> ! {
 /// Sets up what holds for the whole process: the thread pool and what Ctrl-C does.
 fn prepare(arguments: &Arguments) -> anyhow::Result<()> {
     interrupt::install()?;
+    // The batch itself computes nothing.
+    if matches!(arguments.command, Command::Batch(_)) {
+        return Ok(());
+    }
     rayon::ThreadPoolBuilder::new().num_threads(arguments.global.threads).build_global()?;
     Ok(())
 }
 
-fn run(command: &Command, progress: &Progress) -> anyhow::Result<Outcome> {
-    match command {
+fn run(arguments: &Arguments, again: &[OsString], progress: &Progress) -> anyhow::Result<Outcome> {
+    match &arguments.command {
         Command::Refine(arguments) => commands::refine::run(arguments, progress),
         Command::Measure(arguments) => commands::measure::run(arguments, progress),
         Command::Compare(arguments) => commands::compare::run(arguments, progress),
@@ -85,5 +89,7 @@ fn run(command: &Command, progress: &Progress) -> anyhow::Result<Outcome> {
         Command::Reproduce(arguments) => commands::reproduce::run(arguments, progress),
         Command::Info(arguments) => commands::info::run(arguments, progress),
         Command::Models(arguments) => commands::models::run(arguments),
+        Command::Batch(own) => commands::batch::run(own, again, arguments.global.threads, progress),
+        Command::BatchJob(arguments) => commands::batch_job::run(arguments, progress),
     }
 }

@@ -121,6 +121,13 @@ impl<'a> Progress<'a> {
         }
     }
 
+    /// A note for those who see no spinner.
+    pub(crate) fn note_where_nothing_moves(&self, line: impl AsRef<str>) {
+        if !self.moving {
+            self.note(line);
+        }
+    }
+
     /// Takes the spinner away.
     pub(crate) fn clear(&self) {
         self.spinner.finish_and_clear();

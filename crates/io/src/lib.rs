@@ -48,5 +48,5 @@ pub use read::{read, read_as, read_bytes};
 pub use threemf::Package;
 pub use write::{
     Output, Property, PropertyValues, WriteOptions, check_writable, rounding, write, write_as, write_to,
-    write_whole,
+    write_whole, write_whole_with,
 };

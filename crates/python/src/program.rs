@@ -11,10 +11,10 @@ use pyo3::prelude::*;
 use crate::errors::Failure;
 use crate::run::run;
 
-/// The program with a command line; its exit code.
+/// The program with a command line; its exit code. `again` starts it in another process.
 #[pyfunction]
-pub(crate) fn program(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
-    py.detach(|| limitmesh_cli::program(arguments))
+pub(crate) fn program(py: Python<'_>, arguments: Vec<OsString>, again: Vec<OsString>) -> u8 {
+    py.detach(|| limitmesh_cli::program(arguments, &again))
 }
 
 /// `limitmesh refine` with these arguments: why it stopped short, if it did, and the lines that it would print.

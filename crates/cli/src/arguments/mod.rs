@@ -1,6 +1,7 @@
 //! The command line: one file a command, help texts that say each option's unit, default and effect.
 
 mod asset;
+mod batch;
 mod camera;
 mod channels;
 mod compare;
@@ -18,6 +19,7 @@ mod shared;
 mod values;
 
 pub(crate) use asset::{AssetArguments, RelativeTo};
+pub(crate) use batch::{BatchArguments, BatchJobArguments};
 pub(crate) use camera::cameras_in;
 pub(crate) use channels::ChannelArguments;
 pub(crate) use compare::CompareArguments;
@@ -46,6 +48,8 @@ Examples:
         how far the refined mesh is from the limit surface
   limitmesh compare builtin:head --angle 5
         the methods side by side at equal triangle counts
+  limitmesh batch jobs.jsonl -o results.jsonl
+        many meshes, each in a process of its own
 
 Exit codes: 0 done, 1 bad input or output, 2 usage, 3 stopped short of what was asked (a cap); 130, 143 and 129 where
 Ctrl-C, SIGTERM or SIGHUP cancelled it: no file is left half written.";
@@ -90,6 +94,9 @@ pub(crate) enum Command {
     Reproduce(ReproduceArguments),
     Info(InfoArguments),
     Models(ModelsArguments),
+    Batch(BatchArguments),
+    #[command(hide = true)]
+    BatchJob(BatchJobArguments),
 }
 
 impl Command {
@@ -103,6 +110,8 @@ impl Command {
             Self::Reproduce(_) => "reproduce",
             Self::Info(_) => "info",
             Self::Models(_) => "models",
+            Self::Batch(_) => "batch",
+            Self::BatchJob(_) => "batch-job",
         }
     }
 }

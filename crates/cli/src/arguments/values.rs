@@ -1,6 +1,7 @@
 //! Values on the command line and their ranges: what is wrong with one is said before any work begins.
 
 use std::str::FromStr;
+use std::time::Duration;
 
 use limitmesh::measure::SamplingOptions;
 
@@ -150,6 +151,11 @@ pub(super) fn exact_levels(text: &str) -> Result<usize, String> {
 pub(super) fn above_zero(text: &str) -> Result<f64, String> {
     let value = finite(text)?;
     if value > 0.0 { Ok(value) } else { Err(format!("{value} is out of range: it is above 0")) }
+}
+
+/// A time above 0.
+pub(super) fn seconds(text: &str) -> Result<Duration, String> {
+    Duration::try_from_secs_f64(above_zero(text)?).map_err(|_| format!("{text} seconds are too many"))
 }
 
 /// A number of bytes, as [`quantity::bytes`] reads it.

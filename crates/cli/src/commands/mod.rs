@@ -1,5 +1,7 @@
 //! The commands, one file each: arguments in, files and text out.
 
+pub(crate) mod batch;
+pub(crate) mod batch_job;
 mod certified;
 mod certified_limit;
 pub(crate) mod compare;

@@ -12,7 +12,7 @@ fn nothing_to_do_is_a_usage_error() {
 #[test]
 fn help_and_version_are_printed() {
     let help = run("--help", &[]).expect(0).stdout;
-    for command in ["refine", "measure", "compare", "render", "info", "models", "Exit codes"] {
+    for command in ["refine", "measure", "compare", "render", "info", "models", "batch", "Exit codes"] {
         assert!(help.contains(command), "{command} in:\n{help}");
     }
     let help = run("refine --help", &[]).expect(0).stdout;

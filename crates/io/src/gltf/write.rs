@@ -9,6 +9,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 impl Asset {
+    /// Files below the document's folder that it names and that are there, such as buffers and images: by the names the document has for
+    /// them, and where they are.
+    pub fn files_beside(&self) -> Vec<(PathBuf, PathBuf)> {
+        let files = self.source.files(false, false).into_iter();
+        files.filter_map(|name| self.source.file(&name).ok().map(|path| (name, path))).collect()
+    }
+
     /// Writes the document with what was replaced: a GLB, or for [`Format::Gltf`] the text with a `.bin` beside it.
     ///
     /// Files that the document names, such as images, are copied to the same places below the new document's folder, unless

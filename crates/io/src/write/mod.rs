@@ -11,7 +11,7 @@ mod whole;
 
 pub use property::{Property, PropertyValues};
 pub(crate) use whole::{WholeFile, write_together};
-pub use whole::{check_writable, write_whole};
+pub use whole::{check_writable, write_whole, write_whole_with};
 
 use crate::error::WriteError;
 use crate::format::Format;

@@ -57,7 +57,10 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
 }
 
 /// Writes what `fill` gives to a file, whole or not at all, as [`write_whole`] does.
-pub(super) fn write_whole_with(
+///
+/// # Errors
+/// As for [`write_whole`]; what `fill` returns.
+pub fn write_whole_with(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {

@@ -9,7 +9,7 @@ from ._limitmesh import program
 
 def main() -> int:
     """Runs the program with the arguments of this process; its exit code."""
-    return program(["limitmesh", *sys.argv[1:]])
+    return program(["limitmesh", *sys.argv[1:]], [sys.executable, "-m", "limitmesh"])
 
 
 if __name__ == "__main__":

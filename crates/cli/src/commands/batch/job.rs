@@ -1,0 +1,315 @@
+//! A line of the jobs: what it asks for, as arguments of `limitmesh refine`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsString;
+use std::path::{Path, PathBuf, is_separator};
+
+use clap::CommandFactory;
+use serde_json::value::RawValue;
+
+use crate::arguments::Arguments;
+
+/// Options of `refine` that are no matter of a job: the report is in its result, and the batch has the others.
+const NOT_OF_JOBS: [&str; 6] = ["output", "report", "threads", "quiet", "help", "version"];
+
+/// What a job asks for.
+#[derive(Debug, PartialEq)]
+pub(super) struct Job {
+    /// As the line names it.
+    pub(super) input: String,
+    /// None for a dry run.
+    pub(super) output: Option<String>,
+    /// What else it writes.
+    pub(super) picture: Option<String>,
+    /// Files that options name and that decide on the result.
+    pub(super) option_files: Vec<String>,
+    /// Its options, sorted by their names.
+    pub(super) options: Vec<String>,
+}
+
+impl Job {
+    /// The arguments of `limitmesh refine`.
+    pub(super) fn words(&self) -> Vec<OsString> {
+        let mut words: Vec<OsString> = self.options.iter().map(Into::into).collect();
+        words.extend(self.output.as_ref().map(|path| format!("--output={path}").into()));
+        words.extend(["--report=-", "--"].map(Into::into));
+        words.push(self.input.clone().into());
+        words
+    }
+
+    /// The files that it writes.
+    pub(super) fn written(&self) -> impl Iterator<Item = &Path> {
+        self.output.iter().chain(&self.picture).map(Path::new)
+    }
+}
+
+/// Understands lines.
+pub(super) struct Reader {
+    /// Names of `refine`'s options.
+    known: BTreeSet<String>,
+}
+
+impl Reader {
+    pub(super) fn new() -> Self {
+        let mut whole = Arguments::command();
+        whole.build();
+        let refine = whole.find_subcommand("refine").into_iter().flat_map(|own| own.get_arguments());
+        let names = refine.filter_map(|own| own.get_long()).map(str::to_owned);
+        Self { known: names.filter(|name| !NOT_OF_JOBS.contains(&name.as_str())).collect() }
+    }
+
+    /// The job of a line.
+    ///
+    /// # Errors
+    /// It is none, in words.
+    pub(super) fn job(&self, line: &[u8]) -> Result<Job, String> {
+        let line = std::str::from_utf8(line).map_err(|why| format!("it is no UTF-8: {why}"))?;
+        let fields: BTreeMap<String, Box<RawValue>> = serde_json::from_str(line)
+            .map_err(|why| format!("it is no JSON object of a job: {}", without_line(&why)))?;
+        let mut job =
+            Job { input: String::new(), output: None, picture: None, option_files: vec![], options: vec![] };
+        let (mut is_dry, mut has_input) = (false, false);
+        for (name, value) in &fields {
+            let name = name.replace('_', "-");
+            let value = Value::of(value).map_err(|what| format!("'{name}' is {what}"))?;
+            match name.as_str() {
+                "input" => (job.input, has_input) = (value.into_text(&name)?, true),
+                "output" => job.output = Some(value.into_text(&name)?),
+                known if self.known.contains(known) => {
+                    is_dry |= known == "dry-run" && value == Value::Yes;
+                    if known == "camera-path" {
+                        job.option_files.extend(value.texts());
+                    }
+                    if known == "picture" {
+                        job.picture = value.texts().into_iter().next();
+                    }
+                    job.options.extend(value.words(known));
+                }
+                _ => return Err(format!("'{name}' is no option of a job")),
+            }
+        }
+        if !has_input {
+            return Err("it has no 'input'".to_owned());
+        }
+        if job.input == "-" || job.written().any(|path| path.as_os_str() == "-") {
+            return Err("standard input and output are not for jobs".to_owned());
+        }
+        if is_dry {
+            // Nothing is written.
+            job.output = None;
+        } else if job.output.is_none() {
+            return Err("it has no 'output'".to_owned());
+        }
+        if let Some(folder) = job.written().find(|path| is_folder(path)) {
+            return Err(format!("{} is a folder, expected a file", folder.display()));
+        }
+        Ok(job)
+    }
+}
+
+fn is_folder(path: &Path) -> bool {
+    let last = path.as_os_str().as_encoded_bytes().last();
+    last.is_some_and(|&last| is_separator(char::from(last))) || path.is_dir()
+}
+
+/// What serde_json says of a text of one line.
+fn without_line(why: &serde_json::Error) -> String {
+    why.to_string().replace(" at line 1 column ", " at column ")
+}
+
+/// What a field holds.
+#[derive(PartialEq)]
+enum Value {
+    /// Text, or a number as it was written.
+    One(String),
+    Many(Vec<String>),
+    Yes,
+    No,
+}
+
+impl Value {
+    fn of(value: &RawValue) -> Result<Self, &'static str> {
+        let text = value.get();
+        let wrong = "an object, expected text, a number, true, false, null or a list";
+        match text.as_bytes().first() {
+            Some(b'"') => Ok(Self::One(serde_json::from_str(text).map_err(|_| "no text")?)),
+            Some(b'{') | None => Err(wrong),
+            Some(b'[') => {
+                let items: Vec<&RawValue> = serde_json::from_str(text).map_err(|_| "no list")?;
+                let are_numbers = items.iter().all(|item| !item.get().starts_with('"'));
+                let items = items.into_iter().map(|item| match Self::of(item)? {
+                    Self::One(text) if !item.get().starts_with('[') => Ok(text),
+                    _ => Err("a list of something other than texts or numbers"),
+                });
+                let items = items.collect::<Result<Vec<_>, _>>()?;
+                // A point.
+                if are_numbers && !items.is_empty() {
+                    Ok(Self::One(items.join(",")))
+                } else {
+                    Ok(Self::Many(items))
+                }
+            }
+            Some(b't') => Ok(Self::Yes),
+            Some(b'f' | b'n') => Ok(Self::No),
+            Some(_) => Ok(Self::One(text.to_owned())),
+        }
+    }
+
+    fn into_text(self, name: &str) -> Result<String, String> {
+        match self {
+            Self::One(text) if !text.is_empty() => Ok(text),
+            _ => Err(format!("'{name}' is no name of a file")),
+        }
+    }
+
+    fn texts(&self) -> Vec<String> {
+        match self {
+            Self::One(text) => vec![text.clone()],
+            Self::Many(texts) => texts.clone(),
+            Self::Yes | Self::No => Vec::new(),
+        }
+    }
+
+    /// As the command line has it.
+    fn words(&self, name: &str) -> Vec<String> {
+        match self {
+            Self::Yes => vec![format!("--{name}")],
+            _ => self.texts().into_iter().map(|text| format!("--{name}={text}")).collect(),
+        }
+    }
+}
+
+/// Which files belong to whom: none is written twice, and none that is read.
+#[derive(Default)]
+pub(super) struct Claims {
+    /// By line; none for the batch's own.
+    written: BTreeMap<PathBuf, Option<usize>>,
+    read: BTreeSet<PathBuf>,
+}
+
+impl Claims {
+    /// The batch itself has this file.
+    pub(super) fn take(&mut self, path: &Path) {
+        self.written.insert(whole(path), None);
+    }
+
+    /// A job reads this file.
+    pub(super) fn read(&mut self, path: &Path) {
+        self.read.insert(whole(path));
+    }
+
+    /// The job on that line writes its files, when all jobs have said what they read.
+    ///
+    /// # Errors
+    /// One of them is another's, in words.
+    pub(super) fn write(&mut self, job: &Job, line: usize) -> Result<(), String> {
+        let files: Vec<(PathBuf, &Path)> = job.written().map(|path| (whole(path), path)).collect();
+        for (i, (file, path)) in files.iter().enumerate() {
+            let name = path.display();
+            if files[..i].iter().any(|(earlier, _)| earlier == file) {
+                return Err(format!("{name} would be written twice"));
+            }
+            match self.written.get(file) {
+                Some(Some(other)) => return Err(format!("{name} is what line {other} writes")),
+                Some(None) => return Err(format!("{name} holds the jobs or the results")),
+                None if self.read.contains(file) => {
+                    return Err(format!(
+                        "{name} is the input of a job; a batch that is resumed needs inputs as they were"
+                    ));
+                }
+                None => {}
+            }
+        }
+        self.written.extend(files.into_iter().map(|(file, _)| (file, Some(line))));
+        Ok(())
+    }
+}
+
+/// One name for one file, as far as can be told without making it.
+fn whole(path: &Path) -> PathBuf {
+    if let Ok(there) = path.canonicalize() {
+        return there;
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match (folder.canonicalize(), path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn job(line: &str) -> Result<Job, String> {
+        Reader::new().job(line.as_bytes())
+    }
+
+    #[test]
+    fn options_are_those_of_the_command_line() {
+        let line = r#"{"output": "b.ply", "input": "-a.obj", "tolerance": 0.10, "optimize": true, "ascii": false,
+            "view": [0, 0.5, -1e0], "channel": ["a=drop", "b=smooth"], "max_memory": "1G", "scheme": null}"#;
+        let job = job(&line.replace('\n', "")).unwrap();
+        let expected = [
+            "--channel=a=drop",
+            "--channel=b=smooth",
+            "--max-memory=1G",
+            "--optimize",
+            "--tolerance=0.10",
+            "--view=0,0.5,-1e0",
+            "--output=b.ply",
+            "--report=-",
+            "--",
+            "-a.obj",
+        ];
+        assert_eq!(job.words(), expected);
+    }
+
+    #[test]
+    fn what_is_no_job_is_told() {
+        for (line, words) in [
+            ("{", "column 1"),
+            ("[1]", "no JSON object"),
+            (r#"{"output": "a.ply"}"#, "no 'input'"),
+            (r#"{"input": "a.ply"}"#, "no 'output'"),
+            (r#"{"input": 3, "output": true}"#, "'output' is no name"),
+            (r#"{"input": "-", "output": "a.ply"}"#, "standard input"),
+            (r#"{"input": "a.obj", "output": "b/"}"#, "a folder"),
+            (r#"{"input": "a.obj", "output": "b.ply", "optimise": false}"#, "'optimise' is no option"),
+            (r#"{"input": "a.obj", "output": "b.ply", "report": "r.json"}"#, "'report' is no option"),
+            (r#"{"input": "a.obj", "output": "b.ply", "tolerance": {"mm": 1}}"#, "'tolerance' is an object"),
+            (r#"{"input": "a.obj", "output": "b.ply", "camera": [[1]]}"#, "'camera' is a list of something"),
+        ] {
+            let what = job(line).unwrap_err();
+            assert!(what.contains(words), "{line}: {what}");
+        }
+        assert!(Reader::new().job(b"{\"input\": \"\xff\"}").unwrap_err().contains("UTF-8"));
+        assert!(job(r#"{"input": "a.obj", "dry-run": true}"#).is_ok());
+    }
+
+    #[test]
+    fn files_belong_to_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let job = |input: &str, output: &str| Job {
+            input: at(input).display().to_string(),
+            output: Some(at(output).display().to_string()),
+            picture: None,
+            option_files: Vec::new(),
+            options: Vec::new(),
+        };
+        let mut claims = Claims::default();
+        claims.take(&at("results.jsonl"));
+        claims.read(&at("a.obj"));
+        assert_eq!(claims.write(&job("a.obj", "b.ply"), 1), Ok(()));
+        for (output, words) in [
+            ("b.ply", "what line 1 writes"),
+            ("./b.ply", "what line 1 writes"),
+            ("a.obj", "the input of a job"),
+            ("results.jsonl", "the jobs or the results"),
+        ] {
+            let what = claims.write(&job("a.obj", output), 2).unwrap_err();
+            assert!(what.contains(words), "{output}: {what}");
+        }
+    }
+}

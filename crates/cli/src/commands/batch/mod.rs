@@ -1,0 +1,373 @@
+//! `limitmesh batch`: many refinements, each in a process of its own, and what became of each as a line.
+//!
+//! ```text
+//! lines ─▶ jobs ─▶ claims: no file twice ─▶ keys: what is there already? ─▶ processes ─▶ lines, in the end in order
+//! ```
+//!
+//! Processes, because what one mesh does must not end the others: memory that is not there, a limit that is passed, an error of
+//! the program. What it costs to start one is small beside a mesh (docs/fleet.md).
+
+mod job;
+mod key;
+mod process;
+mod results;
+mod told;
+
+use std::collections::VecDeque;
+use std::ffi::OsString;
+use std::io::Read;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::Context;
+
+use crate::arguments::BatchArguments;
+use crate::failure::{Outcome, usage};
+use crate::format::{counted, seconds, thousands};
+use crate::input;
+use crate::interrupt;
+use crate::output;
+use crate::progress::Progress;
+use job::{Claims, Job, Reader};
+pub(super) use process::Verdict;
+use process::{Ended, Limits, Starter};
+use results::{EarlierResults, Place, Results};
+use told::{ErrorTold, Kind, Line, Told};
+
+/// Where nobody sees a spinner, how things stand is told so often.
+const TELL: Duration = Duration::from_secs(30);
+
+/// How often the batch looks whether it is to end.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// A job on its line, or why there is none.
+struct Task {
+    line: usize,
+    job: Result<Job, String>,
+}
+
+/// What comes of a task.
+enum Fate {
+    /// An earlier result holds.
+    Kept(Place, Standing),
+    New(String, Standing),
+    /// No process can be started.
+    Broken(anyhow::Error),
+    Cancelled,
+}
+
+/// What a result counts as.
+#[derive(Clone, PartialEq)]
+enum Standing {
+    Done,
+    Short,
+    /// With what is said of it on standard error.
+    Failed(String),
+}
+
+/// Does the jobs. `program` starts this program again.
+pub(crate) fn run(
+    arguments: &BatchArguments,
+    program: &[OsString],
+    threads: usize,
+    progress: &Progress,
+) -> anyhow::Result<Outcome> {
+    check(arguments)?;
+    let start = Instant::now();
+    progress.stage("reading the jobs");
+    let tasks = tasks(arguments)?;
+    interrupt::leave_to_caller();
+    let (results, earlier) = Results::open(&arguments.output, arguments.resume)?;
+    make_folders(&tasks)?;
+    let starter = Starter {
+        program: program.to_vec(),
+        // All processors for one job are asked for by their number.
+        threads: threads.max(1),
+        limits: Limits { time: arguments.time_limit, memory: arguments.memory_limit },
+        is_stopped: AtomicBool::new(false),
+    };
+    let processors = thread::available_parallelism().map_or(1, usize::from);
+    let processes = arguments.processes.unwrap_or((processors / starter.threads).max(1));
+    let batch = Batch { starter, earlier, with_seconds: arguments.seconds };
+    batch.run(tasks, processes, (results, output_name(arguments)), (start, progress))
+}
+
+fn check(arguments: &BatchArguments) -> anyhow::Result<()> {
+    if arguments.resume && output::is_standard_output(&arguments.output) {
+        return usage("--resume goes on with a file of results; standard output is none");
+    }
+    if arguments.memory_limit.is_some() && process::resident(std::process::id()).is_none() {
+        return usage("--memory-limit needs a system that tells in /proc what processes have in memory");
+    }
+    Ok(())
+}
+
+/// The jobs by their lines; blank lines are none.
+fn tasks(arguments: &BatchArguments) -> anyhow::Result<Vec<Task>> {
+    let name = input::display_name(&arguments.jobs);
+    let mut bytes = Vec::new();
+    let read = match output::is_standard_output(&arguments.jobs) {
+        true => std::io::stdin().lock().read_to_end(&mut bytes).map(drop),
+        false => std::fs::read(&arguments.jobs).map(|all| bytes = all),
+    };
+    read.with_context(|| format!("{name} cannot be read"))?;
+    let reader = Reader::new();
+    let lines = bytes.split(|&byte| byte == b'\n').enumerate();
+    let lines = lines.filter(|(_, line)| !line.trim_ascii().is_empty());
+    let mut tasks: Vec<Task> =
+        lines.map(|(i, line)| Task { line: i + 1, job: reader.job(line.trim_ascii()) }).collect();
+    let mut claims = Claims::default();
+    [&arguments.jobs, &arguments.output].into_iter().for_each(|own| claims.take(own));
+    for job in tasks.iter().filter_map(|task| task.job.as_ref().ok()) {
+        let read = std::iter::once(&job.input).chain(&job.option_files).map(Path::new);
+        read.filter(|path| input::builtin_name(path).is_none()).for_each(|path| claims.read(path));
+    }
+    for task in &mut tasks {
+        if let Ok(job) = &task.job
+            && let Err(what) = claims.write(job, task.line)
+        {
+            task.job = Err(what);
+        }
+    }
+    Ok(tasks)
+}
+
+/// How messages call the results.
+fn output_name(arguments: &BatchArguments) -> String {
+    match output::is_standard_output(&arguments.output) {
+        true => "standard output".to_owned(),
+        false => arguments.output.display().to_string(),
+    }
+}
+
+/// Makes the folders of what is written.
+fn make_folders(tasks: &[Task]) -> anyhow::Result<()> {
+    let written = tasks.iter().filter_map(|task| task.job.as_ref().ok()).flat_map(Job::written);
+    let mut last = None;
+    for folder in written.filter_map(Path::parent) {
+        if last.replace(folder) != Some(folder) {
+            std::fs::create_dir_all(folder)
+                .with_context(|| format!("the folder {} cannot be made", folder.display()))?;
+        }
+    }
+    Ok(())
+}
+
+/// What all jobs share.
+struct Batch {
+    starter: Starter,
+    earlier: EarlierResults,
+    with_seconds: bool,
+}
+
+/// How many results there are of each kind.
+#[derive(Default)]
+struct Counts {
+    kept: usize,
+    done: usize,
+    short: usize,
+    failed: usize,
+}
+
+impl Counts {
+    fn all(&self) -> usize {
+        self.done + self.short + self.failed
+    }
+
+    fn in_words(&self, jobs: usize) -> String {
+        let mut words = format!("{} of {} ended", thousands(self.all()), counted(jobs, "job", "jobs"));
+        let parts = [(self.failed, "failed"), (self.short, "stopped short"), (self.kept, "kept from before")];
+        for (count, what) in parts.into_iter().filter(|(count, _)| *count > 0) {
+            words.push_str(&format!(", {} {what}", thousands(count)));
+        }
+        words
+    }
+}
+
+impl Batch {
+    fn run(
+        &self,
+        tasks: Vec<Task>,
+        processes: usize,
+        (mut results, name): (Results, String),
+        (start, progress): (Instant, &Progress),
+    ) -> anyhow::Result<Outcome> {
+        let jobs = tasks.len();
+        tasks.iter().for_each(|task| results.expect(task.line));
+        let tasks = Mutex::new(VecDeque::from(tasks));
+        let mut counts = Counts::default();
+        let (sender, receiver) = channel();
+        thread::scope(|scope| -> anyhow::Result<()> {
+            for _ in 0..processes.min(jobs) {
+                let (sender, tasks) = (sender.clone(), &tasks);
+                scope.spawn(move || self.work(tasks, &sender));
+            }
+            drop(sender);
+            let mut told = Instant::now();
+            let outcome = loop {
+                progress.stage(format!("refining: {}", counts.in_words(jobs)));
+                if told.elapsed() > TELL {
+                    told = Instant::now();
+                    progress.note_where_nothing_moves(counts.in_words(jobs));
+                }
+                let (line, result) = match receiver.recv_timeout(LOOK) {
+                    Ok(ended) => ended,
+                    Err(RecvTimeoutError::Timeout) => continue,
+                    Err(RecvTimeoutError::Disconnected) => break Ok(()),
+                };
+                let standing = match result {
+                    Fate::Cancelled => continue,
+                    Fate::Broken(why) => break Err(why),
+                    Fate::Kept(place, standing) => {
+                        results.keep(line, place);
+                        counts.kept += 1;
+                        standing
+                    }
+                    Fate::New(text, standing) => {
+                        if let Err(why) = results.add(line, text) {
+                            break Err(why);
+                        }
+                        standing
+                    }
+                };
+                match standing {
+                    Standing::Done => counts.done += 1,
+                    Standing::Short => counts.short += 1,
+                    Standing::Failed(what) => {
+                        counts.failed += 1;
+                        progress.note(format!("line {line}: {what}"));
+                    }
+                }
+            };
+            // Nothing more is begun, and after an error nothing finished.
+            self.starter.is_stopped.store(true, Relaxed);
+            tasks.lock().unwrap_or_else(PoisonError::into_inner).clear();
+            outcome
+        })?;
+        if interrupt::is_asked() {
+            progress.stage(format!("refining: {}", counts.in_words(jobs)));
+            progress.clear();
+            interrupt::end_as_asked(name);
+        }
+        results.finish()?;
+        progress.note(format!("{}; {}", counts.in_words(jobs), seconds(start.elapsed().as_secs_f64())));
+        let Counts { short, failed, .. } = counts;
+        anyhow::ensure!(failed == 0, "{} of {} failed", thousands(failed), counted(jobs, "job", "jobs"));
+        Ok(match short {
+            0 => Outcome::Done,
+            _ => Outcome::StoppedShort(format!("{} of {}", thousands(short), counted(jobs, "job", "jobs"))),
+        })
+    }
+
+    /// Does tasks as long as there are any.
+    fn work(&self, tasks: &Mutex<VecDeque<Task>>, sender: &Sender<(usize, Fate)>) {
+        while !interrupt::is_asked() {
+            let next = tasks.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
+            let Some(task) = next else { return };
+            let result = self.result(&task).unwrap_or_else(Fate::Broken);
+            // Nobody listens any more if the batch failed.
+            if sender.send((task.line, result)).is_err() {
+                return;
+            }
+        }
+    }
+
+    fn result(&self, task: &Task) -> anyhow::Result<Fate> {
+        let job = match &task.job {
+            Ok(job) => job,
+            Err(what) => {
+                let told = failed(Kind::Line, None, what.clone());
+                return new(Line { line: task.line, key: None, input: None, output: None, told });
+            }
+        };
+        let key = key::key(job).ok();
+        if let Some(earlier) = key.as_ref().and_then(|key| self.kept(key, job)) {
+            return Ok(earlier);
+        }
+        let told = match self.starter.run(&job.words())? {
+            Ended::Cancelled => return Ok(Fate::Cancelled),
+            Ended::Said { report: Some(report), verdict: Verdict::Done } => {
+                let report = told::on_one_line(&report, self.with_seconds)?;
+                Told::Done { output_bytes: size(job), report }
+            }
+            Ended::Said { report: Some(report), verdict: Verdict::StoppedShort { why } } => {
+                let report = told::on_one_line(&report, self.with_seconds)?;
+                Told::StoppedShort { why, output_bytes: size(job), report }
+            }
+            Ended::Said { verdict: Verdict::Options { message }, .. } => failed(Kind::Options, None, message),
+            Ended::Said { verdict: Verdict::File { message }, .. } => failed(Kind::File, None, message),
+            Ended::Said { .. } => failed(Kind::Crash, None, "it ended without a report".to_owned()),
+            Ended::Passed(kind) => self.passed(kind),
+            Ended::Crashed(how) => failed(Kind::Crash, None, how),
+        };
+        let (input, output) = (Some(job.input.as_str()), job.output.as_deref());
+        new(Line { line: task.line, key: key.as_deref(), input, output, told })
+    }
+
+    /// The earlier result of a job, if it holds.
+    fn kept(&self, key: &str, job: &Job) -> Option<Fate> {
+        let earlier = self.earlier.get(&(key.to_owned(), job.input.clone(), job.output.clone()))?;
+        let Limits { time, memory } = self.starter.limits;
+        let standing = match earlier.failed {
+            Some((kind @ (Kind::Time | Kind::Memory), Some(at))) => {
+                let now = match kind {
+                    Kind::Time => time.map(|most| most.as_secs_f64()),
+                    _ => memory.map(|most| most as f64),
+                };
+                if now.is_none_or(|most| most > at) {
+                    return None;
+                }
+                Standing::Failed(format!("error ({}), as before", kind.name()))
+            }
+            Some(_) => return None,
+            None if earlier.is_short => Standing::Short,
+            None => Standing::Done,
+        };
+        let is_there = matches!(standing, Standing::Failed(_))
+            || size(job) == earlier.output_bytes && job.written().all(Path::exists);
+        is_there.then(|| Fate::Kept(earlier.place, standing))
+    }
+
+    fn passed(&self, kind: Kind) -> Told {
+        let Limits { time, memory } = self.starter.limits;
+        let (limit, message) = match kind {
+            Kind::Time => {
+                let most = time.unwrap_or_default().as_secs_f64();
+                (serde_json::Number::from_f64(most), format!("it took more than {most} s (--time-limit)"))
+            }
+            _ => {
+                let most = memory.unwrap_or_default();
+                let words =
+                    format!("it took more than {} of memory (--memory-limit)", crate::format::bytes(most));
+                (Some(most.into()), words)
+            }
+        };
+        failed(kind, limit, message)
+    }
+}
+
+/// Bytes of the mesh that a job wrote.
+fn size(job: &Job) -> Option<u64> {
+    let path = job.output.as_ref()?;
+    std::fs::metadata(path).ok().map(|file| file.len())
+}
+
+fn failed(kind: Kind, limit: Option<serde_json::Number>, message: String) -> Told {
+    Told::Failed { error: ErrorTold { kind, limit, message } }
+}
+
+/// A result as its line.
+fn new(line: Line<'_>) -> anyhow::Result<Fate> {
+    let standing = match &line.told {
+        Told::Done { .. } => Standing::Done,
+        Told::StoppedShort { .. } => Standing::Short,
+        Told::Failed { error } => {
+            Standing::Failed(format!("error ({}): {}", error.kind.name(), error.message))
+        }
+    };
+    Ok(Fate::New(serde_json::to_string(&line)?, standing))
+}

@@ -1,0 +1,361 @@
+//! `limitmesh batch`: a line in, a line out, whatever happens in between.
+
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use crate::common::{command, file, folder, names, run};
+
+const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+
+/// Writes jobs, a line each.
+fn jobs(folder: &TempDir, jobs: &[Value]) -> std::path::PathBuf {
+    let lines: Vec<String> = jobs.iter().map(Value::to_string).collect();
+    file(folder, "jobs.jsonl", &(lines.join("\n") + "\n"))
+}
+
+fn text(path: &Path) -> String {
+    std::fs::read_to_string(path).expect("a file")
+}
+
+/// The results by their order.
+fn results(path: &Path) -> Vec<Value> {
+    text(path).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+}
+
+/// A name below the folder, as text.
+fn below(folder: &TempDir, name: &str) -> String {
+    folder.path().join(name).display().to_string()
+}
+
+/// A report without its times.
+fn without_seconds(value: &mut Value) {
+    match value {
+        Value::Object(members) => {
+            members.remove("seconds");
+            members.values_mut().for_each(without_seconds);
+        }
+        Value::Array(items) => items.iter_mut().for_each(without_seconds),
+        _ => {}
+    }
+}
+
+#[test]
+fn a_job_is_what_refine_does_with_its_options() {
+    let folder = folder();
+    let input = file(&folder, "in.obj", TETRAHEDRON).display().to_string();
+    let out = |name: &str| below(&folder, &format!("made/here/{name}"));
+    let list = jobs(
+        &folder,
+        &[
+            json!({"input": input, "output": out("a.ply"), "tolerance": "1%", "picture": out("a.png")}),
+            json!({"input": "builtin:cube", "output": out("b.obj"), "crease_angle": 30, "triangles": "1k"}),
+            json!({"input": "builtin:cup", "output": out("c.ply"), "method": "limit-normal", "view": [0, 0, -1], "levels": 2}),
+            json!({"input": "builtin:cup", "tolerance": "1%", "dry-run": true}),
+        ],
+    );
+    let found = folder.path().join("results.jsonl");
+    run("batch {} -o {} --jobs 3", &[&list, &found]).expect(0).saying("4 of 4 jobs ended");
+    let told = results(&found);
+    let plain = [
+        format!("refine {input} -o {{}} --tolerance 1% --picture {}", below(&folder, "p.png")),
+        "refine builtin:cube -o {} --crease-angle 30 --triangles 1k".to_owned(),
+        "refine builtin:cup -o {} --method limit-normal --view 0,0,-1 --levels 2".to_owned(),
+    ];
+    for (i, (words, name)) in plain.iter().zip(["a.ply", "b.obj", "c.ply"]).enumerate() {
+        let own = folder.path().join(name);
+        let mut report = run(&format!("{words} --report -"), &[&own]).expect(0).json();
+        without_seconds(&mut report);
+        let bytes = std::fs::read(out(name)).expect("a mesh");
+        assert!(bytes == std::fs::read(&own).expect("a mesh"), "{name}");
+        report["output"]["path"] = out(name).into();
+        assert_eq!(told[i]["report"], report, "{name}");
+        assert_eq!((&told[i]["line"], &told[i]["status"]), (&(i + 1).into(), &"done".into()));
+        assert_eq!(told[i]["output_bytes"], bytes.len());
+        assert_eq!(told[i]["key"].as_str().map(str::len), Some(64));
+    }
+    assert!(
+        std::fs::read(out("a.png")).expect("a picture")
+            == std::fs::read(below(&folder, "p.png")).expect("one")
+    );
+    assert!(told[3]["report"]["estimate"]["triangles"].as_u64() > Some(100));
+    assert_eq!(told[3]["output"], Value::Null);
+    assert_eq!(names(&folder.path().join("made/here")), ["a.ply", "a.png", "b.obj", "c.ply"]);
+    // Times are told where they are asked for.
+    let timed = folder.path().join("timed.jsonl");
+    run("batch {} -o {} --seconds", &[&list, &timed]).expect(0);
+    assert!(results(&timed)[0]["report"]["seconds"]["total"].is_number());
+}
+
+#[test]
+fn what_is_wrong_is_told_by_line_and_the_rest_is_done() {
+    let folder = folder();
+    let out = |name: &str| below(&folder, name);
+    let bad = file(&folder, "bad.obj", "v 0 0 0\nf 1 2 3\n").display().to_string();
+    let good = json!({"input": "builtin:cube", "output": out("good.ply"), "triangles": 100});
+    let short =
+        json!({"input": "builtin:cube", "output": out("short.ply"), "tolerance": 1e-9, "max-triangles": 500});
+    let lines = [
+        (good.to_string(), "done", ""),
+        (String::new(), "", ""),
+        ("{\"input\": ".to_owned(), "line", "column"),
+        (
+            json!({"input": "builtin:cube", "output": out("x.ply"), "optimise": 1}).to_string(),
+            "line",
+            "'optimise'",
+        ),
+        (
+            json!({"input": "builtin:cube", "output": out("x.ply"), "tolerance": "-1"}).to_string(),
+            "options",
+            "above 0",
+        ),
+        (
+            json!({"input": "builtin:cube", "output": out("w.ply"), "limit": true}).to_string(),
+            "options",
+            "--limit",
+        ),
+        (json!({"input": "builtin:cube", "output": out("x.doc")}).to_string(), "options", "'doc'"),
+        (json!({"input": out("none.stl"), "output": out("x.ply")}).to_string(), "line", "what line 5 writes"),
+        (json!({"input": out("none.stl"), "output": out("y.ply")}).to_string(), "file", "none.stl"),
+        (json!({"input": bad, "output": out("z.ply")}).to_string(), "file", "bad.obj"),
+        (
+            json!({"input": "builtin:cup", "output": out("good.ply")}).to_string(),
+            "line",
+            "what line 1 writes",
+        ),
+        (json!({"input": "builtin:cup", "output": bad}).to_string(), "line", "the input of a job"),
+        (
+            json!({"input": "builtin:cup", "output": out("jobs.jsonl")}).to_string(),
+            "line",
+            "the jobs or the results",
+        ),
+        (short.to_string(), "stopped-short", "--max-triangles 500 was reached"),
+    ];
+    let all: Vec<&str> = lines.iter().map(|(line, ..)| line.as_str()).collect();
+    let list = file(&folder, "jobs.jsonl", &all.join("\n"));
+    let found = folder.path().join("results.jsonl");
+    run("batch {} -o {}", &[&list, &found])
+        .expect(1)
+        .saying("line 10: error (file)")
+        .saying("11 of 13 jobs failed");
+    let expected = lines.iter().enumerate().filter(|(_, (line, ..))| !line.is_empty());
+    let told = results(&found);
+    assert_eq!(told.len(), expected.clone().count());
+    for ((i, (line, how, words)), told) in expected.zip(&told) {
+        assert_eq!(told["line"], i + 1);
+        let (status, why) = match told["status"].as_str() {
+            Some("failed") => (&told["error"]["kind"], &told["error"]["message"]),
+            _ => (&told["status"], &told["why"]),
+        };
+        assert_eq!(status, how, "{line}: {told}");
+        assert!(why.as_str().unwrap_or_default().contains(words), "{line}: {told}");
+    }
+    assert_eq!(names(folder.path()), ["bad.obj", "good.ply", "jobs.jsonl", "results.jsonl", "short.ply"]);
+    // What failed is tried again, to the same end.
+    let before = text(&found);
+    run("batch {} -o {} --resume", &[&list, &found]).expect(1).saying("2 kept from before");
+    assert_eq!(text(&found), before);
+    std::fs::write(&bad, TETRAHEDRON).expect("mended");
+    run("batch {} -o {} --resume --quiet", &[&list, &found]).expect(1).saying("10 of 13 jobs failed");
+    assert_eq!(results(&found)[8]["status"], "done");
+}
+
+#[test]
+fn jobs_that_take_too_much_do_not_take_the_others_along() {
+    let folder = folder();
+    let out = |name: &str| below(&folder, name);
+    // A thousand million triangles: gigabytes within seconds, and minutes on any machine.
+    let long = json!({"input": "builtin:bunny", "output": out("long.ply"), "method": "uniform", "levels": 10,
+        "max-triangles": "2G"});
+    let good = json!({"input": "builtin:cube", "output": out("good.ply"), "triangles": 100});
+    let list = jobs(&folder, &[long, good]);
+    let found = folder.path().join("results.jsonl");
+    run("batch {} -o {} --time-limit 0.7 --jobs 2", &[&list, &found]).expect(1);
+    let told = results(&found);
+    assert_eq!((&told[0]["error"]["kind"], &told[0]["error"]["limit"]), (&"time".into(), &0.7.into()));
+    assert_eq!(told[1]["status"], "done");
+    let before = text(&found);
+    // A limit that is not higher is not tried again, one that is higher is.
+    run("batch {} -o {} --time-limit 0.5 --resume", &[&list, &found]).expect(1).saying("2 kept from before");
+    assert_eq!(text(&found), before);
+    if cfg!(target_os = "linux") {
+        let words = "batch {} -o {} --memory-limit 64M --resume";
+        run(words, &[&list, &found]).expect(1).saying("1 kept from before").saying("error (memory)");
+        let told = results(&found);
+        assert_eq!(
+            (&told[0]["error"]["kind"], &told[0]["error"]["limit"]),
+            (&"memory".into(), &(64 << 20).into())
+        );
+        run(words, &[&list, &found]).expect(1).saying("2 kept from before");
+    }
+    assert_eq!(names(folder.path()), ["good.ply", "jobs.jsonl", "results.jsonl"]);
+}
+
+#[test]
+fn results_are_kept_where_nothing_changed() {
+    let folder = folder();
+    let (one, two) = (file(&folder, "one.obj", TETRAHEDRON), file(&folder, "two.obj", TETRAHEDRON));
+    let out = |name: &str| below(&folder, name);
+    let of = |input: &Path, output: &str, tolerance: &str| json!({"input": input.display().to_string(), "output": out(output), "tolerance": tolerance});
+    let (a, b) = (of(&one, "a.ply", "1%"), of(&two, "b.ply", "1%"));
+    let list = jobs(&folder, &[a.clone(), b.clone()]);
+    let found = folder.path().join("results.jsonl");
+    run("batch {} -o {} --resume", &[&list, &found]).expect(0);
+    let told = results(&found);
+    // The key tells what decides on a result, wherever it is.
+    assert_eq!(told[0]["key"], told[1]["key"]);
+    run("batch {} -o {}", &[&list, &found]).expect(1).saying("--resume goes on with it");
+    let kept = |count: usize| {
+        let told = run("batch {} -o {} --resume", &[&list, &found]).expect(0).stderr;
+        let words = if count == 0 { "jobs ended;".to_owned() } else { format!(" {count} kept from before") };
+        assert!(told.contains(&words), "{told}");
+    };
+    kept(2);
+    // The jobs changed their places, and one was added.
+    jobs(&folder, &[of(&one, "c.ply", "1%"), b.clone(), a.clone()]);
+    kept(2);
+    assert_eq!(results(&found)[2]["output"], out("a.ply"));
+    assert_eq!(results(&found)[2]["line"], 3);
+    jobs(&folder, &[b.clone(), of(&one, "a.ply", "2%")]);
+    kept(1);
+    assert_eq!(results(&found).len(), 2);
+    std::fs::remove_file(out("b.ply")).expect("a mesh");
+    kept(1);
+    std::fs::write(&two, TETRAHEDRON.replace("1 0 0", "2 0 0")).expect("changed");
+    kept(1);
+    kept(2);
+}
+
+/// Starts the program; it is ended when it is forgotten.
+struct Running(Child);
+
+impl Running {
+    fn start(words: &str, paths: &[&Path]) -> Self {
+        let mut command = command(words, paths);
+        Self(command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().expect("the program starts"))
+    }
+
+    /// Waits until the results have so many lines.
+    fn until(&self, lines: usize, path: &Path) {
+        let start = Instant::now();
+        while std::fs::read_to_string(path).unwrap_or_default().lines().count() < lines {
+            assert!(start.elapsed() < Duration::from_secs(100), "there are no {lines} results");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Jobs of some tenths of a second into a folder, and the results of an undisturbed batch.
+fn disturbed(folder: &TempDir, to: &str) -> (std::path::PathBuf, Vec<String>) {
+    let models = ["head", "cup", "shoe", "bunny", "teddy", "sphere", "cube", "radish"];
+    let mut outputs: Vec<String> =
+        models.iter().map(|model| below(folder, &format!("{to}/{model}.ply"))).collect();
+    outputs.sort();
+    let all = models.iter().zip(models.iter().map(|model| below(folder, &format!("{to}/{model}.ply"))));
+    let all = all.map(|(model, output)| {
+        json!({"input": format!("builtin:{model}"), "output": output, "tolerance": "0.02%"})
+    });
+    (jobs(folder, &all.collect::<Vec<_>>()), outputs)
+}
+
+#[test]
+fn killed_twice_and_resumed_it_gives_the_same_bytes() {
+    let folder = folder();
+    let (list, outputs) = disturbed(&folder, "out");
+    let (found, again) = (folder.path().join("found.jsonl"), folder.path().join("again.jsonl"));
+    run("batch {} -o {} --jobs 1", &[&list, &found]).expect(0);
+    let meshes = |outputs: &[String]| -> Vec<Vec<u8>> {
+        outputs.iter().map(|path| std::fs::read(path).expect("a mesh")).collect()
+    };
+    let whole = meshes(&outputs);
+    std::fs::remove_dir_all(below(&folder, "out")).expect("meshes");
+    for (lines, processes) in [(2, 2), (5, 3)] {
+        let running = Running::start(
+            &format!("batch {{}} -o {{}} --jobs {processes} --resume --quiet"),
+            &[&list, &again],
+        );
+        running.until(lines, &again);
+        // SIGKILL.
+        drop(running);
+        // Killed while it wrote a line.
+        let cut = text(&again);
+        std::fs::write(&again, &cut[..cut.len() - 3]).expect("cut");
+    }
+    run("batch {} -o {} --jobs 2 --resume", &[&list, &again]).expect(0);
+    assert_eq!(text(&again), text(&found));
+    assert!(meshes(&outputs) == whole);
+}
+
+#[cfg(unix)]
+#[test]
+fn signals_leave_results_that_can_be_resumed_and_nothing_else() {
+    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+        let folder = folder();
+        let (list, outputs) = disturbed(&folder, "out");
+        let found = folder.path().join("found.jsonl");
+        let mut running = Running::start("batch {} -o {} --jobs 2", &[&list, &found]);
+        running.until(2, &found);
+        let sent = std::process::Command::new("kill")
+            .args([&format!("-{signal}"), &running.0.id().to_string()])
+            .status();
+        assert!(sent.expect("kill").success());
+        let ended = running.0.wait().expect("it ends");
+        let mut told = String::new();
+        std::io::Read::read_to_string(running.0.stderr.as_mut().expect("piped"), &mut told).expect("text");
+        assert_eq!(ended.code(), Some(code), "{told}");
+        assert!(told.contains("cancelled by") && told.contains("found.jsonl written by then"), "{told}");
+        let there = names(&folder.path().join("out"));
+        assert!(there.iter().all(|name| name.ends_with(".ply")), "{there:?}");
+        let lines = results(&found);
+        assert!((2..outputs.len()).contains(&lines.len()), "{}", lines.len());
+        assert!(lines.iter().all(|line| line["status"] == "done"));
+        run("batch {} -o {} --resume", &[&list, &found]).expect(0).saying("kept from before");
+        assert_eq!(results(&found).len(), outputs.len());
+    }
+}
+
+#[test]
+fn jobs_come_from_standard_input_and_results_go_to_standard_output_in_order() {
+    let folder = folder();
+    let (list, outputs) = disturbed(&folder, "out");
+    let mut child = command("batch - -o - --jobs 3 --quiet", &[])
+        .stdin(std::fs::File::open(&list).expect("a file"))
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut told = String::new();
+    std::io::Read::read_to_string(child.stdout.as_mut().expect("piped"), &mut told).expect("text");
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+    let found = folder.path().join("found.jsonl");
+    run("batch {} -o {} --resume", &[&list, &found]).expect(0);
+    assert_eq!(told, text(&found));
+    assert_eq!(told.lines().count(), outputs.len());
+    run("batch {} -o - --resume", &[&list]).expect(2).saying("--resume");
+}
+
+#[test]
+fn files_that_are_no_results_and_jobs_that_are_not_there_are_refused() {
+    let folder = folder();
+    let list = jobs(&folder, &[json!({"input": "builtin:cube", "output": below(&folder, "x.ply")})]);
+    let notes = file(&folder, "notes.txt", "dear diary\n");
+    run("batch {} -o {} --resume", &[&list, &notes]).expect(1).saying("line 1 is no result");
+    assert_eq!(text(&notes), "dear diary\n");
+    let none = folder.path().join("none.jsonl");
+    run("batch {} -o {}", &[&none, &folder.path().join("r.jsonl")]).expect(1).saying("none.jsonl");
+    run("batch {} -o {} --time-limit 0", &[&list, &none]).expect(2).saying("above 0");
+    assert_eq!(names(folder.path()), ["jobs.jsonl", "notes.txt"]);
+    // No jobs at all.
+    let empty = file(&folder, "empty.jsonl", "\n\n");
+    run("batch {} -o {}", &[&empty, &none]).expect(0);
+    assert_eq!(text(&none), "");
+}
