@@ -80,6 +80,8 @@ pub(crate) struct Input {
     pub(crate) channels: Vec<Channel>,
     /// Files that describe the materials that channels name.
     pub(crate) material_libraries: Vec<String>,
+    /// Pictures that texture coordinates are places on.
+    pub(crate) texture_files: Vec<String>,
     /// The glTF document, if it was one.
     pub(crate) asset: Option<Asset>,
     /// Time taken to read or generate it.
@@ -247,6 +249,7 @@ fn connect(read: Soup, build: &BuildArguments, kept: &[&str], progress: &Progres
     let normals =
         normals.map(|own| own.on_mesh(&soup, &mesh, &trace)).transpose().with_context(|| name.clone())?;
     let material_libraries = std::mem::take(&mut soup.material_libraries);
+    let texture_files = std::mem::take(&mut soup.texture_files);
     let near = nearly_closed(&soup, &mesh, options);
     let left_out = std::mem::take(&mut soup.left_out);
     // Large soups are given back before refinement needs the memory.
@@ -273,6 +276,7 @@ fn connect(read: Soup, build: &BuildArguments, kept: &[&str], progress: &Progres
         normals,
         channels,
         material_libraries,
+        texture_files,
         asset: asset.map(|(asset, _)| asset),
         reading,
         building,

@@ -43,11 +43,16 @@ const INTERPOLATIONS: [(&str, Interpolation); 7] = [
     ("smooth-boundaries", Interpolation::Smooth(SeamRule::Boundaries)),
 ];
 
-const STORAGES: [(&str, Storage); 4] = [
+const STORAGES: [(&str, Storage); 9] = [
     ("double", Storage::Double),
     ("single", Storage::Single),
     ("byte", Storage::Byte),
-    ("integer", Storage::Integer),
+    ("int8", Storage::Int8),
+    ("uint8", Storage::Uint8),
+    ("int16", Storage::Int16),
+    ("uint16", Storage::Uint16),
+    ("int32", Storage::Int32),
+    ("uint32", Storage::Uint32),
 ];
 
 /// The value that a name stands for.

@@ -47,6 +47,7 @@ pub(crate) fn load(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>>
     let channels = soup.channels.into_iter().map(|channel| channels::told(py, channel));
     dict.set_item("channels", PyList::new(py, channels.collect::<PyResult<Vec<_>>>()?)?)?;
     dict.set_item("material_libraries", soup.material_libraries)?;
+    dict.set_item("texture_files", soup.texture_files)?;
     dict.set_item("left_out", soup.left_out)?;
     Ok(dict)
 }
@@ -69,9 +70,10 @@ pub(crate) fn save(
     faces: PyReadonlyArray2<'_, u32>,
     normals: Option<PyReadonlyArray2<'_, f64>>,
     channels: Vec<ChannelIn<'_>>,
-    material_libraries: Vec<String>,
+    linked: [Vec<String>; 2],
     ascii: bool,
 ) -> PyResult<Vec<String>> {
+    let [material_libraries, texture_files] = linked;
     let (positions, triangles) = (soup::positions(&vertices)?, soup::triangles(&faces)?);
     let normals = normals.as_ref().map(soup::positions).transpose()?;
     let channels = channels.iter().map(ChannelIn::channel).collect::<PyResult<Vec<_>>>()?;
@@ -81,7 +83,8 @@ pub(crate) fn save(
         let (held, lost): (Vec<_>, Vec<_>) = channels
             .into_iter()
             .partition(|channel| limitmesh_io::holds(format, &WriteOptions::default().ascii(ascii), channel));
-        let mut output = Output::new(surface).channels(&held).material_libraries(&material_libraries);
+        let output = Output::new(surface).channels(&held).material_libraries(&material_libraries);
+        let mut output = output.texture_files(&texture_files);
         if let Some(normals) = &normals {
             output = output.normals(normals);
         }

@@ -88,10 +88,20 @@ pub enum Storage {
     Double,
     /// In single precision.
     Single,
-    /// As bytes, 255 for 1.
+    /// As bytes, 255 for 1: colours.
     Byte,
-    /// As whole numbers.
-    Integer,
+    /// As whole numbers of 32 bits with a sign.
+    Int32,
+    /// As whole numbers of 8 bits with a sign.
+    Int8,
+    /// As whole numbers of 8 bits, 0 to 255.
+    Uint8,
+    /// As whole numbers of 16 bits with a sign.
+    Int16,
+    /// As whole numbers of 16 bits, 0 to 65,535; colours of 65,535 for 1.
+    Uint16,
+    /// As whole numbers of 32 bits from 0 on.
+    Uint32,
 }
 
 /// Values that a mesh carries.

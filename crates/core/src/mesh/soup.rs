@@ -89,6 +89,8 @@ pub struct PolygonSoup {
     pub channels: Vec<Channel>,
     /// Files that describe the materials that channels name.
     pub material_libraries: Vec<String>,
+    /// Pictures that texture coordinates are places on, where the file names them itself.
+    pub texture_files: Vec<String>,
     /// What the file held beside these and was left out, in words such as "texture coordinates".
     pub left_out: Vec<String>,
 }

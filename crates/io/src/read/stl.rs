@@ -61,7 +61,7 @@ fn read_binary(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     }
     if !attributes.is_empty() {
         let channel = Channel::new(channels::ATTRIBUTE, Semantic::Label, Domain::Face, 1);
-        let channel = channel.stored(Storage::Integer);
+        let channel = channel.stored(Storage::Uint16);
         soup.channels.push(channel.with(attributes, (0..promised).collect()));
     }
     soup.left_out.extend(trailing_bytes(facets.len() - FACET * count, "facet"));

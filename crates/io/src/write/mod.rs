@@ -43,6 +43,8 @@ pub struct Output<'a> {
     pub channels: &'a [Channel],
     /// Files that describe materials. OBJ names them.
     pub material_libraries: &'a [String],
+    /// Pictures that texture coordinates are places on. PLY names them.
+    pub texture_files: &'a [String],
     /// Sharp edges. OBJ holds them.
     pub creases: &'a [CreaseTag],
     /// Sharp vertices. OBJ holds them.
@@ -62,6 +64,7 @@ impl<'a> Output<'a> {
             face_properties: &[],
             channels: &[],
             material_libraries: &[],
+            texture_files: &[],
             creases: &[],
             corners: &[],
         }
@@ -112,6 +115,12 @@ impl<'a> Output<'a> {
     /// Sets [`Self::material_libraries`].
     pub fn material_libraries(mut self, libraries: &'a [String]) -> Self {
         self.material_libraries = libraries;
+        self
+    }
+
+    /// Sets [`Self::texture_files`].
+    pub fn texture_files(mut self, files: &'a [String]) -> Self {
+        self.texture_files = files;
         self
     }
 
@@ -291,8 +300,9 @@ fn check(output: &Output<'_>, format: Format, options: &WriteOptions) -> Result<
         }
     }
     let names = output.channels.iter().flat_map(|channel| &channel.labels).chain(output.material_libraries);
-    let mut names = names.filter(|_| format == Format::Obj || format == Format::Stl && options.ascii);
-    if let Some(name) = names.find(|name| name.contains(['\n', '\r'])) {
+    let names = names.filter(|_| format == Format::Obj || format == Format::Stl && options.ascii);
+    let pictures = output.texture_files.iter().filter(|_| format == Format::Ply);
+    if let Some(name) = names.chain(pictures).find(|name| name.contains(['\n', '\r'])) {
         return Err(WriteError::LineBreak { name: name.clone() });
     }
     if format == Format::Ply { property::check(output) } else { Ok(()) }

@@ -4,12 +4,13 @@
 use super::Output;
 use super::numbers::Pieces;
 use super::ply_columns::{Columns, textures};
+use crate::names;
 use std::io::{self, Write};
 
 pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) -> io::Result<()> {
     let mut out = Pieces::new(writer);
     let columns = Columns::of(output);
-    out.bytes(header((output, &columns), ascii).as_bytes());
+    out.bytes(&header((output, &columns), ascii));
     for vertex in 0..output.surface.positions.len() {
         match ascii {
             true => vertex_text(&mut out, (output, &columns), vertex)?,
@@ -36,14 +37,19 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) ->
     out.finish()
 }
 
-fn header((output, columns): (&Output<'_>, &Columns<'_>), ascii: bool) -> String {
+fn header((output, columns): (&Output<'_>, &Columns<'_>), ascii: bool) -> Vec<u8> {
     let (positions, triangles) = (output.surface.positions, output.surface.triangles);
     let encoding = if ascii { "ascii" } else { "binary_little_endian" };
-    let mut header = format!("ply\nformat {encoding} 1.0\ncomment written by limitmesh\n");
+    let mut header = format!("ply\nformat {encoding} 1.0\ncomment written by limitmesh\n").into_bytes();
+    for file in output.texture_files {
+        header.extend(b"comment TextureFile ");
+        header.extend(names::write(file));
+        header.push(b'\n');
+    }
     let mut element = |name: &str, count: usize, properties: &[(&str, &str)]| {
-        header += &format!("element {name} {count}\n");
+        header.extend(format!("element {name} {count}\n").bytes());
         for (kind, name) in properties {
-            header += &format!("property {kind} {name}\n");
+            header.extend(format!("property {kind} {name}\n").bytes());
         }
     };
     let mut properties = vec![("double", "x"), ("double", "y"), ("double", "z")];
@@ -66,7 +72,8 @@ fn header((output, columns): (&Output<'_>, &Columns<'_>), ascii: bool) -> String
     properties.extend(columns.faces.iter().map(|column| (column.kind(), &column.name[..])));
     properties.extend(columns.textures.map(|_| ("list uchar float", "texcoord")));
     element("face", triangles.len(), &properties);
-    header + "end_header\n"
+    header.extend(b"end_header\n");
+    header
 }
 
 #[inline]

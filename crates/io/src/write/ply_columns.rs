@@ -102,19 +102,30 @@ fn names(channel: &Channel) -> Vec<String> {
     (0..channel.arity).map(name).collect()
 }
 
+/// The type that holds all numbers of a channel: its file's, or a wider one.
 fn storage(channel: &Channel) -> Storage {
-    let fits = || {
-        channel
-            .values
-            .iter()
-            .all(|&x| x.fract() == 0.0 && (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&x))
-    };
-    match channel.storage {
+    let is_whole = |x: &f64, [low, high]: [f64; 2]| x.fract() == 0.0 && (low..=high).contains(x);
+    let is_colour = channel.semantic == Semantic::Colour;
+    match (channel.storage, range(channel.storage)) {
         // Other programs know colours as bytes.
-        Storage::Double if channel.semantic == Semantic::Colour => Storage::Byte,
-        Storage::Integer if !fits() => Storage::Double,
-        storage => storage,
+        (Storage::Double, _) if is_colour => Storage::Byte,
+        (Storage::Uint16, _) if is_colour => Storage::Uint16,
+        (_, Some(range)) if !channel.values.iter().all(|x| is_whole(x, range)) => Storage::Double,
+        (storage, _) => storage,
     }
+}
+
+/// The least and the greatest number of a type of whole numbers.
+fn range(storage: Storage) -> Option<[f64; 2]> {
+    Some(match storage {
+        Storage::Int8 => [f64::from(i8::MIN), f64::from(i8::MAX)],
+        Storage::Uint8 => [0.0, f64::from(u8::MAX)],
+        Storage::Int16 => [f64::from(i16::MIN), f64::from(i16::MAX)],
+        Storage::Uint16 => [0.0, f64::from(u16::MAX)],
+        Storage::Int32 => [f64::from(i32::MIN), f64::from(i32::MAX)],
+        Storage::Uint32 => [0.0, f64::from(u32::MAX)],
+        _ => return None,
+    })
 }
 
 impl Column<'_> {
@@ -122,15 +133,26 @@ impl Column<'_> {
     pub(super) fn kind(&self) -> &'static str {
         match self.storage {
             Storage::Single => "float",
-            Storage::Byte => "uchar",
-            Storage::Integer => "int",
+            Storage::Byte | Storage::Uint8 => "uchar",
+            Storage::Int8 => "char",
+            Storage::Int16 => "short",
+            Storage::Uint16 => "ushort",
+            Storage::Int32 => "int",
+            Storage::Uint32 => "uint",
             _ => "double",
         }
     }
 
+    /// An element's number, as the file holds it.
     #[inline]
     fn number(&self, element: usize) -> f64 {
-        self.channel.values[self.values[element] as usize * self.channel.arity + self.part]
+        let number = self.channel.values[self.values[element] as usize * self.channel.arity + self.part];
+        let unit = match self.storage {
+            Storage::Byte => 255.0,
+            Storage::Uint16 if self.channel.semantic == Semantic::Colour => 65535.0,
+            _ => return number,
+        };
+        (unit * number.clamp(0.0, 1.0)).round()
     }
 
     /// Writes the little-endian bytes of an element's number.
@@ -139,8 +161,12 @@ impl Column<'_> {
         let number = self.number(element);
         match self.storage {
             Storage::Single => out.bytes(&(number as f32).to_le_bytes()),
-            Storage::Byte => out.bytes(&[byte(number)]),
-            Storage::Integer => out.bytes(&(number as i32).to_le_bytes()),
+            Storage::Byte | Storage::Uint8 => out.bytes(&[number as u8]),
+            Storage::Int8 => out.bytes(&(number as i8).to_le_bytes()),
+            Storage::Int16 => out.bytes(&(number as i16).to_le_bytes()),
+            Storage::Uint16 => out.bytes(&(number as u16).to_le_bytes()),
+            Storage::Int32 => out.bytes(&(number as i32).to_le_bytes()),
+            Storage::Uint32 => out.bytes(&(number as u32).to_le_bytes()),
             _ => out.bytes(&number.to_le_bytes()),
         }
     }
@@ -150,15 +176,10 @@ impl Column<'_> {
         let number = self.number(element);
         match self.storage {
             Storage::Single => out.single(number as f32),
-            Storage::Byte => out.integer(u32::from(byte(number))),
+            Storage::Byte => out.integer(number as u32),
             _ => out.number(number),
         }
     }
-}
-
-/// The nearest of 255 steps.
-fn byte(number: f64) -> u8 {
-    (255.0 * number.clamp(0.0, 1.0)).round() as u8
 }
 
 /// Writes the texture coordinates of a face's corners.

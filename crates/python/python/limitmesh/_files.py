@@ -66,6 +66,7 @@ def load(path: str | os.PathLike[str]) -> Mesh:
         told["creases"] or None,
         told["corner_tags"] or None,
         tuple(told["material_libraries"]),
+        tuple(told["texture_files"]),
         tuple(told["left_out"]),
     )
 
@@ -106,14 +107,14 @@ def save(path: str | os.PathLike[str], mesh: Refined | MeshLike, *, ascii: bool 
         has_sides = len(mesh._sides[0]) > 0
         # One normal a vertex would be an average over the sides of sharp edges.
         normals = None if has_sides else mesh.normals
-        libraries: tuple[str, ...] = ()
+        linked: list[list[str]] = [[], []]
     else:
         from ._simplify import repair
 
         given = as_mesh(mesh)
         mended = repair(given)
         vertices, faces, channels, normals = mended.vertices, mended.faces, dict(mended.channels), None
-        libraries = tuple(given.material_libraries)
+        linked = [list(given.material_libraries), list(given.texture_files)]
     counts = {"vertex": len(vertices), "corner": 3 * len(faces), "face": len(faces)}
     _limitmesh.save(
         os.fspath(path),
@@ -121,7 +122,7 @@ def save(path: str | os.PathLike[str], mesh: Refined | MeshLike, *, ascii: bool 
         np.ascontiguousarray(faces, dtype=np.uint32),
         None if normals is None else np.ascontiguousarray(normals),
         [channel._native(name, counts) for name, channel in channels.items()],
-        list(libraries),
+        linked,
         bool(ascii),
     )
 

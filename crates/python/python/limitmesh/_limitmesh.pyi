@@ -83,7 +83,7 @@ def save(
     faces: npt.NDArray[np.uint32],
     normals: npt.NDArray[np.float64] | None,
     channels: list[dict[str, Any]],
-    material_libraries: list[str],
+    linked: list[list[str]],
     ascii: bool,
 ) -> list[str]: ...
 def program(arguments: list[str], again: list[str]) -> int: ...

@@ -28,7 +28,7 @@ Interpolation: TypeAlias = Literal[
     "smooth-corners-plus2",
     "smooth-boundaries",
 ]
-Storage: TypeAlias = Literal["double", "single", "byte", "integer"]
+Storage: TypeAlias = Literal["double", "single", "byte", "int8", "uint8", "int16", "uint16", "int32", "uint32"]
 
 _USUAL: dict[str, Interpolation] = {
     "texture": "smooth-boundaries",
@@ -65,7 +65,7 @@ class Channel:
     labels
         What the numbers of labels stand for.
     storage
-        How files hold the numbers: "double", "single", "byte" (255 for 1) or "integer".
+        How files hold the numbers: "double", "single", "byte" (255 for 1), or whole numbers such as "int32".
 
     Examples
     --------
@@ -183,6 +183,8 @@ class Mesh:
         Vertices that stay where they are, perhaps with a sharpness.
     material_libraries
         Files that describe the materials that channels name.
+    texture_files
+        Pictures that texture coordinates are places on, where a PLY file names them.
     left_out
         What else the file held, in words.
 
@@ -200,6 +202,7 @@ class Mesh:
     creases: Any = None
     corners: Any = None
     material_libraries: Sequence[str] = ()
+    texture_files: Sequence[str] = ()
     left_out: Sequence[str] = ()
 
     def with_channels(self, channels: Mapping[str, Channel | npt.ArrayLike] | None) -> Mesh:

@@ -15,18 +15,21 @@ fn names(channels: &[Channel]) -> String {
     names.join("; ")
 }
 
-/// The channels of a mesh, and the files that describe the materials they name.
+/// The channels of a mesh, and the files that they lead to.
 #[derive(Default)]
 pub(super) struct Channels {
     channels: Vec<Channel>,
+    /// That describe materials.
     material_libraries: Vec<String>,
+    /// Pictures.
+    texture_files: Vec<String>,
 }
 
 impl Channels {
     /// Those that reach the output; tells which do not, and why.
     pub(super) fn of_input(
         channels: Vec<Channel>,
-        material_libraries: Vec<String>,
+        [material_libraries, texture_files]: [Vec<String>; 2],
         (format, arguments): (Option<Format>, &RefineArguments),
         progress: &Progress,
     ) -> Self {
@@ -42,14 +45,20 @@ impl Channels {
         if !lost.is_empty() {
             progress.note(format!("left out: {} (the output's format has no place for them)", names(&lost)));
         }
-        let material_libraries = if kept.is_empty() { Vec::new() } else { material_libraries };
-        Self { channels: kept, material_libraries }
+        if kept.is_empty() {
+            return Self::default();
+        }
+        if format != Format::Ply && !texture_files.is_empty() {
+            let files = texture_files.join("; ");
+            progress.note(format!("left out: {files} (only PLY files name pictures themselves)"));
+        }
+        Self { channels: kept, material_libraries, texture_files }
     }
 
     /// Those of a mesh of an asset.
     pub(super) fn of_asset(mut channels: Vec<Channel>, arguments: &RefineArguments) -> Self {
         channels.retain(|channel| !arguments.channels.drops(&channel.name));
-        Self { channels, material_libraries: Vec::new() }
+        Self { channels, ..Self::default() }
     }
 
     /// All of them.
@@ -83,7 +92,9 @@ impl Channels {
             return Ok(Self::default());
         }
         let channels = carried(&self.channels, control, arguments.scheme.scheme(), found)?;
-        Ok(Self { channels, material_libraries: self.material_libraries.clone() })
+        let [material_libraries, texture_files] =
+            [&self.material_libraries, &self.texture_files].map(Vec::clone);
+        Ok(Self { channels, material_libraries, texture_files })
     }
 
     /// Of which channels the output holds one value a vertex where there are several, and for how many.
@@ -98,6 +109,7 @@ impl Channels {
 
     /// Adds them to what is written.
     pub(super) fn add_to<'a>(&'a self, output: Output<'a>) -> Output<'a> {
-        output.channels(&self.channels).material_libraries(&self.material_libraries)
+        let output = output.channels(&self.channels).material_libraries(&self.material_libraries);
+        output.texture_files(&self.texture_files)
     }
 }

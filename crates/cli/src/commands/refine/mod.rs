@@ -113,8 +113,8 @@ fn refine(
         left_out: input.left_out,
         channels: input.channels.iter().map(|own| ChannelReport::chosen(own, &arguments.channels)).collect(),
     };
-    let mut channels =
-        Channels::of_input(input.channels, input.material_libraries, (format, arguments), progress);
+    let files = [input.material_libraries, input.texture_files];
+    let mut channels = Channels::of_input(input.channels, files, (format, arguments), progress);
     let Input { mesh, diagnosis, face_inputs, reading, building, .. } = input;
     let control = Control::new((mesh, diagnosis, face_inputs), None, arguments, progress)?;
     let Control { featured: control, diagnosis, before: read, bulk: before, interpolation, diagonal } =

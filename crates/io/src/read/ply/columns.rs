@@ -135,7 +135,12 @@ fn storage(scalar: Scalar) -> Storage {
     match scalar {
         Scalar::F64 => Storage::Double,
         Scalar::F32 => Storage::Single,
-        _ => Storage::Integer,
+        Scalar::I8 => Storage::Int8,
+        Scalar::U8 => Storage::Uint8,
+        Scalar::I16 => Storage::Int16,
+        Scalar::U16 => Storage::Uint16,
+        Scalar::I32 => Storage::Int32,
+        Scalar::U32 => Storage::Uint32,
     }
 }
 

@@ -1,8 +1,12 @@
 //! The header of a PLY file: which elements with which properties follow, how many, and in which encoding.
 
 use crate::error::{Flaw, Place};
+use crate::names;
 use crate::read::check_count;
 use crate::scan::{integer, quoted};
+
+/// What comes before the name of a picture in a comment, as MeshLab writes it.
+const TEXTURE_FILE: &[u8] = b"TextureFile";
 
 /// How the values after the header are written.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -110,6 +114,8 @@ impl Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
+    /// Pictures named in comments.
+    pub(super) texture_files: Vec<String>,
     /// Where the body begins: byte, and line counted from 1.
     pub(super) body: (usize, usize),
 }
@@ -159,10 +165,16 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, Flaw> {
     }
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
+    let mut texture_files = Vec::new();
     loop {
         let line = lines.next()?;
         let words: Vec<&[u8]> = line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).collect();
         match *words.as_slice() {
+            // Blanks are part of the name.
+            [b"comment", b"TextureFile", _, ..] => {
+                let at = line.windows(TEXTURE_FILE.len()).position(|own| own == TEXTURE_FILE).unwrap_or(0);
+                texture_files.push(names::read(line[at + TEXTURE_FILE.len()..].trim_ascii()));
+            }
             [] | [b"comment" | b"obj_info", ..] => {}
             [b"format", name, version] => encoding = Some(read_format(&lines, name, version)?),
             [b"element", name, count] => {
@@ -194,7 +206,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, Flaw> {
     let Some(encoding) = encoding else {
         return Err(lines.flaw("a header without a format", "format ascii 1.0 or a binary one"));
     };
-    Ok(Header { encoding, elements, body: (lines.at, lines.line + 1) })
+    Ok(Header { encoding, elements, texture_files, body: (lines.at, lines.line + 1) })
 }
 
 fn read_format(lines: &Lines<'_>, name: &[u8], version: &[u8]) -> Result<Encoding, Flaw> {

@@ -33,7 +33,11 @@ fn read_body(header: &Header, mut source: impl Source) -> Result<PolygonSoup, Fl
         return Err(Flaw::new(Place::Line(header.body.1 - 1), "a header without element vertex", "one"));
     };
     let vertices = vertices.count;
-    let mut soup = PolygonSoup { left_out: header.left_out(), ..PolygonSoup::default() };
+    let mut soup = PolygonSoup {
+        left_out: header.left_out(),
+        texture_files: header.texture_files.clone(),
+        ..PolygonSoup::default()
+    };
     for element in &header.elements {
         check_room(header.encoding, element, &source)?;
         match element.name.as_str() {
