@@ -4,6 +4,7 @@ mod asset;
 mod asset_choice;
 mod asset_morphs;
 mod asset_skins;
+mod asset_tangents;
 mod batch;
 mod channels;
 mod common;

@@ -28,7 +28,8 @@ pub struct BaseTexture {
     pub transform: [[f64; 2]; 3],
 }
 
-const TRANSFORM: &str = "KHR_texture_transform";
+/// The extension that shifts, turns and scales texture coordinates, or names others.
+pub(super) const TRANSFORM: &str = "KHR_texture_transform";
 
 impl Asset {
     /// The base colours of all materials, by the numbers that channels give them.

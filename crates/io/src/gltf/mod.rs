@@ -32,6 +32,7 @@ mod primitive;
 mod scene;
 mod scene_channels;
 mod source;
+mod tangents;
 mod uri;
 mod write;
 
@@ -41,6 +42,7 @@ pub(crate) use fresh::write_fresh;
 pub use geometry::{Geometry, VertexAttribute};
 pub use materials::{BaseColour, BaseTexture};
 pub use parts::{Joining, KeptApart, MeshSoup, Part};
+pub use tangents::WithTangents;
 
 use crate::error::ReadError;
 use crate::read::read_all;

@@ -53,17 +53,10 @@ struct Progressed {
 }
 
 impl Progressed {
-    /// Notes which attributes of a mesh were left out: tangents, which follow from what is written, what is too wide, and
-    /// what is lost otherwise.
-    fn leave_out(&mut self, own: &MeshSoup, is_lost: impl Fn(&CornerAttribute) -> bool) {
+    /// Notes which attributes of a mesh were left out: those that are lost or too wide, and `others`.
+    fn leave_out(&mut self, own: &MeshSoup, is_lost: impl Fn(&CornerAttribute) -> bool, others: Vec<String>) {
         let tables = own.attributes.iter().filter(|table| is_lost(table) || table.width > MOST_WIDE);
-        let mut names: Vec<String> = tables.map(|table| table.name.clone()).collect();
-        for part in &own.parts {
-            let own = part.attributes.iter().cloned();
-            let added = part.targets.iter().flatten().map(|name| format!("{name} of morph targets"));
-            names.extend(own.chain(added).filter(|name| name.starts_with("TANGENT")));
-        }
-        for name in names {
+        for name in tables.map(|table| table.name.clone()).chain(others) {
             if !self.left_out.contains(&name) {
                 self.left_out.push(name);
             }
@@ -228,7 +221,8 @@ impl Job {
             refined: &refined,
             carried: &carried,
         };
-        for note in back.put(asset, mesh, (stretch, arguments.scheme))? {
+        let told = back.put(asset, mesh, (stretch, arguments.scheme))?;
+        for note in told.notes {
             progress.note(format!("{name}: {note}"));
         }
         done.triangles += refined.mesh.face_count();
@@ -236,7 +230,7 @@ impl Job {
         if let Outcome::StoppedShort(why) = refined.outcome {
             done.short.push(format!("{name}: {why}"));
         }
-        done.leave_out(&own, |table| arguments.channels.drops(&table.name));
+        done.leave_out(&own, |table| arguments.channels.drops(&table.name), told.left_out);
         done.reports.push(AssetMeshReport {
             mesh,
             scale: stretch,

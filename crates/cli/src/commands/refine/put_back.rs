@@ -2,14 +2,15 @@
 //!
 //! A vertex of the file stands for each vertex of the surface and each combination of values there. What morph targets add to positions
 //! is a smooth channel, so that limit(base + Σ w t) = limit(base) + Σ w limit(t) at every vertex; what they add to normals is the
-//! limit normal of base plus target minus the base's.
+//! limit normal of base plus target minus the base's. Tangents, where the input had some, are found anew by the texture coordinates that
+//! come out.
 
 use anyhow::Context;
 use limitmesh::mesh::{Channel, Domain, Semantic};
 use limitmesh::scheme::Scheme;
 use limitmesh::{FaceId, LimitSurface, Mesh};
 use limitmesh_io::Asset;
-use limitmesh_io::gltf::{CornerAttribute, Geometry, MeshSoup, Part, VertexAttribute};
+use limitmesh_io::gltf::{CornerAttribute, Geometry, MeshSoup, Part, VertexAttribute, WithTangents};
 
 use super::Refined;
 use super::carried::{Carried, Vertices};
@@ -43,6 +44,14 @@ pub(super) struct PutBack<'a> {
     pub(super) carried: &'a Carried<'a>,
 }
 
+/// What is to be said of a mesh that was put back.
+#[derive(Default)]
+pub(super) struct Told {
+    pub(super) notes: Vec<String>,
+    /// Names of attributes that could not be found anew.
+    pub(super) left_out: Vec<String>,
+}
+
 /// Vertices of the surface that a primitive has, in the order of the file.
 #[derive(Default)]
 struct Numbered {
@@ -64,7 +73,7 @@ impl PutBack<'_> {
         asset: &mut Asset,
         mesh: usize,
         (stretch, scheme): (f64, SchemeName),
-    ) -> anyhow::Result<Vec<String>> {
+    ) -> anyhow::Result<Told> {
         let Some(normals) = &self.refined.normals else { anyhow::bail!("no normals were found") };
         let (surface, normals) = normals.surface(&self.refined.mesh);
         let count = self.own.parts.iter().map(|part| part.targets.len()).max().unwrap_or(0);
@@ -81,6 +90,8 @@ impl PutBack<'_> {
             moved_normals.push(found);
         }
         let weights = self.weights(scheme)?;
+        let notes = weights.as_ref().map(Weights::notes).unwrap_or_default();
+        let mut told = Told { notes, left_out: Vec::new() };
         for (number, part) in self.own.parts.iter().enumerate() {
             let channels: Vec<&Channel> = self.decisive(number).collect();
             let is_skinned = part.attributes.iter().any(|name| name == "JOINTS_0");
@@ -124,9 +135,39 @@ impl PutBack<'_> {
                 attributes: &attributes,
                 targets: &targets,
             };
+            let tangents = self.with_tangents(&geometry, (&*asset, mesh, part), &mut told.left_out)?;
+            let geometry = tangents.as_ref().map_or(geometry, WithTangents::geometry);
             asset.replace(mesh, part.primitive, &geometry)?;
         }
-        Ok(weights.map(|weights| weights.notes()).unwrap_or_default())
+        Ok(told)
+    }
+
+    /// The geometry with tangents, for itself and for each target that had some, if the primitive had them; those that there cannot be are
+    /// left out.
+    fn with_tangents(
+        &self,
+        geometry: &Geometry<'_>,
+        (asset, mesh, part): (&Asset, usize, &Part),
+        left_out: &mut Vec<String>,
+    ) -> anyhow::Result<Option<WithTangents>> {
+        let has = |names: &[String]| names.iter().any(|name| name == "TANGENT");
+        let moved: Vec<usize> =
+            (0..part.targets.len()).filter(|&target| has(&part.targets[target])).collect();
+        let found = match has(&part.attributes) {
+            true => {
+                let texture = asset.tangent_coordinates(mesh, part.primitive)?;
+                let found = WithTangents::of(geometry, &texture, &moved);
+                if found.is_none() {
+                    left_out.push(format!("TANGENT (there is no {texture} that it could follow)"));
+                }
+                found
+            }
+            false => None,
+        };
+        if found.is_none() && !moved.is_empty() {
+            left_out.push("TANGENT of morph targets".to_owned());
+        }
+        Ok(found)
     }
 
     /// The weights of the refined mesh's joints, if it has a skin and its vertices know where they are from.
