@@ -4,6 +4,7 @@
 //! 1998: around an irregular vertex the regular parts shrink by half with each level), which is evaluated; at corners the scheme's
 //! limit stencils are. Places that share a piece share its refinement.
 
+use crate::certificate::Sheet;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::{LimitError, SidedNormals};
 use crate::mesh::{Mesh, Sharpness};
@@ -120,6 +121,13 @@ impl<'a> LimitSurface<'a> {
             block.flat_map(|face| over(of_faces[face])).collect::<Vec<_>>()
         });
         blocks.concat()
+    }
+
+    /// The surface over a face, and the rules by which it is refined.
+    pub(crate) fn sheet(&self, face: FaceId) -> (Sheet, &Rules<'a>) {
+        let corners = self.mesh.triangles()[face.index()].map(|v| vector(self.positions[v as usize]));
+        let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
+        (Sheet { patch, corners }, &self.rules)
     }
 
     /// Why what was computed means nothing, if a stencil failed on the way.

@@ -195,6 +195,11 @@ impl NetPart {
         Self::of(net, part, ALL)
     }
 
+    /// The net, whose corners may stand in another order than the part's.
+    pub(crate) fn net(&self) -> &BezierTriangle {
+        &self.net
+    }
+
     /// The deviation that the points of the net tell, without halving it, and a height that the piece attains.
     pub(crate) fn at_a_glance(&self, frame: &TriangleFrame, open: [bool; 3]) -> (Deviation, f64) {
         DeviationBound { frame, open }.net(&self.net, self.borders)

@@ -1,5 +1,7 @@
 //! The parts of a patch's domain that triangles stand for.
 
+use crate::patch::child_corners;
+
 /// Part of a patch's domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SubTriangle {
@@ -23,4 +25,31 @@ pub(crate) enum SubTriangle {
         /// of the edge before.
         at_end: bool,
     },
+}
+
+impl SubTriangle {
+    /// All parts.
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        let edges = || (0..3).flat_map(|edge| [(edge, false), (edge, true)]);
+        let halves = edges().map(|(edge, second)| Self::Half { edge, second });
+        let quarters = edges().map(|(edge, at_end)| Self::Quarter { edge, at_end });
+        core::iter::once(Self::Whole).chain((0..4).map(Self::Child)).chain(halves).chain(quarters)
+    }
+
+    /// What is at its corners, given what is at those of the domain and in the middles of its edges.
+    pub(crate) fn corners<T: Copy>(self, corners: [T; 3], middles: [T; 3]) -> [T; 3] {
+        match self {
+            Self::Whole => corners,
+            Self::Child(child) => child_corners(corners, middles, child),
+            Self::Half { edge, second } => {
+                let mut own = corners;
+                own[(edge + usize::from(!second)) % 3] = middles[edge];
+                own
+            }
+            Self::Quarter { edge, at_end } => {
+                let from = (edge + usize::from(at_end)) % 3;
+                [corners[from], middles[(edge + 1) % 3], middles[(edge + 2) % 3]]
+            }
+        }
+    }
 }

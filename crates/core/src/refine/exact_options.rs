@@ -1,9 +1,10 @@
 //! Goals and caps of exact refinement.
 
 use super::RefineError;
+use super::attribute_goal::AttributeGoal;
 use super::exact_result::ExactStop;
 use crate::criterion::{Camera, View};
-use crate::mesh::MeshError;
+use crate::mesh::{Mesh, MeshError};
 
 /// What exact refinement is to reach, and what it must not exceed.
 ///
@@ -49,6 +50,9 @@ pub struct ExactOptions {
     /// region's rim encloses is taken for the surface: what people mean, and what [`Exact::unfolded`](super::Exact::unfolded)
     /// counts. Else it is the scheme's. Default: no.
     pub unfold: bool,
+    /// What is to be met beside the shape ([`AttributeGoal`]): with goals on quality, without a number of triangles, [`Self::balance`] and
+    /// [`Self::optimize`]; flat regions follow the hierarchy then. Default: none.
+    pub attributes: Vec<AttributeGoal>,
     /// Levels at most below the control faces: up to 30. Default: 24.
     pub max_levels: usize,
     /// Triangles at most, as a cap rather than a goal: reaching it is a failure to meet the others. Default: 50
@@ -85,6 +89,7 @@ impl Default for ExactOptions {
             origins: true,
             flat_regions: true,
             unfold: false,
+            attributes: Vec::new(),
             max_levels: USUAL_LEVELS,
             max_triangles: Some(USUAL_TRIANGLES),
             max_memory: None,
@@ -159,6 +164,12 @@ impl ExactOptions {
         self
     }
 
+    /// Sets [`Self::attributes`].
+    pub fn attributes(mut self, goals: Vec<AttributeGoal>) -> Self {
+        self.attributes = goals;
+        self
+    }
+
     /// Sets [`Self::max_levels`].
     pub fn max_levels(mut self, levels: usize) -> Self {
         self.max_levels = levels;
@@ -190,7 +201,7 @@ impl ExactOptions {
     }
 
     /// Refuses goals that are no positive numbers, and having none.
-    pub(super) fn check(&self) -> Result<(), RefineError> {
+    pub(super) fn check(&self, control: &Mesh) -> Result<(), RefineError> {
         let bad = |name, value, expected| Err(MeshError::BadOption { name, value, expected }.into());
         if let Some(tolerance) = self.tolerance
             && !(tolerance > 0.0 && tolerance.is_finite())
@@ -221,6 +232,11 @@ impl ExactOptions {
             return bad("optimisation", 1.0, expected);
         }
         let quality = self.tolerance.is_some() || self.angle.is_some() || self.pixels.is_some();
+        self.attributes.iter().try_for_each(|goal| goal.check(control.face_count()))?;
+        if !self.attributes.is_empty() && (self.optimize || self.balance || self.triangles.is_some()) {
+            let expected = "none with a number of triangles, balance or optimisation";
+            return bad("number of goals for attributes", self.attributes.len() as f64, expected);
+        }
         if !quality && self.triangles.is_none() {
             return bad("number of goals", 0.0, "a tolerance, an angle, pixels or a number of triangles");
         }

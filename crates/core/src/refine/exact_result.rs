@@ -101,6 +101,9 @@ pub struct Exact {
     /// The greatest distance between mesh and limit surface as the cameras see it, in pixels at most: each point of one
     /// that is in a picture has a point of the other that near. `None` without cameras; infinite where it is not bounded.
     pub pixels: Option<f64>,
+    /// By goal of [`ExactOptions::attributes`](super::ExactOptions::attributes), how far values or surfaces are from what the triangles
+    /// hold at most: proven where [`ErrorBounds::certified`] says so of the distance.
+    pub attribute_bounds: Vec<f64>,
     /// Triangles whose normals leave the cone of [`ExactOptions::angle`](super::ExactOptions::angle); 0 without that goal, or where it is met.
     pub open_cones: usize,
     /// How many times over the worst triangle fails the goals on quality: at most 1 where all are met; 0 without any.

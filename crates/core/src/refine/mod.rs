@@ -3,6 +3,7 @@
 //! Takes a control mesh, a scheme and what decides (levels, a criterion); gives a finer mesh and a report.
 
 mod adaptive;
+mod attribute_goal;
 mod corner_sources;
 mod driver;
 mod exact;
@@ -19,6 +20,7 @@ mod stepwise;
 mod tags;
 mod uniform;
 
+pub use attribute_goal::AttributeGoal;
 pub use exact::{exact, exact_estimate, exact_estimate_observed, exact_observed, is_certified};
 pub use exact_options::ExactOptions;
 pub use exact_result::{ErrorBounds, Estimate, Exact, ExactStop, Origin};

@@ -109,6 +109,7 @@ pub(super) fn simplified(
         side_origins,
         error,
         pixels: None,
+        attribute_bounds: Vec::new(),
         open_cones: 0,
         worst: options.tolerance.map_or(0.0, |tolerance| error.upper / tolerance),
         stop,

@@ -7,6 +7,7 @@
 mod allowances;
 mod even_parts;
 
+use super::demands::Demands;
 use super::flat::FlatRegions;
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
 use core::sync::atomic::{AtomicUsize, Ordering};
@@ -48,6 +49,8 @@ pub(super) struct Control<'a> {
     pub(super) flat: FlatRegions,
     /// What is asked; `None` where nothing but distances and numbers of triangles count.
     pub(super) criteria: Option<Criteria>,
+    /// What is divided in any case.
+    pub(super) demands: &'a Demands,
 }
 
 impl Control<'_> {
@@ -330,7 +333,8 @@ impl<'a> Decider<'a> {
             return LEAF;
         }
         let judge = self.judge;
-        if place.level >= self.max_levels || judge.may_pass(&corners, &middles, place.level) {
+        let may_stay = !self.control.demands.divides(place);
+        if place.level >= self.max_levels || may_stay && judge.may_pass(&corners, &middles, place.level) {
             let mut pieces = Pieces::with_refined(patch, refined);
             let part = (place.level, SubTriangle::Whole);
             let verdict = judge.general(&mut pieces, part, &corners, open, &self.allowance);
@@ -354,8 +358,11 @@ impl<'a> Decider<'a> {
         place: Place,
     ) -> u32 {
         let verdict = self.judge.at_a_glance(net, place.level, &corners, open, &self.allowance);
+        let may_stay = !self.control.demands.divides(place);
         match verdict {
-            Some(verdict) if !verdict.fails() || place.level >= self.max_levels => self.leaf(place, &verdict),
+            Some(verdict) if may_stay && !verdict.fails() || place.level >= self.max_levels => {
+                self.leaf(place, &verdict)
+            }
             _ => self.part(&Ground::of(net), Spot::WHOLE, corners, open, (place, self.judge.has_rows())),
         }
     }
@@ -373,8 +380,8 @@ impl<'a> Decider<'a> {
             return LEAF;
         }
         let mut has_rows = has_rows;
-        let mut surely_fails = false;
-        if has_rows && open == [false; 3] {
+        let mut surely_fails = self.control.demands.divides(place);
+        if has_rows && !surely_fails && open == [false; 3] {
             match self.rows(ground, spot, place) {
                 AtOnce::Decided(word) => return word,
                 AtOnce::NotHere { fails, may_be_below } => (surely_fails, has_rows) = (fails, may_be_below),

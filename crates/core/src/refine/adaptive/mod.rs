@@ -26,6 +26,7 @@ mod chains;
 mod changes;
 mod close;
 mod decide;
+mod demands;
 mod emit;
 mod emitted;
 mod flat;
@@ -45,6 +46,7 @@ mod trial;
 mod walk;
 
 use super::RefineError;
+use super::attribute_goal::AttributeGoal;
 use super::exact_options::ExactOptions;
 use super::exact_result::{Exact, ExactStop};
 use super::junctions::join_copies;
@@ -59,6 +61,7 @@ use balance::{Pending, balance};
 use chains::{Chains, first_of};
 use close::close;
 use decide::{Control, decide};
+use demands::{Demands, Functions};
 use emit::{Emission, Extend};
 use flat::FlatRegions;
 use judge::Goal;
@@ -89,9 +92,47 @@ pub(super) fn adaptive(
     options: &ExactOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
+    let functions = Functions::of(&options.attributes, scheme)?;
+    if functions.is_empty() {
+        return once(mesh, scheme, (options, &Demands::default()), observer);
+    }
+    let (most, cap) = options.budget();
+    let room = most.saturating_sub(mesh.face_count()) / ADDED;
+    let watched = (mesh.face_count(), options.max_levels as u32, room);
+    let demands = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
+    let fits = demands.is_some();
+    let mut demands = demands.unwrap_or_default();
+    loop {
+        let mut found = once(mesh, scheme, (options, &demands), observer)?;
+        let held = functions.held(mesh, &found, &SharedWatch::new(observer, Stage::Bounding))?;
+        let is_met = functions.are_met(&held.bounds);
+        found.attribute_bounds = held.bounds;
+        if found.stop != ExactStop::Met || is_met {
+            return Ok(found);
+        }
+        let deepest = |place: &Place| place.level as usize >= options.max_levels;
+        let mut is_new = false;
+        for place in held.failing.into_iter().filter(|place| !deepest(place)) {
+            is_new |= demands.add(place);
+        }
+        // Without room for them, or where nothing may be divided any further, that is how far it comes.
+        if !fits || !is_new || demands.len() > room {
+            found.stop = if fits && !is_new { ExactStop::LevelCap } else { cap };
+            return Ok(found);
+        }
+    }
+}
+
+/// Refines with some nodes divided in any case.
+fn once(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    (options, demands): (&ExactOptions, &Demands),
+    observer: &mut Observer<'_>,
+) -> Result<Exact, RefineError> {
     let (most, cap) = options.budget();
     let most = most.max(mesh.face_count());
-    let found = with_engine(mesh, scheme, options, observer, |engine| {
+    let found = with_engine(mesh, scheme, (options, demands), observer, |engine| {
         let floor = engine.floor(options.tolerance);
         if !options.balance {
             return engine.finest(floor, (most, cap), options);
@@ -106,7 +147,7 @@ pub(super) fn adaptive(
     })?;
     // Flat regions whose rims cross, or that share edges, keep more triangles than plans counted.
     if options.flat_regions && found.mesh.face_count() > most {
-        return adaptive(mesh, scheme, &options.clone().flat_regions(false), observer);
+        return once(mesh, scheme, (&options.clone().flat_regions(false), demands), observer);
     }
     Ok(found)
 }
@@ -120,7 +161,13 @@ pub(super) fn count(
     times: f64,
     observer: &mut Observer<'_>,
 ) -> Result<usize, RefineError> {
-    with_engine(mesh, scheme, options, observer, |engine| {
+    let coarser = |goal: &AttributeGoal| AttributeGoal { tolerance: times * goal.tolerance, ..goal.clone() };
+    let goals: Vec<AttributeGoal> = options.attributes.iter().map(coarser).collect();
+    let functions = Functions::of(&goals, scheme)?;
+    let watched = (mesh.face_count(), options.max_levels as u32, usize::MAX);
+    let demands = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
+    let demands = demands.unwrap_or_default();
+    with_engine(mesh, scheme, (options, &demands), observer, |engine| {
         let limit = engine.floor(options.tolerance.map(|tolerance| times * tolerance));
         let limit = if engine.control.criteria.is_some() { times } else { limit };
         let plan = if engine.is_balanced {
@@ -135,7 +182,7 @@ pub(super) fn count(
 fn with_engine<T>(
     mesh: &Mesh,
     scheme: &dyn Scheme,
-    options: &ExactOptions,
+    (options, demands): (&ExactOptions, &Demands),
     observer: &mut Observer<'_>,
     run: impl FnOnce(&Engine<'_>) -> Result<T, RefineError>,
 ) -> Result<T, RefineError> {
@@ -162,8 +209,9 @@ fn with_engine<T>(
         rules: &rules,
         flat: FlatRegions::default(),
         criteria: None,
+        demands,
     };
-    if options.flat_regions && !options.balance {
+    if options.flat_regions && !options.balance && options.attributes.is_empty() {
         control.flat = FlatRegions::of(&control, &edges, options, &watch)?;
     }
     let rounding = probe::rounding(mesh, options.max_levels, &watch)? + 2.0 * control.flat.off_planes();

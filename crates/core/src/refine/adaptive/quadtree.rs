@@ -49,6 +49,11 @@ impl Place {
         Self { face, level: 0, path: 0 }
     }
 
+    /// The node that it is a child of.
+    pub(super) fn parent(self) -> Option<Self> {
+        Some(Self { level: self.level.checked_sub(1)?, path: self.path >> 2, ..self })
+    }
+
     pub(super) fn child(self, child: usize) -> Self {
         Self { level: self.level + 1, path: self.path << 2 | child as u64, ..self }
     }

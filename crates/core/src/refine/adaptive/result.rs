@@ -110,6 +110,7 @@ impl Outcome {
             side_origins: Vec::new(),
             error,
             pixels,
+            attribute_bounds: Vec::new(),
             open_cones: 0,
             refused: 0,
             worst,

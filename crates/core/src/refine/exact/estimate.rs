@@ -56,7 +56,7 @@ pub fn exact_estimate_observed(
     options: &ExactOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Estimate, RefineError> {
-    options.check()?;
+    options.check(control)?;
     if let Some((scaled, options, _)) = scale::scaled(control, options)? {
         return exact_estimate_observed(&scaled, scheme, &options, observer);
     }

@@ -36,7 +36,7 @@ pub fn exact_observed(
     options: &ExactOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
-    options.check()?;
+    options.check(control)?;
     if let Some((scaled, options, factor)) = scale::scaled(control, options)? {
         return scale::result(exact_observed(&scaled, scheme, &options, observer)?, factor);
     }

@@ -1,0 +1,155 @@
+//! How far a function over a piece is from its linear interpolation: values at the same places, not surfaces.
+//!
+//! Over a regular piece function and interpolation both are Bézier nets, the latter's points being linear in their indices; so is their
+//! difference, whose points' lengths bound its own (Farin, "Triangular Bernstein–Bézier patches", 1986). Around an irregular vertex
+//! the piece is refined, and what is left at the vertex is bounded by its control points: two convex hulls are nowhere farther
+//! from each other than two of their points.
+
+use super::bounds::NetPart;
+use super::greater;
+use super::sub_triangle::SubTriangle;
+use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::{Patch, Rules, child_corners};
+use crate::vector::DVec3;
+
+/// Refinements at most: what is left has shrunk below rounding then.
+const DEEPEST: usize = 40;
+
+/// Levels whose vertices are compared where nothing can be certified.
+const SAMPLED_LEVELS: usize = 3;
+
+/// Halvings of a net whose bound is too great.
+const HALVINGS: usize = 3;
+
+/// What is left at an irregular vertex is good enough at this part of what is asked.
+const NEGLIGIBLE: f64 = 0.125;
+
+/// A function over a piece of the control mesh, and its values at the corners.
+#[derive(Clone, Debug)]
+pub(crate) struct Sheet {
+    pub(crate) patch: Patch,
+    pub(crate) corners: [DVec3; 3],
+}
+
+impl Sheet {
+    /// Those over the four parts.
+    pub(crate) fn children(&self, rules: &Rules<'_>) -> [Self; 4] {
+        let refined = self.patch.refined(rules);
+        let middles = [0, 1, 2].map(|edge| refined.middle(edge).position);
+        [0, 1, 2, 3].map(|child| {
+            let corners = child_corners(self.corners, middles, child);
+            Self { patch: refined.part(child), corners }
+        })
+    }
+
+    /// The function's values at the corners of a part, in its order.
+    pub(crate) fn corners_of(&self, part: SubTriangle, rules: &Rules<'_>) -> [DVec3; 3] {
+        if part == SubTriangle::Whole {
+            return self.corners;
+        }
+        let refined = self.patch.refined(rules);
+        part.corners(self.corners, [0, 1, 2].map(|edge| refined.middle(edge).position))
+    }
+
+    /// A bound of how far the function is from the linear one with its values at the corners of a part, anywhere there; tight only
+    /// above `target`. Of schemes outside Loop's family an estimate from samples.
+    pub(crate) fn from_linear(&self, part: SubTriangle, target: f64, rules: &Rules<'_>) -> f64 {
+        let mut search = Search { rules, target, found: 0.0 };
+        match (&self.patch, part) {
+            (_, SubTriangle::Whole) => search.patch(&self.patch, self.corners, 0),
+            (_, SubTriangle::Child(child)) => {
+                let refined = self.patch.refined(rules);
+                search.patch(&refined.part(child), self.corners_of(part, rules), 1);
+            }
+            (Patch::Regular(points), _) => {
+                let part = NetPart::own(&BezierTriangle::of(points), part);
+                search.net(part.net(), part.net().corners(), HALVINGS);
+            }
+            // Both linear functions differ by no more than at the corners.
+            _ => {
+                search.patch(&self.patch, self.corners, 0);
+                let linear = part.corners(self.corners, middles(self.corners));
+                let own = self.corners_of(part, rules);
+                let apart = (0..3).map(|i| own[i].distance(linear[i])).fold(0.0, greater);
+                search.found += apart;
+            }
+        }
+        search.found
+    }
+}
+
+struct Search<'a> {
+    rules: &'a Rules<'a>,
+    target: f64,
+    found: f64,
+}
+
+impl Search<'_> {
+    /// Less than this adds nothing, or is good enough.
+    fn aim(&self) -> f64 {
+        greater(self.found, self.target)
+    }
+
+    fn patch(&mut self, patch: &Patch, linear: [DVec3; 3], depth: usize) {
+        match patch {
+            Patch::Regular(points) => return self.net(&BezierTriangle::of(points), linear, HALVINGS),
+            Patch::Mesh(_) => return self.samples(patch, linear, SAMPLED_LEVELS),
+            _ => {}
+        }
+        let mut farthest = 0.0;
+        patch.for_each_hull_point(|point| {
+            let apart = linear.iter().map(|corner| point.distance(*corner)).fold(0.0, greater);
+            farthest = greater(farthest, apart);
+        });
+        if depth >= DEEPEST || farthest <= greater(self.found, NEGLIGIBLE * self.target) {
+            self.found = greater(self.found, farthest);
+            return;
+        }
+        let refined = patch.refined(self.rules);
+        for regular in [true, false] {
+            for child in (0..4).filter(|&child| refined.is_regular(child) == regular) {
+                self.patch(&refined.part(child), child_corners(linear, middles(linear), child), depth + 1);
+            }
+        }
+    }
+
+    fn net(&mut self, net: &BezierTriangle, linear: [DVec3; 3], halvings: usize) {
+        let [a, b, c] = linear;
+        let (mut at, mut apart) = (0, 0.0);
+        for k in 0..5 {
+            for j in 0..5 - k {
+                let [i, j, k] = [4 - j - k, j, k].map(|index| 0.25 * index as f64);
+                apart = greater(apart, net.0[at].distance(i * a + j * b + k * c));
+                at += 1;
+            }
+        }
+        if halvings == 0 || apart <= self.aim() {
+            self.found = greater(self.found, apart);
+            return;
+        }
+        let (edge, next) = (halvings % 3, (halvings + 1) % 3);
+        let middle = middles(linear)[edge];
+        for (half, lost) in net.halves(edge).iter().zip([next, edge]) {
+            let mut own = linear;
+            own[lost] = middle;
+            self.net(half, own, halvings - 1);
+        }
+    }
+
+    fn samples(&mut self, patch: &Patch, linear: [DVec3; 3], levels: usize) {
+        let refined = patch.refined(self.rules);
+        for (edge, middle) in middles(linear).into_iter().enumerate() {
+            self.found = greater(self.found, refined.middle(edge).position.distance(middle));
+        }
+        if levels > 1 {
+            for child in 0..4 {
+                self.samples(&refined.part(child), child_corners(linear, middles(linear), child), levels - 1);
+            }
+        }
+    }
+}
+
+/// A linear function in the middles of the edges.
+fn middles([a, b, c]: [DVec3; 3]) -> [DVec3; 3] {
+    [a + b, b + c, c + a].map(|sum| 0.5 * sum)
+}

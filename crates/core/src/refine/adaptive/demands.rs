@@ -1,0 +1,328 @@
+//! Nodes that are divided whatever their own triangles come to: for the sake of what else the triangles are to hold
+//! ([`AttributeGoal`]).
+//!
+//! Takes the goals; gives, before anything is refined, the nodes over which the linear function is too far off, which depends on
+//! nothing but their places. Triangles that close gaps are looked at once they are emitted: a leaf with one that fails is divided,
+//! too.
+
+use std::collections::HashSet;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::quadtree::Place;
+use crate::certificate::{Effort, Pieces, Sheet, SubTriangle, TriangleFrame, exceeds};
+use crate::index::FaceId;
+use crate::limit_surface::LimitSurface;
+use crate::mesh::Mesh;
+use crate::parallel::IsStopped;
+use crate::patch::Rules;
+use crate::progress::SharedWatch;
+use crate::refine::attribute_goal::{AttributeGoal, GoalKind};
+use crate::refine::exact_result::Exact;
+use crate::refine::{RefineError, Traced};
+use crate::scheme::Scheme;
+
+/// Control faces that one call takes together.
+const BLOCK: usize = 64;
+
+/// Halvings of a net where surfaces are compared.
+const HALVINGS: usize = 2;
+
+/// The chord of angles at which neighbours do not help: none that counts is as great.
+const ALONE: f64 = 4.0;
+
+/// Nodes that are divided.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Demands {
+    divided: HashSet<Place>,
+}
+
+impl Demands {
+    /// Whether a node is divided.
+    #[inline]
+    pub(super) fn divides(&self, place: Place) -> bool {
+        !self.divided.is_empty() && self.divided.contains(&place)
+    }
+
+    /// Adds a node and all that hold it; says whether it is new.
+    pub(super) fn add(&mut self, place: Place) -> bool {
+        let is_new = self.divided.insert(place);
+        let mut above = place;
+        while let Some(parent) = above.parent()
+            && self.divided.insert(parent)
+        {
+            above = parent;
+        }
+        is_new
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.divided.len()
+    }
+}
+
+/// The functions that goals are about.
+pub(super) struct Functions<'a> {
+    goals: Vec<(&'a AttributeGoal, Vec<LimitSurface<'a>>)>,
+}
+
+/// What emitted triangles hold of the functions.
+pub(super) struct Held {
+    /// By goal, the greatest bound.
+    pub(super) bounds: Vec<f64>,
+    /// Leaves with triangles that fail.
+    pub(super) failing: Vec<Place>,
+}
+
+/// A triangle, and the places of its corners in the node at hand.
+#[derive(Clone, Copy)]
+struct Standing {
+    corners: [[f64; 3]; 3],
+}
+
+impl<'a> Functions<'a> {
+    /// # Errors
+    /// The scheme has no limit at the shape of some ring.
+    pub(super) fn of(goals: &'a [AttributeGoal], scheme: &'a dyn Scheme) -> Result<Self, RefineError> {
+        let of_goal = |goal: &'a AttributeGoal| {
+            let surfaces = goal.meshes.iter().map(|mesh| LimitSurface::without_normals(mesh, scheme));
+            Ok::<_, RefineError>((goal, surfaces.collect::<Result<_, _>>()?))
+        };
+        Ok(Self { goals: goals.iter().map(of_goal).collect::<Result<_, _>>()? })
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.goals.is_empty()
+    }
+
+    /// The nodes over which a function is too far from linear; `None` if there are more than `most`.
+    pub(super) fn demands(
+        &self,
+        (faces, max_levels, most): (usize, u32, usize),
+        watch: &SharedWatch<'_>,
+    ) -> Result<Option<Demands>, RefineError> {
+        let count = AtomicUsize::new(0);
+        let blocks = watch.long_pieces(faces, BLOCK, |block, is_stopped| {
+            let mut found = Vec::new();
+            let search = Dividing { functions: self, max_levels, most, count: &count, is_stopped };
+            for face in block {
+                search.node(Place::root(face as u32), &self.sheets(face), &mut found);
+            }
+            found
+        })?;
+        self.check()?;
+        if count.load(Ordering::Relaxed) > most {
+            return Ok(None);
+        }
+        let mut divided = HashSet::with_capacity(count.load(Ordering::Relaxed));
+        watch.each(blocks.into_iter().flatten(), |place| {
+            divided.insert(place);
+        })?;
+        Ok(Some(Demands { divided }))
+    }
+
+    /// What the triangles hold of the functions.
+    pub(super) fn held(
+        &self,
+        control: &Mesh,
+        found: &Exact,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Held, RefineError> {
+        let of_faces: Vec<&[u32]> = found.parents.chunk_by(|a, b| a == b).collect();
+        let mut starts = Vec::with_capacity(of_faces.len());
+        let mut next = 0;
+        for own in &of_faces {
+            starts.push(next);
+            next += own.len();
+        }
+        let blocks = watch.long_pieces(of_faces.len(), BLOCK, |block, is_stopped| {
+            let mut held = Held { bounds: vec![0.0; self.goals.len()], failing: Vec::new() };
+            for at in block {
+                let (face, first) = (of_faces[at][0], starts[at]);
+                let standing = (first..first + of_faces[at].len()).map(|t| standing(control, found, t));
+                let standing: Option<Vec<Standing>> = standing.collect();
+                match standing {
+                    Some(standing) => {
+                        let root = Place::root(face);
+                        self.look(root, &self.sheets(face as usize), standing, (&mut held, is_stopped));
+                    }
+                    None => held.bounds.fill(f64::INFINITY),
+                }
+            }
+            held
+        })?;
+        self.check()?;
+        let mut held = Held { bounds: vec![0.0; self.goals.len()], failing: Vec::new() };
+        for block in blocks {
+            held.bounds.iter_mut().zip(block.bounds).for_each(|(all, own)| *all = all.max(own));
+            held.failing.extend(block.failing);
+        }
+        Ok(held)
+    }
+
+    /// Whether all goals are met.
+    pub(super) fn are_met(&self, bounds: &[f64]) -> bool {
+        self.goals.iter().zip(bounds).all(|((goal, _), &bound)| !exceeds(bound, goal.tolerance))
+    }
+
+    fn sheets(&self, face: usize) -> Vec<Vec<(Sheet, &Rules<'a>)>> {
+        let face = FaceId(face as u32);
+        let of_goal = |(_, surfaces): &'_ (_, Vec<LimitSurface<'a>>)| surfaces.len();
+        debug_assert!(self.goals.iter().map(of_goal).all(|count| count > 0));
+        self.goals
+            .iter()
+            .map(|(_, surfaces)| surfaces.iter().map(|surface| surface.sheet(face)).collect())
+            .collect()
+    }
+
+    /// A stencil that failed on the way.
+    fn check(&self) -> Result<(), RefineError> {
+        let mut failures =
+            self.goals.iter().flat_map(|(_, surfaces)| surfaces).filter_map(LimitSurface::failure);
+        failures.next().map_or(Ok(()), |failure| Err(failure.clone().into()))
+    }
+
+    /// Looks at triangles in a node: those that are it, or close it, and others further down.
+    fn look(
+        &self,
+        place: Place,
+        sheets: &[Vec<(Sheet, &Rules<'a>)>],
+        standing: Vec<Standing>,
+        (held, is_stopped): (&mut Held, &IsStopped<'_>),
+    ) {
+        let mut below: [Vec<Standing>; 4] = Default::default();
+        for own in standing {
+            if let Some(part) = own.part() {
+                let mut fails = false;
+                for (number, (goal, _)) in self.goals.iter().enumerate() {
+                    let bound = bound(goal, &sheets[number], part);
+                    held.bounds[number] = held.bounds[number].max(bound);
+                    fails |= exceeds(bound, goal.tolerance);
+                }
+                if fails && held.failing.last() != Some(&place) {
+                    held.failing.push(place);
+                }
+            } else if let Some(child) = own.child().filter(|_| place.level < super::quadtree::MOST_LEVELS) {
+                below[child].push(own.in_child(child));
+            } else {
+                held.bounds.fill(f64::INFINITY);
+            }
+        }
+        if below.iter().all(Vec::is_empty) || is_stopped() {
+            return;
+        }
+        let children = children(sheets);
+        for (child, (standing, sheets)) in below.into_iter().zip(children).enumerate() {
+            if !standing.is_empty() {
+                self.look(place.child(child), &sheets, standing, (held, is_stopped));
+            }
+        }
+    }
+}
+
+/// The functions over the four parts of a node.
+fn children<'r, 'a>(sheets: &[Vec<(Sheet, &'r Rules<'a>)>]) -> [Vec<Vec<(Sheet, &'r Rules<'a>)>>; 4] {
+    let mut parts: [Vec<Vec<(Sheet, &'r Rules<'a>)>>; 4] = Default::default();
+    for of_goal in sheets {
+        parts.iter_mut().for_each(|part| part.push(Vec::with_capacity(of_goal.len())));
+        for (sheet, rules) in of_goal {
+            for (part, own) in parts.iter_mut().zip(sheet.children(rules)) {
+                part.last_mut().into_iter().for_each(|list| list.push((own.clone(), *rules)));
+            }
+        }
+    }
+    parts
+}
+
+/// How far a goal's function is from what a triangle over a part of a node holds.
+fn bound(goal: &AttributeGoal, sheets: &[(Sheet, &Rules<'_>)], part: SubTriangle) -> f64 {
+    match goal.kind {
+        GoalKind::Values => {
+            let target = goal.tolerance / (sheets.len() as f64).sqrt();
+            let squares = sheets.iter().map(|(sheet, rules)| sheet.from_linear(part, target, rules).powi(2));
+            squares.sum::<f64>().sqrt()
+        }
+        GoalKind::Surface => {
+            let apart = sheets.iter().map(|(sheet, rules)| {
+                let frame = TriangleFrame::new(sheet.corners_of(part, rules));
+                let effort = Effort {
+                    target: goal.tolerance,
+                    halvings: HALVINGS,
+                    open: [false; 3],
+                    chord: ALONE,
+                    slopes: [0.0; 3],
+                    gives_up: false,
+                    least_chord: None,
+                };
+                Pieces::of(&sheet.patch).deviation(part, &frame, rules, effort).own
+            });
+            apart.fold(0.0, |most, own| if exceeds(own, most) { own } else { most })
+        }
+    }
+}
+
+/// Divides nodes as long as a function is too far from linear.
+struct Dividing<'s, 'a> {
+    functions: &'s Functions<'a>,
+    max_levels: u32,
+    most: usize,
+    count: &'s AtomicUsize,
+    is_stopped: &'s IsStopped<'s>,
+}
+
+impl Dividing<'_, '_> {
+    fn node(&self, place: Place, sheets: &[Vec<(Sheet, &Rules<'_>)>], found: &mut Vec<Place>) {
+        if place.level >= self.max_levels || (self.is_stopped)() {
+            return;
+        }
+        let fails = |((goal, _), sheets): (&(&AttributeGoal, _), &Vec<(Sheet, &Rules<'_>)>)| {
+            exceeds(bound(goal, sheets, SubTriangle::Whole), goal.tolerance)
+        };
+        if !self.functions.goals.iter().zip(sheets).any(fails)
+            || self.count.fetch_add(1, Ordering::Relaxed) >= self.most
+        {
+            return;
+        }
+        found.push(place);
+        for (child, sheets) in children(sheets).into_iter().enumerate() {
+            self.node(place.child(child), &sheets, found);
+        }
+    }
+}
+
+/// An emitted triangle in its control face; `None` if it is not known to be in one.
+fn standing(control: &Mesh, found: &Exact, triangle: usize) -> Option<Standing> {
+    let face = *found.parents.get(triangle)?;
+    let mut corners = [[0.0; 3]; 3];
+    for (corner, &vertex) in corners.iter_mut().zip(&found.mesh().triangles()[triangle]) {
+        *corner = found.origins.get(vertex as usize)?.in_face(control.triangles(), face)?.barycentric;
+    }
+    Some(Standing { corners })
+}
+
+impl Standing {
+    /// The part of the node that the triangle is, if it is none of its children's.
+    fn part(&self) -> Option<SubTriangle> {
+        const CORNERS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        const MIDDLES: [[f64; 3]; 3] = [[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
+        let is_own = |part: &SubTriangle| {
+            let corners = part.corners(CORNERS, MIDDLES);
+            (0..3).any(|turn| (0..3).all(|i| self.corners[i] == corners[(i + turn) % 3]))
+        };
+        SubTriangle::all().filter(|part| !matches!(part, SubTriangle::Child(_))).find(is_own)
+    }
+
+    /// The child that it is in.
+    fn child(&self) -> Option<usize> {
+        let near = (0..3).find(|&child| self.corners.iter().all(|weights| weights[child] >= 0.5));
+        let is_inner = || self.corners.iter().flatten().all(|&weight| weight <= 0.5);
+        near.or_else(|| is_inner().then_some(3))
+    }
+
+    fn in_child(&self, child: usize) -> Self {
+        let own = |weights: [f64; 3]| match child {
+            3 => weights.map(|weight| 1.0 - 2.0 * weight),
+            _ => core::array::from_fn(|i| 2.0 * weights[i] - f64::from(i == child)),
+        };
+        Self { corners: self.corners.map(own) }
+    }
+}
