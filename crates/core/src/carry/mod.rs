@@ -17,7 +17,7 @@ use std::collections::HashMap;
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::mesh::{Channel, ChannelError, Domain, Interpolation, Mesh, SeamRule};
-use crate::refine::{Origin, Traced};
+use crate::refine::{AttributeGoal, Origin, Traced};
 use crate::scheme::Scheme;
 use places::Places;
 use seams::value_mesh;
@@ -78,14 +78,7 @@ fn one(
         let indices = places.parents.iter().map(|&face| channel.indices[face as usize]).collect();
         return Ok(Channel { indices, ..channel.clone() });
     }
-    let by_corner = match channel.domain {
-        Domain::Vertex => {
-            let vertices = control.triangles().as_flattened();
-            let indices = vertices.iter().map(|&vertex| channel.indices[vertex as usize]).collect();
-            Channel { indices, domain: Domain::Corner, ..channel.clone() }
-        }
-        _ => channel.clone(),
-    };
+    let by_corner = by_corner(channel, control);
     match by_corner.interpolation {
         Interpolation::Nearest => nearest(by_corner, places),
         Interpolation::Linear => {
@@ -98,6 +91,42 @@ fn one(
             let values = smooth(&by_corner, rule, control, scheme, &wanted)?;
             Ok(Channel { indices, values, ..by_corner })
         }
+    }
+}
+
+/// The goal that the triangles' own values of a channel, linear between their corners, be within a tolerance of it everywhere
+/// ([`ExactOptions::attributes`](crate::refine::ExactOptions::attributes)); `None` for channels that are not smooth: linear ones are met by
+/// any triangles, and names have no distance.
+///
+/// # Errors
+/// The channel does not fit the mesh, or has more fans than can be numbered.
+pub fn goal(
+    channel: &Channel,
+    control: &Mesh,
+    tolerance: f64,
+) -> Result<Option<AttributeGoal>, ChannelError> {
+    let corners = control.topology().half_edge_count();
+    channel.check(control.vertex_count(), corners, control.face_count())?;
+    let Interpolation::Smooth(rule) = channel.interpolation else { return Ok(None) };
+    if channel.domain == Domain::Face {
+        return Ok(None);
+    }
+    let by_corner = by_corner(channel, control);
+    let values = ValueMeshes::of(&by_corner, rule, control)?;
+    let meshes =
+        (0..channel.arity).step_by(TOGETHER).map(|first| values.mesh(first)).collect::<Result<_, _>>()?;
+    Ok(Some(AttributeGoal::values(meshes, tolerance)))
+}
+
+/// A channel of vertices as one of corners.
+fn by_corner(channel: &Channel, control: &Mesh) -> Channel {
+    match channel.domain {
+        Domain::Vertex => {
+            let vertices = control.triangles().as_flattened();
+            let indices = vertices.iter().map(|&vertex| channel.indices[vertex as usize]).collect();
+            Channel { indices, domain: Domain::Corner, ..channel.clone() }
+        }
+        _ => channel.clone(),
     }
 }
 
@@ -163,6 +192,40 @@ fn linear(channel: &Channel, wanted: &[Origin]) -> Vec<f64> {
     values
 }
 
+/// The mesh of a channel's values, with some of their numbers as its positions.
+struct ValueMeshes<'a> {
+    channel: &'a Channel,
+    mesh: Mesh,
+    /// By vertex, the channel's value.
+    values: Vec<u32>,
+}
+
+impl<'a> ValueMeshes<'a> {
+    fn of(channel: &'a Channel, rule: SeamRule, control: &Mesh) -> Result<Self, ChannelError> {
+        let seams::ValueMesh { mesh, values } =
+            value_mesh(control, channel, rule).map_err(|error| no_limit(channel, error))?;
+        Ok(Self { channel, mesh, values })
+    }
+
+    /// The one whose positions are the numbers from `first` on, and zeros where there are no more.
+    fn mesh(&self, first: usize) -> Result<Mesh, ChannelError> {
+        let last = self.channel.arity.min(first + TOGETHER);
+        let coordinates = |&value: &u32| {
+            let mut position = [0.0; TOGETHER];
+            let start = value as usize * self.channel.arity;
+            let own = &self.channel.values[start + first..start + last];
+            position.iter_mut().zip(own).for_each(|(x, &value)| *x = value);
+            position
+        };
+        let positions = self.values.iter().map(coordinates).collect();
+        self.mesh.clone().with_positions(positions).map_err(|error| no_limit(self.channel, error))
+    }
+}
+
+fn no_limit(channel: &Channel, why: impl ToString) -> ChannelError {
+    ChannelError::Limit { name: channel.name.clone(), why: why.to_string() }
+}
+
 /// Values of the limit surface of the mesh of values.
 fn smooth(
     channel: &Channel,
@@ -171,31 +234,19 @@ fn smooth(
     scheme: &dyn Scheme,
     wanted: &[Origin],
 ) -> Result<Vec<f64>, ChannelError> {
-    let limit = |why: String| ChannelError::Limit { name: channel.name.clone(), why };
-    let seams::ValueMesh { mut mesh, values } =
-        value_mesh(control, channel, rule).map_err(|error| limit(error.to_string()))?;
+    let values = ValueMeshes::of(channel, rule, control)?;
     let places: Vec<(FaceId, [f64; 3])> =
         wanted.iter().map(|origin| (FaceId(origin.face), origin.barycentric)).collect();
     let mut found = vec![0.0; channel.arity * wanted.len()];
     for first in (0..channel.arity).step_by(TOGETHER) {
-        let own = first..channel.arity.min(first + TOGETHER);
-        let coordinates = |&value: &u32| {
-            let mut position = [0.0; TOGETHER];
-            let start = value as usize * channel.arity;
-            position
-                .iter_mut()
-                .zip(&channel.values[start + own.start..start + own.end])
-                .for_each(|(x, &value)| *x = value);
-            position
-        };
-        let positions = values.iter().map(coordinates).collect();
-        mesh = mesh.with_positions(positions).map_err(|error| limit(error.to_string()))?;
+        let mesh = values.mesh(first)?;
         let surface =
-            LimitSurface::without_normals(&mesh, scheme).map_err(|error| limit(error.to_string()))?;
+            LimitSurface::without_normals(&mesh, scheme).map_err(|error| no_limit(channel, error))?;
         let points = surface.at_all(&places);
         if let Some(error) = surface.failure() {
-            return Err(limit(error.to_string()));
+            return Err(no_limit(channel, error));
         }
+        let own = first..channel.arity.min(first + TOGETHER);
         for (point, value) in points.iter().zip(found.chunks_exact_mut(channel.arity)) {
             value[own.clone()].copy_from_slice(&point.position[..own.len()]);
         }

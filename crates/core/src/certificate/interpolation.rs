@@ -53,7 +53,7 @@ impl Sheet {
 
     /// A bound of how far the function is from the linear one with its values at the corners of a part, anywhere there; tight only
     /// above `target`. Of schemes outside Loop's family an estimate from samples.
-    pub(crate) fn from_linear(&self, part: SubTriangle, target: f64, rules: &Rules<'_>) -> f64 {
+    pub(crate) fn off_linear(&self, part: SubTriangle, target: f64, rules: &Rules<'_>) -> f64 {
         let mut search = Search { rules, target, found: 0.0 };
         match (&self.patch, part) {
             (_, SubTriangle::Whole) => search.patch(&self.patch, self.corners, 0),

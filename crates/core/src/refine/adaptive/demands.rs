@@ -238,7 +238,7 @@ fn bound(goal: &AttributeGoal, sheets: &[(Sheet, &Rules<'_>)], part: SubTriangle
     match goal.kind {
         GoalKind::Values => {
             let target = goal.tolerance / (sheets.len() as f64).sqrt();
-            let squares = sheets.iter().map(|(sheet, rules)| sheet.from_linear(part, target, rules).powi(2));
+            let squares = sheets.iter().map(|(sheet, rules)| sheet.off_linear(part, target, rules).powi(2));
             squares.sum::<f64>().sqrt()
         }
         GoalKind::Surface => {
