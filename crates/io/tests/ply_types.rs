@@ -1,7 +1,8 @@
 //! PLY files keep the types of what they hold, and the names of their pictures, through reading and writing.
 
+use limitmesh::Triangles;
 use limitmesh::mesh::PolygonSoup;
-use limitmesh_io::{Format, Output, Triangles, WriteOptions, read_bytes, write_to};
+use limitmesh_io::{Format, Output, WriteOptions, read_bytes, write_to};
 
 /// One column of each type there is, at both ends of its range.
 const TYPES: &str = "\

@@ -4,6 +4,8 @@ use clap::{Args, ValueEnum};
 use limitmesh::mesh::Weld;
 use limitmesh_io::gltf::Joining;
 
+use super::tolerances::MorphTolerance;
+
 /// The heading of these options in the help.
 const HEADING: &str = "Options of glTF assets";
 
@@ -37,6 +39,13 @@ pub(crate) struct AssetArguments {
     /// same; how many stay apart is told. The first of those that become one says how it moves.
     #[arg(long, value_enum, value_name = "WHAT", value_delimiter = ',')]
     pub(crate) weld_ignores: Vec<Mover>,
+
+    /// Greatest distance at weight 1 of each morph target, between the moved triangles and the moved limit surface [default: --tolerance]
+    ///
+    /// A length or per cent as for --tolerance, or none. Not with --triangles, --balance or --optimize, which are for the mesh as
+    /// it rests.
+    #[arg(long, value_name = "T|none")]
+    pub(crate) morph_tolerance: Option<MorphTolerance>,
 }
 
 /// What moves vertices of one place apart.
@@ -76,6 +85,7 @@ impl AssetArguments {
             (self.relative_to != RelativeTo::default(), "--relative-to"),
             (self.link_resources, "--link-resources"),
             (!self.weld_ignores.is_empty(), "--weld-ignores"),
+            (self.morph_tolerance.is_some(), "--morph-tolerance"),
         ];
         all.into_iter().find(|&(is_given, _)| is_given).map(|(_, option)| option)
     }

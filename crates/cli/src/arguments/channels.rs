@@ -5,6 +5,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use limitmesh::mesh::{Channel, Domain, Interpolation, SeamRule, Semantic, Storage};
 
+use super::tolerances::{AttributeTolerance, TextureTolerance};
 use crate::failure::usage;
 
 /// How what a mesh carries comes about between the elements of the input.
@@ -25,6 +26,19 @@ pub(crate) struct ChannelArguments {
     /// numbers linear, whole numbers and names nearest. Of several for one channel the last holds.
     #[arg(long, value_name = "NAME=MODE")]
     pub(crate) channel: Vec<Choice>,
+
+    /// Divide until texture coordinates, linear on each triangle, are so near to where the surface has them
+    ///
+    /// In units of the chart, such as 0.001; or in texels of a texture so many texels wide: 0.5@2048. A goal beside the tolerance, for smooth
+    /// coordinates; linear ones are exact on any triangles. Not with --triangles, --balance or --optimize.
+    #[arg(long, value_name = "D|TEXELS@SIZE")]
+    pub(crate) uv_tolerance: Option<TextureTolerance>,
+
+    /// The same for any channel, in its own units; may be given several times
+    ///
+    /// Of several numbers, it is their Euclidean distance. Of several tolerances for one channel the last holds.
+    #[arg(long, value_name = "NAME=E")]
+    pub(crate) attribute_tolerance: Vec<AttributeTolerance>,
 }
 
 /// How one channel is to be carried.
@@ -111,11 +125,65 @@ impl ChannelArguments {
         usage(format!("--channel: {input} has no channel '{}'; {known}", unknown.name))
     }
 
+    /// Refuses tolerances for channels that are not there or are left out: those that come out have these names, and some are of texture
+    /// coordinates.
+    ///
+    /// # Errors
+    /// Says which, and what there is.
+    pub(crate) fn check_tolerances<'a>(
+        &self,
+        input: &str,
+        names: impl Iterator<Item = (&'a str, bool)>,
+    ) -> anyhow::Result<()> {
+        let names: Vec<(&str, bool)> = names.filter(|(name, _)| !self.drops(name)).collect();
+        if self.uv_tolerance.is_some() && !names.iter().any(|&(_, is_texture)| is_texture) {
+            return usage(format!("--uv-tolerance: {input} has no texture coordinates that come out"));
+        }
+        let is_unknown = |own: &&AttributeTolerance| !names.iter().any(|&(name, _)| name == own.name);
+        let Some(unknown) = self.attribute_tolerance.iter().find(is_unknown) else { return Ok(()) };
+        let known: Vec<&str> = names.into_iter().map(|(name, _)| name).collect();
+        let known = if known.is_empty() {
+            "none comes out".to_owned()
+        } else {
+            format!("those that come out are: {}", known.join("; "))
+        };
+        usage(format!("--attribute-tolerance: {input} has no channel '{}'; {known}", unknown.name))
+    }
+
+    /// Refuses tolerances for what is never blended.
+    fn check_tolerance(&self, channel: &Channel) -> anyhow::Result<()> {
+        let is_inherited = channel.interpolation == Interpolation::Nearest || channel.domain == Domain::Face;
+        if is_inherited && self.attribute_tolerance.iter().any(|own| own.name == channel.name) {
+            return usage(format!(
+                "--attribute-tolerance: '{}' is inherited, never blended: nothing is between its values",
+                channel.name
+            ));
+        }
+        Ok(())
+    }
+
+    /// How far the values of a channel may be off.
+    pub(crate) fn tolerance(&self, channel: &Channel) -> Option<f64> {
+        let own = self.attribute_tolerance.iter().rev().find(|own| own.name == channel.name);
+        let is_texture = channel.semantic == Semantic::TextureCoordinates;
+        let texture = self.uv_tolerance.filter(|_| is_texture).map(|TextureTolerance(tolerance)| tolerance);
+        own.map(|own| own.tolerance).or(texture)
+    }
+
+    /// The first option that is a tolerance.
+    pub(crate) fn given_tolerance(&self) -> Option<&'static str> {
+        let attribute = (!self.attribute_tolerance.is_empty()).then_some("--attribute-tolerance");
+        self.uv_tolerance.map(|_| "--uv-tolerance").or(attribute)
+    }
+
     /// Refuses to blend what triangles inherit.
     ///
     /// # Errors
-    /// Something is to be smooth or linear.
+    /// Something is to be smooth or linear, or within a tolerance.
     pub(crate) fn check_inherited(&self) -> anyhow::Result<()> {
+        if let Some(option) = self.given_tolerance() {
+            return usage(format!("{option} is for values that are blended; triangles inherit these"));
+        }
         let is_blended = |choice: &&Choice| matches!(choice.mode, Mode::Smooth | Mode::Linear);
         match self.channel.iter().find(is_blended) {
             Some(Choice { name, .. }) => {
@@ -148,10 +216,10 @@ impl ChannelArguments {
     /// # Errors
     /// What is chosen would blend what has nothing between: names, or values of whole faces.
     pub(crate) fn apply(&self, channels: &mut [Channel]) -> anyhow::Result<()> {
-        for channel in channels {
+        channels.iter_mut().try_for_each(|channel| {
             self.apply_to(channel)?;
-        }
-        Ok(())
+            self.check_tolerance(channel)
+        })
     }
 
     fn apply_to(&self, channel: &mut Channel) -> anyhow::Result<()> {

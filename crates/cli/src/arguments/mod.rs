@@ -16,6 +16,7 @@ mod refine;
 mod render;
 mod reproduce;
 mod shared;
+mod tolerances;
 mod values;
 
 pub(crate) use asset::{AssetArguments, RelativeTo};
@@ -34,6 +35,7 @@ pub(crate) use refine::{MOST_EXACT, Method, RefineArguments};
 pub(crate) use render::RenderArguments;
 pub(crate) use reproduce::ReproduceArguments;
 pub(crate) use shared::{BuildArguments, FileFormat, SchemeName, Seam};
+pub(crate) use tolerances::MorphTolerance;
 pub(crate) use values::{Extent, Size};
 
 use clap::{Args, Parser, Subcommand};

@@ -18,9 +18,9 @@ pub(crate) use information::{AssetInformation, InformationReport, MeshInformatio
 pub(crate) use interpolation::InterpolationReport;
 pub(crate) use measurement::{DistanceReport, LimitReport, MeasureReport, SurfaceReport};
 pub(crate) use refinement::{
-    AssetMeshReport, AssetReport, CameraReport, ErrorReport, EstimateReport, ExactParametersReport,
-    InputDistanceReport, MethodReport, OutputReport, ParametersReport, PredictionReport, RefineReport,
-    RoundEntry, SecondsReport, SizeReport, StepEntry, ViewReport,
+    AssetMeshReport, AssetReport, AttributeReport, CameraReport, ErrorReport, EstimateReport,
+    ExactParametersReport, InputDistanceReport, MethodReport, OutputReport, ParametersReport,
+    PredictionReport, RefineReport, RoundEntry, SecondsReport, SizeReport, StepEntry, ViewReport,
 };
 
 use serde::Serialize;

@@ -98,6 +98,19 @@ pub(crate) struct MethodReport {
     pub(crate) pixels: Option<f64>,
     /// Triangles outside the cone of the exact method's angle; null without one.
     pub(crate) open_cones: Option<usize>,
+    /// Goals beside the shape.
+    pub(crate) attributes: Vec<AttributeReport>,
+}
+
+/// A goal for what the mesh carries: a channel's values, or the surface that a morph target makes.
+#[derive(Debug, Serialize)]
+pub(crate) struct AttributeReport {
+    /// The channel's, or `targets[2]`.
+    pub(crate) name: String,
+    /// In the channel's own unit, or the scene's.
+    pub(crate) tolerance: f64,
+    /// How far it is off at most, before the file's own rounding; null where it is not bounded.
+    pub(crate) upper: Option<f64>,
 }
 
 /// The name of a stepwise method's stop: all steps were done, no face was divisible any more, or the next step would

@@ -6,6 +6,7 @@ mod asset_morphs;
 mod asset_skins;
 mod asset_tangents;
 mod batch;
+mod channel_goals;
 mod channels;
 mod common;
 mod compare;

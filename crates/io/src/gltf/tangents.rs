@@ -7,7 +7,6 @@
 use bevy_mikktspace::{Geometry as Corners, TangentSpace, generate_tangents};
 
 use super::geometry::{Geometry, VertexAttribute};
-use super::json::At;
 use super::materials::TRANSFORM;
 use super::{Asset, Flawed};
 use crate::error::ReadError;
@@ -227,8 +226,8 @@ impl Asset {
         let set = || -> Flawed<usize> {
             let Some(Some(material)) = self.materials_of(mesh)?.get(primitive).copied() else { return Ok(0) };
             let materials = self.source.root().list("materials")?;
-            let map = |at: &At<'_>| at.get("normalTexture");
-            let Some(map) = materials.get(material).and_then(map) else { return Ok(0) };
+            let Some(material) = materials.get(material) else { return Ok(0) };
+            let Some(map) = material.get("normalTexture") else { return Ok(0) };
             let set = map.count_or("texCoord", 0)?;
             map.path(&["extensions", TRANSFORM]).map_or(Ok(set), |own| own.count_or("texCoord", set))
         };

@@ -6,6 +6,7 @@
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
+use anyhow::Context;
 use limitmesh::Mesh;
 use limitmesh::carry::borders;
 use limitmesh::mesh::{BuildOptions, Channel, Domain, MeshError, Semantic, Weld};
@@ -13,14 +14,17 @@ use limitmesh_io::gltf::{CornerAttribute, KeptApart, MeshSoup};
 use limitmesh_io::{Asset, Format};
 use limitmesh_render::Style;
 
+use super::attribute_goals::AttributeGoals;
 use super::carried::Carried;
 use super::channels::Channels;
 use super::control::Control;
 use super::exact::{self, Goals};
-use super::put_back::{MOST_WIDE, PutBack, channel};
+use super::put_back::{MOST_WIDE, PutBack, channel, moved_positions};
 use super::selection::Selection;
 use super::{change_in_words, estimate, picture, stepwise, summary, turned_over};
-use crate::arguments::{ConcaveCorners, Extent, Featured, Length, Method, RefineArguments, RelativeTo};
+use crate::arguments::{
+    ConcaveCorners, Extent, Featured, Length, Method, MorphTolerance, RefineArguments, RelativeTo,
+};
 use crate::bulk::Bulk;
 use crate::failure::{Outcome, usage};
 use crate::format::counted;
@@ -107,7 +111,9 @@ impl Job {
             let kind = name.split_once('_').map_or(*name, |(kind, _)| kind);
             !["POSITION", "NORMAL", "TANGENT", "JOINTS", "WEIGHTS"].contains(&kind)
         };
-        self.arguments.channels.check(name, names.into_iter().filter(is_free))
+        self.arguments.channels.check(name, names.iter().copied().filter(is_free))?;
+        let named = names.iter().copied().filter(is_free).map(|own| (own, own.starts_with("TEXCOORD_")));
+        self.arguments.channels.check_tolerances(name, named)
     }
 
     /// Refines all meshes and writes the asset.
@@ -183,6 +189,8 @@ impl Job {
         channels.on_parts(&control.featured.concave.parts, &control.featured.mesh);
         let kept = kept_edges(&own, &control, &channels);
         let goals = Goals::new(&arguments, &control.featured.mesh, control.diagonal)?.keeping_origins(kept);
+        let attributes = attribute_goals((&own, stretch), &control, &channels, (&arguments, goals.length()))?;
+        let goals = goals.with_attributes(attributes);
         let parameters = match arguments.method {
             Method::Exact => exact::parameters(&arguments, &goals),
             _ => stepwise::parameters(&arguments),
@@ -374,6 +382,39 @@ impl Job {
             false => Outcome::StoppedShort(done.short.join("\n")),
         })
     }
+}
+
+/// What is asked beside the shape: values of channels, and the surfaces that morph targets make, within `length` unless something
+/// else is said.
+fn attribute_goals(
+    (own, stretch): (&MeshSoup, f64),
+    control: &Control,
+    channels: &Channels,
+    (arguments, length): (&RefineArguments, Option<f64>),
+) -> anyhow::Result<AttributeGoals> {
+    let mesh = &control.featured.mesh;
+    let mut goals = AttributeGoals::default();
+    if arguments.method != Method::Exact {
+        return Ok(goals);
+    }
+    goals.add_channels(channels, mesh, &arguments.channels)?;
+    let exact = &arguments.exact;
+    let is_free = exact.triangles.is_none() && !exact.balance && !exact.optimize;
+    let tolerance = match arguments.asset.morph_tolerance {
+        Some(MorphTolerance::None) => None,
+        Some(MorphTolerance::Within(extent)) => Some(extent.length(control.diagonal, arguments.build.unit)?),
+        None => length.filter(|_| is_free),
+    };
+    let Some(tolerance) = tolerance else { return Ok(goals) };
+    for table in own.attributes.iter().filter(|table| table.is_displacement()) {
+        let channel = channels.all().iter().find(|channel| channel.name == table.name);
+        if let Some(channel) = channel.filter(|channel| channel.values.iter().any(|&x| x != 0.0)) {
+            let moved = mesh.clone().with_positions(moved_positions(mesh, channel, stretch));
+            let name = table.name.trim_end_matches(".POSITION").to_owned();
+            goals.add_surface(name, moved.with_context(|| table.name.clone())?, tolerance);
+        }
+    }
+    Ok(goals)
 }
 
 /// Edges of a control mesh that stay when others are collapsed: where attributes change, and between primitives.

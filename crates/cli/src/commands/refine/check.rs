@@ -6,7 +6,7 @@ use std::path::Path;
 use limitmesh_io::Format;
 
 use super::picture;
-use crate::arguments::{Method, RefineArguments};
+use crate::arguments::{Method, MorphTolerance, RefineArguments};
 use crate::failure::usage;
 use crate::format::thousands;
 use crate::input;
@@ -83,6 +83,16 @@ fn stepwise_options(arguments: &RefineArguments) -> anyhow::Result<()> {
     if exact.optimize && (arguments.angle.is_some() || cameras || exact.balance) {
         return usage("--optimize keeps --tolerance and --triangles; not --angle, cameras or --balance");
     }
+    let within = matches!(arguments.asset.morph_tolerance, Some(MorphTolerance::Within(_)));
+    let goal = arguments.channels.given_tolerance().or(within.then_some("--morph-tolerance"));
+    let other = [
+        ("--triangles", exact.triangles.is_some()),
+        ("--balance", exact.balance),
+        ("--optimize", exact.optimize),
+    ];
+    if let (Some(goal), Some((other, _))) = (goal, other.into_iter().find(|&(_, given)| given)) {
+        return usage(format!("{goal} divides until it is met; that does not go with {other}"));
+    }
     if let (Some(asked), None) = (exact.triangles, arguments.max_triangles)
         && asked > arguments.max_triangles()
     {
@@ -116,6 +126,9 @@ fn exact_options(arguments: &RefineArguments) -> anyhow::Result<()> {
         ("--dry-run", exact.dry_run),
         ("--max-levels", exact.max_levels.is_some()),
         ("--provenance", exact.provenance),
+        ("--uv-tolerance", arguments.channels.uv_tolerance.is_some()),
+        ("--attribute-tolerance", !arguments.channels.attribute_tolerance.is_empty()),
+        ("--morph-tolerance", arguments.asset.morph_tolerance.is_some()),
     ];
     match given.into_iter().find(|&(_, given)| given) {
         Some((option, _)) => usage(format!("{option} is for exact refinement; it needs --method exact")),

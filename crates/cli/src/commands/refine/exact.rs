@@ -8,6 +8,7 @@ use limitmesh::refine::{Exact, ExactOptions, ExactStop, Origin, exact_observed};
 use limitmesh::{Mesh, Triangles};
 use limitmesh_io::{Format, WriteOptions};
 
+use super::attribute_goals::AttributeGoals;
 use super::carried::Trail;
 use super::channels::Channels;
 use super::input_distance::InputDistance;
@@ -54,14 +55,35 @@ pub(super) struct Goals {
     kept_edges: Vec<[u32; 2]>,
     /// Whether the result tells where vertices and triangles came from.
     keeps_origins: bool,
+    attributes: AttributeGoals,
 }
 
 impl Goals {
     /// The same where the control mesh carries channels.
-    pub(super) fn carrying(mut self, channels: &Channels, control: &Mesh) -> Self {
+    ///
+    /// # Errors
+    /// A channel with a tolerance does not fit it.
+    pub(super) fn carrying(
+        mut self,
+        channels: &Channels,
+        control: &Mesh,
+        arguments: &RefineArguments,
+    ) -> anyhow::Result<Self> {
         self.kept_edges = borders(channels.all(), control);
         self.tells_faces_apart = channels.vary_within_faces() || !self.kept_edges.is_empty();
+        self.attributes.add_channels(channels, control, &arguments.channels)?;
+        Ok(self)
+    }
+
+    /// The same with goals beside the shape.
+    pub(super) fn with_attributes(mut self, attributes: AttributeGoals) -> Self {
+        self.attributes = attributes;
         self
+    }
+
+    /// The greatest distance from the limit surface, if that is asked for.
+    pub(super) fn length(&self) -> Option<f64> {
+        self.length
     }
 
     /// `diagonal` is what lengths are given in per cent of.
@@ -90,6 +112,7 @@ impl Goals {
             tells_faces_apart: false,
             kept_edges: Vec::new(),
             keeps_origins: false,
+            attributes: AttributeGoals::default(),
         })
     }
 
@@ -107,6 +130,7 @@ impl Goals {
             .balance(arguments.exact.balance)
             .optimize(arguments.exact.optimize)
             .kept_edges(self.kept_edges.clone())
+            .attributes(self.attributes.options())
             .flat_regions(!arguments.exact.divide_flat && !self.tells_faces_apart)
             .unfold(arguments.features.concave_corners() == ConcaveCorners::Divided)
             .origins(
@@ -148,7 +172,8 @@ impl Goals {
         });
         let angle = self.angle_degrees.map(|degrees| format!("the angle of {}°", as_typed(degrees)));
         let pixels = self.pixels.map(|pixels| format!("the {} pixels", as_typed(pixels)));
-        let goals: Vec<String> = [tolerance, angle, pixels].into_iter().flatten().collect();
+        let attributes = self.attributes.in_words().map(str::to_owned);
+        let goals: Vec<String> = [tolerance, angle, pixels, attributes].into_iter().flatten().collect();
         if goals.is_empty() { "the triangles asked for".to_owned() } else { goals.join(" and ") }
     }
 }
@@ -198,6 +223,8 @@ pub(super) fn run(
     });
     let error = ErrorReport::new(&found.error, goals.diagonal);
     let mut achieved = achieved(&found, &error, goals, arguments);
+    let attributes = goals.attributes.reached(&found);
+    achieved.extend(goals.attributes.achieved(&attributes, &unit_in_words(arguments.build.unit)));
     if let Some(moved) = &moved {
         achieved.extend(moved_in_words(moved, &error, control, goals, arguments));
     }
@@ -233,6 +260,7 @@ pub(super) fn run(
             input_distance: moved,
             pixels: pixels.filter(|pixels| pixels.is_finite()),
             open_cones: goals.angle_degrees.map(|_| open_cones),
+            attributes,
         },
         outcome,
     })

@@ -1,6 +1,7 @@
 //! `limitmesh refine`: reads a control mesh, refines it, writes the result, a report and a picture.
 
 mod asset;
+mod attribute_goals;
 mod cameras;
 mod carried;
 mod channels;
@@ -24,7 +25,7 @@ use std::time::{Duration, Instant};
 
 use limitmesh::Mesh;
 use limitmesh::criterion::{View, Viewpoint};
-use limitmesh::mesh::Tags;
+use limitmesh::mesh::{Channel, Semantic, Tags};
 use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
 
@@ -115,6 +116,9 @@ fn refine(
     };
     let files = [input.material_libraries, input.texture_files];
     let mut channels = Channels::of_input(input.channels, files, (format, arguments), progress);
+    let texture = |own: &Channel| own.semantic == Semantic::TextureCoordinates;
+    let names = channels.all().iter().map(|own| (own.name.as_str(), texture(own)));
+    arguments.channels.check_tolerances(&input_report.path, names)?;
     let Input { mesh, diagnosis, face_inputs, reading, building, .. } = input;
     let control = Control::new((mesh, diagnosis, face_inputs), None, arguments, progress)?;
     let Control { featured: control, diagnosis, before: read, bulk: before, interpolation, diagonal } =
@@ -123,7 +127,7 @@ fn refine(
     let goals = match arguments.method {
         Method::Exact => {
             let goals = Goals::new(arguments, &control.mesh, diagonal)?;
-            Some(goals.carrying(&channels, &control.mesh))
+            Some(goals.carrying(&channels, &control.mesh, arguments)?)
         }
         _ => None,
     };

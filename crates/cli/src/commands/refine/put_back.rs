@@ -240,14 +240,7 @@ impl PutBack<'_> {
         (triangles, count): (&[[u32; 3]], usize),
         (stretch, scheme): (f64, &dyn Scheme),
     ) -> anyhow::Result<Vec<[f64; 3]>> {
-        let mut positions = self.control.positions().to_vec();
-        let mut is_moved = vec![false; positions.len()];
-        for (corner, &v) in self.control.triangles().as_flattened().iter().enumerate() {
-            if !std::mem::replace(&mut is_moved[v as usize], true) {
-                let own = displacement.value(corner);
-                positions[v as usize].iter_mut().zip(own).for_each(|(x, d)| *x += stretch * d);
-            }
-        }
+        let positions = moved_positions(self.control, displacement, stretch);
         let name = &displacement.name;
         let moved = self.control.clone().with_positions(positions).with_context(|| name.clone())?;
         let limit = LimitSurface::new(&moved, scheme).with_context(|| name.clone())?;
@@ -274,6 +267,19 @@ impl PutBack<'_> {
         }
         Ok(normals)
     }
+}
+
+/// Where a displacement moves the vertices of a mesh that is `stretch` times as large as the asset's.
+pub(super) fn moved_positions(mesh: &Mesh, displacement: &Channel, stretch: f64) -> Vec<[f64; 3]> {
+    let mut positions = mesh.positions().to_vec();
+    let mut is_moved = vec![false; positions.len()];
+    for (corner, &v) in mesh.triangles().as_flattened().iter().enumerate() {
+        if !std::mem::replace(&mut is_moved[v as usize], true) {
+            let own = displacement.value(corner);
+            positions[v as usize].iter_mut().zip(own).for_each(|(x, d)| *x += stretch * d);
+        }
+    }
+    positions
 }
 
 /// Whether a target is to say how normals change: where it did, and where the input has no normals at all, so that they followed the

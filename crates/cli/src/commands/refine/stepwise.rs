@@ -67,6 +67,7 @@ pub(super) fn run(
             input_distance: None,
             pixels: None,
             open_cones: None,
+            attributes: Vec::new(),
         },
     })
 }
