@@ -8,6 +8,7 @@
 //!   is, over many models; `quality` runs all of these;
 //! * `throughput`: its triangles per second and bytes per triangle;
 //! * `through`: limit surfaces through the vertices of thinned meshes, against the meshes before;
+//! * `channels`: what texture coordinates add to a refinement;
 //! * `gaps`: how long observers of long functions wait at most;
 //! * `scaling`: exact refinement of ever larger meshes, larger in one way each; needs no models;
 //! * `tolerances GOALS`: triangles and time of exact refinement, each of the GOALS a model, built in or a file, and what is
@@ -17,6 +18,7 @@
 //!
 //! Peers that are not installed are left out, and that is said.
 
+mod channels;
 mod clock;
 mod distance;
 mod figures;
@@ -90,9 +92,10 @@ fn measure(work: &str, folder: &Path) -> Result<()> {
         "certificate" => quality::certificate(folder),
         "throughput" => quality::throughput(folder),
         "through" => through::through(folder),
+        "channels" => channels::channels(folder),
         "gaps" => gaps::gaps(folder),
         other => bail!(
-            "no benchmark is called {other}: {}, speed, {}, quality, throughput, through, gaps, scaling, tolerances, figures, all",
+            "no benchmark is called {other}: {}, speed, {}, quality, throughput, through, channels, gaps, scaling, tolerances, figures, all",
             SPEED.join(", "),
             QUALITY.join(", ")
         ),

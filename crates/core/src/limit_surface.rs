@@ -18,6 +18,9 @@ use crate::vector::{DVec3, vector};
 /// Levels after which a place counts as the nearest corner of its part, which is 2⁻⁴⁰ as large as the face.
 const DEEPEST: u32 = 40;
 
+/// Places that are evaluated together.
+const LANES: usize = 8;
+
 /// Faces that are evaluated together.
 const BLOCK: usize = 64;
 
@@ -121,6 +124,42 @@ impl<'a> LimitSurface<'a> {
             block.flat_map(|face| over(of_faces[face])).collect::<Vec<_>>()
         });
         blocks.concat()
+    }
+
+    /// The first `axes` coordinates of the points over places of many faces, one after the other; places are in order, as
+    /// [`Self::at`] would bring them.
+    pub(crate) fn coordinates(&self, places: &[(FaceId, [f64; 3])], axes: usize) -> Vec<f64> {
+        let of_faces: Vec<&[(FaceId, [f64; 3])]> = places.chunk_by(|a, b| a.0 == b.0).collect();
+        let blocks = parallel::pieces_of(of_faces.len(), BLOCK, |block| {
+            let count: usize = of_faces[block.clone()].iter().map(|own| own.len()).sum();
+            let mut found = Vec::with_capacity(axes * count);
+            block.for_each(|face| self.coordinates_of_face(of_faces[face], axes, &mut found));
+            found
+        });
+        blocks.concat()
+    }
+
+    fn coordinates_of_face(&self, places: &[(FaceId, [f64; 3])], axes: usize, found: &mut Vec<f64>) {
+        let face = places[0].0;
+        let (sheet, _) = self.sheet(face);
+        let Patch::Regular(points) = &sheet.patch else {
+            let at: Vec<[f64; 3]> = places.iter().map(|&(_, at)| at).collect();
+            return found.extend(self.over(face, &at).iter().flat_map(|point| &point.position[..axes]));
+        };
+        let piece = Quartic::of(&BezierTriangle::of(points), 0);
+        for some in places.chunks(LANES) {
+            let (mut u, mut v) = ([0.0; LANES], [0.0; LANES]);
+            for (lane, (_, weights)) in some.iter().enumerate() {
+                [u[lane], v[lane]] = [weights[1], weights[2]];
+            }
+            let mut points = piece.points_at(&u, &v, axes);
+            for (lane, (_, weights)) in some.iter().enumerate() {
+                if let Some(corner) = weights.iter().position(|&weight| weight == 1.0) {
+                    (0..axes).for_each(|axis| points[axis][lane] = sheet.corners[corner][axis]);
+                }
+                found.extend(points[..axes].iter().map(|axis| axis[lane]));
+            }
+        }
     }
 
     /// The surface over a face, and the rules by which it is refined.

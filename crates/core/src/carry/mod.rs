@@ -146,7 +146,7 @@ fn nearest(channel: Channel, places: &Places<'_>) -> Result<Channel, ChannelErro
 }
 
 /// A value's number by corner, and where each value is to be found: in a face in which a corner has it.
-fn wanted(channel: &Channel, places: &Places<'_>) -> Result<(Vec<u32>, Vec<Origin>), ChannelError> {
+fn wanted(channel: &Channel, places: &Places<'_>) -> Result<(Vec<u32>, Vec<Wanted>), ChannelError> {
     /// Of a vertex, the value that was met first.
     #[derive(Clone, Copy)]
     struct First {
@@ -156,11 +156,11 @@ fn wanted(channel: &Channel, places: &Places<'_>) -> Result<(Vec<u32>, Vec<Origi
     let mut first: Vec<Option<First>> = vec![None; places.vertex_count];
     let mut others: HashMap<(u32, Key), u32> = HashMap::new();
     let mut indices = Vec::with_capacity(3 * places.parents.len());
-    let mut wanted: Vec<Origin> = Vec::with_capacity(places.vertex_count);
+    let mut wanted: Vec<Wanted> = Vec::with_capacity(places.vertex_count);
     places.for_each_corner(|vertex, origin| {
         let key = places.key(channel, origin);
         let mut add = || {
-            wanted.push(origin);
+            wanted.push((FaceId(origin.face), origin.barycentric));
             wanted.len() as u32 - 1
         };
         let value = match &mut first[vertex as usize] {
@@ -177,10 +177,13 @@ fn wanted(channel: &Channel, places: &Places<'_>) -> Result<(Vec<u32>, Vec<Origi
 /// channels are linear, and on which side of seams it is.
 type Key = [u32; 3];
 
-fn linear(channel: &Channel, wanted: &[Origin]) -> Vec<f64> {
+/// Where a value is to be found.
+type Wanted = (FaceId, [f64; 3]);
+
+fn linear(channel: &Channel, wanted: &[Wanted]) -> Vec<f64> {
     let mut values = Vec::with_capacity(channel.arity * wanted.len());
-    for Origin { face, barycentric } in wanted {
-        let corners = [0, 1, 2].map(|corner| channel.value(3 * *face as usize + corner));
+    for (face, barycentric) in wanted {
+        let corners = [0, 1, 2].map(|corner| channel.value(3 * face.index() + corner));
         for i in 0..channel.arity {
             // What is at a corner, or the same at all, is that to the bit.
             let [a, b, c] = corners.map(|value| value[i]);
@@ -232,23 +235,25 @@ fn smooth(
     rule: SeamRule,
     control: &Mesh,
     scheme: &dyn Scheme,
-    wanted: &[Origin],
+    wanted: &[Wanted],
 ) -> Result<Vec<f64>, ChannelError> {
     let values = ValueMeshes::of(channel, rule, control)?;
-    let places: Vec<(FaceId, [f64; 3])> =
-        wanted.iter().map(|origin| (FaceId(origin.face), origin.barycentric)).collect();
-    let mut found = vec![0.0; channel.arity * wanted.len()];
+    let mut found = Vec::new();
     for first in (0..channel.arity).step_by(TOGETHER) {
         let mesh = values.mesh(first)?;
         let surface =
             LimitSurface::without_normals(&mesh, scheme).map_err(|error| no_limit(channel, error))?;
-        let points = surface.at_all(&places);
+        let own = first..channel.arity.min(first + TOGETHER);
+        let coordinates = surface.coordinates(wanted, own.len());
         if let Some(error) = surface.failure() {
             return Err(no_limit(channel, error));
         }
-        let own = first..channel.arity.min(first + TOGETHER);
-        for (point, value) in points.iter().zip(found.chunks_exact_mut(channel.arity)) {
-            value[own.clone()].copy_from_slice(&point.position[..own.len()]);
+        if channel.arity <= TOGETHER {
+            return Ok(coordinates);
+        }
+        found.resize(channel.arity * wanted.len(), 0.0);
+        for (point, value) in coordinates.chunks_exact(own.len()).zip(found.chunks_exact_mut(channel.arity)) {
+            value[own.clone()].copy_from_slice(point);
         }
     }
     Ok(found)

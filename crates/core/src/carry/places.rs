@@ -56,7 +56,13 @@ impl<'a> Places<'a> {
     /// # Errors
     /// A triangle reaches over several control faces, of which nobody knows where.
     pub(super) fn for_each_corner(&self, mut visit: impl FnMut(u32, Origin)) -> Result<(), ChannelError> {
+        let origins = self.result.origins();
         for (corner, &vertex) in self.result.mesh().triangles().as_flattened().iter().enumerate() {
+            // Most are inside of a face, where all triangles have them at one place.
+            if let Some(origin) = origins.get(vertex as usize).filter(|origin| is_inside(origin)) {
+                visit(vertex, *origin);
+                continue;
+            }
             let Some(place) = self.place(corner as u32) else {
                 return Err(ChannelError::Unknown { why: "a triangle reaches over several control faces" });
             };
@@ -67,10 +73,11 @@ impl<'a> Places<'a> {
 
     /// The numbers of the values that a place depends on, in the order of their control vertices; of places inside a face, which all
     /// corners at a vertex share, nothing needs to be told apart.
-    pub(super) fn key(&self, channel: &Channel, Origin { face, barycentric }: Origin) -> Key {
-        if barycentric.iter().all(|&weight| weight != 0.0) {
+    pub(super) fn key(&self, channel: &Channel, origin: Origin) -> Key {
+        if is_inside(&origin) {
             return [NONE; 3];
         }
+        let Origin { face, barycentric } = origin;
         let vertices = self.control.triangles()[face as usize];
         let mut own = [(NONE, NONE); 3];
         for (corner, &vertex) in vertices.iter().enumerate() {
@@ -81,4 +88,10 @@ impl<'a> Places<'a> {
         own.sort_unstable();
         own.map(|(_, value)| value)
     }
+}
+
+/// Whether a place is on no edge of its face.
+#[inline]
+fn is_inside(Origin { barycentric, .. }: &Origin) -> bool {
+    barycentric.iter().all(|&weight| weight != 0.0)
 }

@@ -188,6 +188,19 @@ impl Quartic {
         }
     }
 
+    /// The first `axes` coordinates of the points at several places (u, v), by axis: to the bit what rows give there.
+    #[inline]
+    pub(crate) fn points_at<const N: usize>(&self, u: &[f64; N], v: &[f64; N], axes: usize) -> [[f64; N]; 3] {
+        let mut points = [[0.0; N]; 3];
+        for (points, a) in points.iter_mut().zip(&self.coefficients).take(axes) {
+            for l in 0..N {
+                let [c0, c1, c2, c3, c4] = positions(a, v[l]);
+                points[l] = (((c4 * u[l] + c3) * u[l] + c2) * u[l] + c1) * u[l] + c0;
+            }
+        }
+        points
+    }
+
     /// The points at several places (u, v) and their unit normals, by axis: to the bit what rows give there.
     #[inline]
     pub(crate) fn points_and_normals_at<const N: usize>(

@@ -304,6 +304,7 @@ fn levels(engine: &Engine<'_>, most: usize) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::demands::Demands;
     use super::super::with_engine;
     use super::*;
     use crate::mesh::Mesh;
@@ -321,7 +322,8 @@ mod tests {
     fn what_is_expected_is_of_the_right_size() {
         for name in ["torus", "sphere", "cup", "bunny", "teddy", "shoe"] {
             let mesh = model(name);
-            with_engine(&mesh, &Loop, &ExactOptions::default().triangles(1), &mut unobserved, |engine| {
+            let options = (&ExactOptions::default().triangles(1), &Demands::default());
+            with_engine(&mesh, &Loop, options, &mut unobserved, |engine| {
                 for wanted in [10_000.0, 40_000.0] {
                     let distance = expected(engine, wanted)?.unwrap();
                     let triangles =

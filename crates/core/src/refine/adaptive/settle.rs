@@ -191,6 +191,7 @@ pub(super) fn beside(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -
 
 #[cfg(test)]
 mod tests {
+    use super::super::demands::Demands;
     use super::super::judge::{Allowance, Extent, Seen};
     use super::super::quadtree::{CONDITIONAL, LEAF, Piece, is_split};
     use super::super::with_engine;
@@ -208,7 +209,7 @@ mod tests {
             let mesh = stirred(name, seed);
             let tolerance = 10f64.powf(-0.5 - 0.13 * (seed % 20) as f64) * mesh.diagonal();
             let options = ExactOptions::default().tolerance(tolerance);
-            with_engine(&mesh, &Loop, &options, &mut unobserved, |engine| {
+            with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
                 let plan = engine.plan(Goal::Within(tolerance), usize::MAX)?.unwrap();
                 run(engine, plan, &format!("{name}, seed {seed}"));
                 Ok(())

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::f64::consts::TAU;
 
+use super::super::demands::Demands;
 use super::super::emitted::{Beholder, Emitted, Over, Sources};
 use super::super::judge::Goal;
 use super::super::measure::{Measured, measure};
@@ -124,7 +125,7 @@ fn rounds(name: &str, mesh: &Mesh, (share, seed): (f64, u64), counts: &mut [usiz
     };
     let limit = share * mesh.diagonal();
     let options = ExactOptions::default().tolerance(limit).balance(true);
-    with_engine(mesh, &Loop, &options, &mut unobserved, |engine| {
+    with_engine(mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
         let (goal, watch) = (Goal::Within(limit), engine.watch);
         let mut plan = engine.plan(Goal::Within(2.0 * limit), usize::MAX)?.unwrap();
         let faces: Vec<u32> = (0..plan.closed.len() as u32).collect();
@@ -217,7 +218,7 @@ fn rounds_end_with_what_is_found_anew() {
         let limit = 1e-3 * mesh.diagonal();
         let options = ExactOptions::default().tolerance(limit);
         for options in [options.clone().balance(true), options.clone().angle(0.2)] {
-            with_engine(&mesh, &Loop, &options, &mut unobserved, |engine| {
+            with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
                 let goal = Goal::Within(if engine.is_balanced { limit } else { 1.0 });
                 let outcome = if engine.is_balanced {
                     engine.balanced(limit, usize::MAX)?
