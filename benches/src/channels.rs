@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Result;
 use limitmesh::Mesh;
 use limitmesh::carry::carried;
-use limitmesh::mesh::{Channel, Interpolation};
+use limitmesh::mesh::Interpolation;
 use limitmesh::refine::{ExactOptions, exact};
 use limitmesh::scheme::Loop;
 

@@ -1,5 +1,7 @@
 //! PLY files keep the types of what they hold, and the names of their pictures, through reading and writing.
 
+#![allow(clippy::unwrap_used)]
+
 use limitmesh::Triangles;
 use limitmesh::mesh::PolygonSoup;
 use limitmesh_io::{Format, Output, WriteOptions, read_bytes, write_to};
