@@ -13,13 +13,13 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::large_rings::LargeRings;
 use crate::patch::{LimitPoint, Patch, Quartic, Rules, child_corners, root_patch};
 use crate::scheme::Scheme;
-use crate::vector::{DVec3, vector};
+use crate::vector::vector;
 
 /// Levels after which a place counts as the nearest corner of its part, which is 2⁻⁴⁰ as large as the face.
 const DEEPEST: u32 = 40;
 
 /// Places that are evaluated together.
-const LANES: usize = 8;
+const LANES: usize = 4;
 
 /// Faces that are evaluated together.
 const BLOCK: usize = 64;
@@ -126,34 +126,48 @@ impl<'a> LimitSurface<'a> {
         blocks.concat()
     }
 
-    /// The first `axes` coordinates of the points over places of many faces, one after the other; places are in order, as
-    /// [`Self::at`] would bring them.
+    /// The first `axes` coordinates of the points over places of faces that there are, one after the other; places are in order, as
+    /// [`Self::at`] would bring them. Places of a face share its work wherever they stand.
     pub(crate) fn coordinates(&self, places: &[(FaceId, [f64; 3])], axes: usize) -> Vec<f64> {
-        let of_faces: Vec<&[(FaceId, [f64; 3])]> = places.chunk_by(|a, b| a.0 == b.0).collect();
-        let blocks = parallel::pieces_of(of_faces.len(), BLOCK, |block| {
-            let count: usize = of_faces[block.clone()].iter().map(|own| own.len()).sum();
-            let mut found = Vec::with_capacity(axes * count);
-            block.for_each(|face| self.coordinates_of_face(of_faces[face], axes, &mut found));
+        let faces = self.mesh.face_count();
+        let mut starts = vec![0; faces + 1];
+        places.iter().for_each(|(face, _)| starts[face.index() + 1] += 1);
+        (0..faces).for_each(|face| starts[face + 1] += starts[face]);
+        let (mut next, mut order) = (starts.clone(), vec![0; places.len()]);
+        for (at, (face, _)) in places.iter().enumerate() {
+            order[next[face.index()]] = at;
+            next[face.index()] += 1;
+        }
+        let blocks = parallel::pieces_of(faces, BLOCK, |block| {
+            let mut found = Vec::with_capacity(axes * (starts[block.end] - starts[block.start]));
+            for face in block {
+                let own: Vec<[f64; 3]> =
+                    order[starts[face]..starts[face + 1]].iter().map(|&at| places[at].1).collect();
+                if !own.is_empty() {
+                    self.coordinates_of_face(FaceId(face as u32), &own, axes, &mut found);
+                }
+            }
             found
         });
-        blocks.concat()
+        let mut all = vec![0.0; axes * places.len()];
+        let found = blocks.iter().flat_map(|block| block.chunks_exact(axes.max(1)));
+        order.iter().zip(found).for_each(|(&at, own)| all[axes * at..][..axes].copy_from_slice(own));
+        all
     }
 
-    fn coordinates_of_face(&self, places: &[(FaceId, [f64; 3])], axes: usize, found: &mut Vec<f64>) {
-        let face = places[0].0;
+    fn coordinates_of_face(&self, face: FaceId, places: &[[f64; 3]], axes: usize, found: &mut Vec<f64>) {
         let (sheet, _) = self.sheet(face);
         let Patch::Regular(points) = &sheet.patch else {
-            let at: Vec<[f64; 3]> = places.iter().map(|&(_, at)| at).collect();
-            return found.extend(self.over(face, &at).iter().flat_map(|point| &point.position[..axes]));
+            return found.extend(self.over(face, places).iter().flat_map(|point| &point.position[..axes]));
         };
         let piece = Quartic::of(&BezierTriangle::of(points), 0);
-        for some in places.chunks(LANES) {
-            let (mut u, mut v) = ([0.0; LANES], [0.0; LANES]);
-            for (lane, (_, weights)) in some.iter().enumerate() {
+        for some in places.chunks(2 * LANES) {
+            let [mut u, mut v] = [[0.0; 2 * LANES]; 2];
+            for (lane, weights) in some.iter().enumerate() {
                 [u[lane], v[lane]] = [weights[1], weights[2]];
             }
             let mut points = piece.points_at(&u, &v, axes);
-            for (lane, (_, weights)) in some.iter().enumerate() {
+            for (lane, weights) in some.iter().enumerate() {
                 if let Some(corner) = weights.iter().position(|&weight| weight == 1.0) {
                     (0..axes).for_each(|axis| points[axis][lane] = sheet.corners[corner][axis]);
                 }
@@ -174,22 +188,34 @@ impl<'a> LimitSurface<'a> {
         self.rules.failure()
     }
 
+    /// Places on a regular piece.
+    fn evaluate(&self, piece: &Quartic, places: &[Place], found: &mut [SurfacePoint]) {
+        for some in places.chunks(LANES) {
+            let [mut u, mut v] = [[0.0; LANES]; 2];
+            for (lane, place) in some.iter().enumerate() {
+                [u[lane], v[lane]] = [place.weights[1], place.weights[2]];
+            }
+            let [points, normals] = match self.normals {
+                Some(_) => piece.points_and_normals_at(&u, &v),
+                None => [piece.points_at(&u, &v, 3), [[0.0; LANES]; 3]],
+            };
+            for (lane, place) in some.iter().enumerate() {
+                let [position, normal] = [points, normals].map(|by_axis| by_axis.map(|axis| axis[lane]));
+                found[place.at] = SurfacePoint { position, normal };
+            }
+        }
+    }
+
     fn descend(
         &self,
         patch: &Patch,
         corners: [LimitPoint; 3],
-        mut left: Vec<Place>,
+        left: Vec<Place>,
         levels: u32,
         found: &mut [SurfacePoint],
     ) {
         if let Patch::Regular(points) = patch {
-            let piece = Quartic::of(&BezierTriangle::of(points), 0);
-            for Place { at, weights: [_, u, v] } in left {
-                let position = piece.point(u, v);
-                let normal = if self.normals.is_some() { piece.normal(u, v) } else { DVec3::ZERO };
-                found[at] = LimitPoint { position, normal }.into();
-            }
-            return;
+            return self.evaluate(&Quartic::of(&BezierTriangle::of(points), 0), &left, found);
         }
         if levels == 0 {
             for Place { at, weights } in left {
@@ -200,9 +226,12 @@ impl<'a> LimitSurface<'a> {
         }
         let refined = patch.refined(&self.rules);
         let middles = [0, 1, 2].map(|edge| refined.middle(edge));
-        for child in 0..4 {
-            let own = left.extract_if(.., |place| place.child() == child);
-            let mut own: Vec<Place> = own.map(|place| place.in_child(child)).collect();
+        let mut parts = [0; 4].map(|_| Vec::with_capacity(left.len() / 3));
+        for place in left {
+            let child = place.child();
+            parts[child].push(place.in_child(child));
+        }
+        for (child, mut own) in parts.into_iter().enumerate() {
             let corners = child_corners(corners, middles, child);
             take_corners(corners, &mut own, found);
             if !own.is_empty() {

@@ -147,31 +147,24 @@ fn nearest(channel: Channel, places: &Places<'_>) -> Result<Channel, ChannelErro
 
 /// A value's number by corner, and where each value is to be found: in a face in which a corner has it.
 fn wanted(channel: &Channel, places: &Places<'_>) -> Result<(Vec<u32>, Vec<Wanted>), ChannelError> {
-    /// Of a vertex, the value that was met first.
-    #[derive(Clone, Copy)]
-    struct First {
-        key: Key,
-        value: u32,
-    }
-    let mut first: Vec<Option<First>> = vec![None; places.vertex_count];
-    let mut others: HashMap<(u32, Key), u32> = HashMap::new();
-    let mut indices = Vec::with_capacity(3 * places.parents.len());
     let mut wanted: Vec<Wanted> = Vec::with_capacity(places.vertex_count);
-    places.for_each_corner(|vertex, origin| {
-        let key = places.key(channel, origin);
-        let mut add = || {
-            wanted.push((FaceId(origin.face), origin.barycentric));
-            wanted.len() as u32 - 1
-        };
-        let value = match &mut first[vertex as usize] {
-            Some(first) if first.key == key => first.value,
-            Some(_) => *others.entry((vertex, key)).or_insert_with(add),
-            none => none.insert(First { key, value: add() }).value,
-        };
-        indices.push(value);
+    let mut add = |origin: Origin| {
+        wanted.push((FaceId(origin.face), origin.barycentric));
+        wanted.len() as u32 - 1
+    };
+    // Most vertices have one value, wherever one looks at them from.
+    let mut of_vertex = vec![SEVERAL; places.vertex_count];
+    places.for_each_vertex_of_one_value(channel, |vertex, origin| of_vertex[vertex] = add(origin));
+    let mut others: HashMap<(u32, Key), u32> = HashMap::new();
+    let mut indices: Vec<u32> = places.corners().iter().map(|&vertex| of_vertex[vertex as usize]).collect();
+    places.for_each_corner_of(&mut indices, |vertex, origin| {
+        *others.entry((vertex, places.key(channel, origin))).or_insert_with(|| add(origin))
     })?;
     Ok((indices, wanted))
 }
+
+/// In place of a value's number: at this vertex there may be several.
+const SEVERAL: u32 = u32::MAX;
 
 /// The numbers of the values at the control vertices of the face, edge or vertex that a place is in: what it depends on where
 /// channels are linear, and on which side of seams it is.

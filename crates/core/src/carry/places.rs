@@ -2,7 +2,7 @@
 //!
 //! A vertex knows one face that it came from; a triangle that has it may be in another beside that one.
 
-use super::Key;
+use super::{Key, SEVERAL};
 use crate::geometry::NONE;
 use crate::index::HalfEdgeId;
 use crate::mesh::{Channel, ChannelError, Mesh};
@@ -51,33 +51,72 @@ impl<'a> Places<'a> {
         self.result.corner_origin(self.control.triangles(), HalfEdgeId(corner))
     }
 
+    /// The vertices of all corners.
+    pub(super) fn corners(&self) -> &[u32] {
+        self.result.mesh().triangles().as_flattened()
+    }
+
     /// Calls `visit` with the vertex and the place of each corner, triangle by triangle.
     ///
     /// # Errors
     /// A triangle reaches over several control faces, of which nobody knows where.
     pub(super) fn for_each_corner(&self, mut visit: impl FnMut(u32, Origin)) -> Result<(), ChannelError> {
-        let origins = self.result.origins();
-        for (corner, &vertex) in self.result.mesh().triangles().as_flattened().iter().enumerate() {
-            // Most are inside of a face, where all triangles have them at one place.
-            if let Some(origin) = origins.get(vertex as usize).filter(|origin| is_inside(origin)) {
-                visit(vertex, *origin);
-                continue;
-            }
-            let Some(place) = self.place(corner as u32) else {
-                return Err(ChannelError::Unknown { why: "a triangle reaches over several control faces" });
-            };
-            visit(vertex, place);
+        self.corners().iter().enumerate().try_for_each(|(corner, &vertex)| {
+            visit(vertex, self.known_place(corner as u32)?);
+            Ok(())
+        })
+    }
+
+    /// Gives what `find` does for their vertices and places to the corners that have [`SEVERAL`].
+    ///
+    /// # Errors
+    /// As for [`Self::for_each_corner`].
+    pub(super) fn for_each_corner_of(
+        &self,
+        numbers: &mut [u32],
+        mut find: impl FnMut(u32, Origin) -> u32,
+    ) -> Result<(), ChannelError> {
+        for (corner, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number == SEVERAL) {
+            *number = find(self.corners()[corner], self.known_place(corner as u32)?);
         }
         Ok(())
     }
 
-    /// The numbers of the values that a place depends on, in the order of their control vertices; of places inside a face, which all
-    /// corners at a vertex share, nothing needs to be told apart.
-    pub(super) fn key(&self, channel: &Channel, origin: Origin) -> Key {
-        if is_inside(&origin) {
-            return [NONE; 3];
+    /// Calls `visit` with the vertices, and their places, at which a channel has one value in whatever face: those inside of control
+    /// faces, and on edges that are no seams.
+    pub(super) fn for_each_vertex_of_one_value(
+        &self,
+        channel: &Channel,
+        mut visit: impl FnMut(usize, Origin),
+    ) {
+        let topology = self.control.topology();
+        let is_seam: Vec<bool> = topology
+            .half_edges()
+            .map(|h| topology.twin(h).is_some_and(|twin| !channel.is_continuous(h, twin)))
+            .collect();
+        for (vertex, origin) in self.result.origins().iter().enumerate() {
+            let [a, b, c] = origin.barycentric.map(|weight| weight == 0.0);
+            let has_one = match (a, b, c) {
+                (false, false, false) => true,
+                // The edge opposite the corner without weight.
+                (true, false, false) => !is_seam[3 * origin.face as usize + 1],
+                (false, true, false) => !is_seam[3 * origin.face as usize + 2],
+                (false, false, true) => !is_seam[3 * origin.face as usize],
+                _ => false,
+            };
+            if has_one {
+                visit(vertex, *origin);
+            }
         }
-        let Origin { face, barycentric } = origin;
+    }
+
+    fn known_place(&self, corner: u32) -> Result<Origin, ChannelError> {
+        self.place(corner)
+            .ok_or(ChannelError::Unknown { why: "a triangle reaches over several control faces" })
+    }
+
+    /// The numbers of the values that a place depends on, in the order of their control vertices.
+    pub(super) fn key(&self, channel: &Channel, Origin { face, barycentric }: Origin) -> Key {
         let vertices = self.control.triangles()[face as usize];
         let mut own = [(NONE, NONE); 3];
         for (corner, &vertex) in vertices.iter().enumerate() {
@@ -88,10 +127,4 @@ impl<'a> Places<'a> {
         own.sort_unstable();
         own.map(|(_, value)| value)
     }
-}
-
-/// Whether a place is on no edge of its face.
-#[inline]
-fn is_inside(Origin { barycentric, .. }: &Origin) -> bool {
-    barycentric.iter().all(|&weight| weight != 0.0)
 }
