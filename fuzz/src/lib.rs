@@ -3,11 +3,11 @@
 use std::io::{Cursor, Write};
 
 use limitmesh::Mesh;
-use limitmesh::carry::carried;
-use limitmesh::mesh::{BuildOptions, PolygonSoup, Weld};
+use limitmesh::carry::{carried, goal};
+use limitmesh::mesh::{BuildOptions, Channel, PolygonSoup, Weld};
 use limitmesh::refine::{ExactOptions, exact};
 use limitmesh::scheme::Loop;
-use limitmesh_io::gltf::{Geometry, Joining, MeshSoup, VertexAttribute};
+use limitmesh_io::gltf::{CornerAttribute, Geometry, Joining, MeshSoup, VertexAttribute, WithTangents};
 use limitmesh_io::threemf::{NewTriangles, Source};
 use limitmesh_io::{Asset, Format, Output, Package, WriteOptions, read_bytes, write_to};
 use zip::write::SimpleFileOptions;
@@ -50,17 +50,27 @@ fn build(soup: &PolygonSoup, options: &BuildOptions) {
     }
 }
 
-/// How a morph target moves the vertices of a mesh.
-fn displacement(own: &MeshSoup, target: usize) -> VertexAttribute {
-    let mut values = vec![0.0; 3 * own.soup.positions.len()];
-    for table in own.attributes.iter().filter(|table| table.target == Some(target) && table.is_displacement()) {
+/// The tables that are wanted as one attribute of vertices.
+fn at_vertices(
+    own: &MeshSoup,
+    (name, width): (&str, usize),
+    is_wanted: impl Fn(&CornerAttribute) -> bool,
+) -> VertexAttribute {
+    let mut values = vec![0.0; width * own.soup.positions.len()];
+    for table in own.attributes.iter().filter(|table| table.width == width && is_wanted(table)) {
         for (face, corners) in own.soup.faces.iter().zip(&table.corners) {
             for (&v, &value) in face.iter().zip(corners) {
-                values[3 * v as usize..][..3].copy_from_slice(&table.values[3 * value as usize..][..3]);
+                let value = &table.values[width * value as usize..][..width];
+                values[width * v as usize..][..width].copy_from_slice(value);
             }
         }
     }
-    VertexAttribute { name: "POSITION".to_owned(), width: 3, values, is_integer: false }
+    VertexAttribute { name: name.to_owned(), width, values, is_integer: false }
+}
+
+/// How a morph target moves the vertices of a mesh.
+fn displacement(own: &MeshSoup, target: usize) -> VertexAttribute {
+    at_vertices(own, ("POSITION", 3), |table| table.target == Some(target) && table.is_displacement())
 }
 
 /// Takes the meshes out of a glTF document, puts them back, and reads what is written.
@@ -78,6 +88,14 @@ pub fn edit(bytes: &[u8]) {
             let (normals, attributes, targets) = (None, &[][..], &targets[..]);
             let geometry = Geometry { positions, normals, triangles: &triangles, attributes, targets };
             let _ = asset.replace(mesh, part.primitive, &geometry);
+            let _ = asset.tangent_coordinates(mesh, part.primitive);
+            let texture = [at_vertices(&own, ("TEXCOORD_0", 2), |table| table.name == "TEXCOORD_0")];
+            // Some directions, and some that are none.
+            let geometry = Geometry { normals: Some(positions), attributes: &texture, ..geometry };
+            let moved: Vec<usize> = (0..targets.len()).collect();
+            if let Some(found) = WithTangents::of(&geometry, "TEXCOORD_0", &moved) {
+                let _ = asset.replace(mesh, part.primitive, &found.geometry());
+            }
         }
     }
     for format in [Format::Glb, Format::Gltf] {
@@ -98,13 +116,17 @@ pub fn carry(bytes: &[u8], format: Format) {
         return;
     }
     let Ok((mesh, _, trace)) = Mesh::from_soup_traced(&soup, &BuildOptions::default()) else { return };
-    let channels: Result<Vec<_>, _> = soup.channels.iter().map(|own| own.on_mesh(&soup, &mesh, &trace)).collect();
+    let channels: Result<Vec<_>, _> =
+        soup.channels.iter().map(|own| own.on_mesh(&soup, &mesh, &trace)).collect();
     let channels = match channels {
         Ok(channels) => channels,
         Err(error) => panic!("a channel that was read does not fit: {error}"),
     };
+    let size = |own: &Channel| own.values.iter().fold(f64::MIN_POSITIVE, |most, value| most.max(value.abs()));
+    let goals = channels.iter().filter_map(|own| goal(own, &mesh, 0.2 * size(own)).ok().flatten());
     let options = ExactOptions::default()
         .tolerance(0.05 * mesh.diagonal().max(f64::MIN_POSITIVE))
+        .attributes(goals.collect())
         .max_triangles(Some(16 * FEW))
         .flat_regions(false)
         .origins(true);
@@ -112,9 +134,13 @@ pub fn carry(bytes: &[u8], format: Format) {
     // Values may overflow where they are blended.
     let Ok(channels) = carried(&channels, &mesh, &Loop, &found) else { return };
     let output = Output::new(found.mesh.as_triangles()).channels(&channels);
-    for (format, ascii) in
-        [(Format::Obj, false), (Format::Ply, true), (Format::Ply, false), (Format::Off, false), (Format::Stl, true)]
-    {
+    for (format, ascii) in [
+        (Format::Obj, false),
+        (Format::Ply, true),
+        (Format::Ply, false),
+        (Format::Off, false),
+        (Format::Stl, true),
+    ] {
         let mut bytes = Vec::new();
         if write_to(&mut bytes, format, &output, &WriteOptions::default().ascii(ascii)).is_ok()
             && let Err(error) = read_bytes(&bytes, format)
@@ -129,7 +155,9 @@ pub fn packed(model: &[u8]) -> Vec<u8> {
     const RELATIONSHIPS: &[u8] = b"<Relationships><Relationship Target=\"/a.model\" \
         Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, bytes) in [("_rels/.rels", RELATIONSHIPS), ("a.model", model), ("Metadata/Slic3r_PE_model.config", model)] {
+    for (name, bytes) in
+        [("_rels/.rels", RELATIONSHIPS), ("a.model", model), ("Metadata/Slic3r_PE_model.config", model)]
+    {
         let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
         let written = writer.start_file(name, options).map(|()| writer.write_all(bytes));
         assert!(matches!(written, Ok(Ok(()))), "memory can be written to");
@@ -148,7 +176,8 @@ pub fn edit_package(bytes: Vec<u8>) {
         let centre = Some([[0.4, 0.3, 0.3], [0.3, 0.4, 0.3], [0.3, 0.3, 0.4]]);
         let source = |triangle: usize| Source { face: last - triangle, corners: centre };
         let positions = &soup.positions;
-        let new = NewTriangles { positions, triangles: &triangles, source: &source, keeps: &|name| name != "pid" };
+        let new =
+            NewTriangles { positions, triangles: &triangles, source: &source, keeps: &|name| name != "pid" };
         let _ = package.replace(object, &new);
     }
     let Ok(written) = package.to_bytes() else { return };
