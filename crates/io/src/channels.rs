@@ -50,7 +50,14 @@ pub fn holds(format: Format, options: &WriteOptions, channel: &Channel) -> bool 
         // One in text, the other in bytes.
         Format::Stl if options.ascii => is_named(OBJECT),
         Format::Stl => is_named(ATTRIBUTE) && channel.arity == 1,
-        Format::Gltf | Format::Glb | Format::ThreeMf => false,
+        // A new document's; one that is edited keeps what it has.
+        Format::Gltf | Format::Glb => match channel.semantic {
+            Semantic::TextureCoordinates => channel.domain != Domain::Face,
+            Semantic::Colour => channel.domain != Domain::Face && [3, 4].contains(&channel.arity),
+            Semantic::Other => channel.domain != Domain::Face && (1..=4).contains(&channel.arity),
+            _ => is_named(MATERIAL),
+        },
+        Format::ThreeMf => false,
     }
 }
 
@@ -77,7 +84,7 @@ pub(crate) fn by_vertex(channel: &Channel, vertices: usize, triangles: &[[u32; 3
 /// How many vertices have several values of a channel of which a format holds one: these get the first of their corners'.
 pub fn values_lost(format: Format, channel: &Channel, triangles: &[[u32; 3]], vertices: usize) -> usize {
     let options = WriteOptions::default();
-    let is_by_corner = channel.semantic == Semantic::TextureCoordinates;
+    let is_by_corner = channel.semantic == Semantic::TextureCoordinates || format.is_gltf();
     if channel.domain != Domain::Corner || is_by_corner || !holds(format, &options, channel) {
         return 0;
     }

@@ -143,3 +143,28 @@ fn tangents_without_their_texture_coordinates_are_left_out_and_told() {
     let attributes = &glb.primitive(0)["attributes"];
     assert!(attributes.get("TANGENT").is_none(), "{attributes}");
 }
+
+/// What another program wrote for a cube whose sides stay flat is what is found for it: directions and senses.
+#[test]
+fn another_program_s_tangents_are_found_again() {
+    let Some(models) = std::env::var_os("LIMITMESH_MODELS") else {
+        println!("skipped: LIMITMESH_MODELS names no folder");
+        return;
+    };
+    let folder = folder();
+    let input = PathBuf::from(models).join("assets").join("cubevc.glb");
+    let output = folder.path().join("out.glb");
+    run("refine {} -o {} --tolerance 0.5% --crease-angle 30", &[&input, &output]).expect(0);
+    let sides = |glb: &Glb| {
+        let attributes = &glb.primitive(0)["attributes"];
+        let rounded = |x: &f64| (100.0 * x).round() as i64;
+        let (normals, tangents) = (glb.numbers(&attributes["NORMAL"]), glb.numbers(&attributes["TANGENT"]));
+        let pairs = normals.chunks(3).zip(tangents.chunks(4));
+        let pairs =
+            pairs.map(|(normal, tangent)| normal.iter().chain(tangent).map(rounded).collect::<Vec<i64>>());
+        pairs.collect::<std::collections::BTreeSet<_>>()
+    };
+    let [theirs, ours] = [&input, &output].map(|path| sides(&Glb::read(path)));
+    assert_eq!(theirs.len(), 6);
+    assert_eq!(theirs, ours);
+}

@@ -1,53 +1,189 @@
-//! A document of one mesh, for triangles that come from no document.
+//! A document of one mesh, for triangles that come from no document: with texture coordinates, colours, numbers of vertices and
+//! corners, and a primitive for each material, of which the name is known.
+//!
+//! A vertex of the file stands for each vertex of the surface and each combination of values there. v runs downwards in glTF.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use limitmesh::mesh::{Channel, Domain, Semantic, Triangles};
+use serde_json::{Value, json};
 
 use super::changes::Changes;
 use super::source::Source;
-use super::{Asset, Geometry};
+use super::{Asset, Geometry, VertexAttribute};
+use crate::channels::MATERIAL;
 use crate::error::WriteError;
 use crate::format::Format;
-use crate::write::Output;
-use limitmesh::mesh::Triangles;
-use std::path::Path;
+use crate::write::{Output, WriteOptions};
 
-macro_rules! document {
-    ($rest:literal) => {
-        concat!(
-            r#"{"asset":{"version":"2.0","generator":"limitmesh "#,
-            env!("CARGO_PKG_VERSION"),
-            r#""}"#,
-            $rest
-        )
-    };
-}
-
-/// What there is to say of no triangles: a mesh needs some.
-const NOTHING: &str = document!("}");
-
-/// What geometry is put into.
-const EMPTY: &str = document!(
-    r#","scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{}}]}]}"#
-);
-
-/// Writes triangles with their normals to a file, or to one byte vector without a path.
+/// Writes triangles with their normals and channels to a file, or to one byte vector without a path.
 pub(crate) fn write_fresh(
     path: Option<&Path>,
     format: Format,
     output: &Output<'_>,
 ) -> Result<Vec<u8>, WriteError> {
     let flawed = |flaw| WriteError::Gltf { flaw };
-    let text = if output.surface.triangles.is_empty() { NOTHING } else { EMPTY };
-    let source = Source::parse(text.as_bytes(), None).map_err(flawed)?;
+    let groups = Groups::of(output);
+    let source = Source::parse(groups.document().to_string().as_bytes(), None).map_err(flawed)?;
     let scene = source.scene().map_err(flawed)?;
     let mut asset = Asset { path: None, source, scene, changes: Changes::default() };
     // Where vertices have several normals, the writer is given a vertex for each.
     let normals = output.normals.filter(|_| output.corner_normals.is_none());
-    let Triangles { positions, triangles } = output.surface;
-    let geometry = Geometry { positions, normals, triangles, attributes: &[], targets: &[] };
-    if !geometry.triangles.is_empty() {
-        asset.replace(0, 0, &geometry).map_err(flawed)?;
+    let channels = attributes(output);
+    for (number, triangles) in groups.triangles.iter().enumerate() {
+        let own = Part::of(output, &channels, triangles);
+        let at = |points: &[[f64; 3]]| own.vertices.iter().map(|&v| points[v as usize]).collect::<Vec<_>>();
+        let normals = normals.map(at);
+        let geometry = Geometry {
+            positions: &at(output.surface.positions),
+            normals: normals.as_deref(),
+            triangles: &own.triangles,
+            attributes: &own.attributes,
+            targets: &[],
+        };
+        asset.replace(0, number, &geometry).map_err(flawed)?;
     }
     match path {
         Some(path) => asset.write(path, format).map(|_| Vec::new()),
         None => asset.to_bytes(format),
     }
+}
+
+/// Triangles by material, in the order in which materials are met.
+struct Groups {
+    /// Empty for triangles without one.
+    names: Vec<String>,
+    triangles: Vec<Vec<usize>>,
+}
+
+impl Groups {
+    fn of(output: &Output<'_>) -> Self {
+        let count = output.surface.triangles.len();
+        let is_material = |own: &&Channel| own.name == MATERIAL && own.domain == Domain::Face;
+        let Some(channel) = output.channels.iter().find(is_material) else {
+            // A mesh needs some triangles.
+            let triangles = if count > 0 { vec![(0..count).collect()] } else { Vec::new() };
+            return Self { names: vec![String::new(); triangles.len()], triangles };
+        };
+        let (mut names, mut triangles, mut numbers) = (Vec::new(), Vec::new(), HashMap::new());
+        for (triangle, &label) in channel.indices.iter().enumerate() {
+            let number = *numbers.entry(label).or_insert_with(|| {
+                let value = channel.values.get(label as usize).map_or(0, |&value| value as usize);
+                names.push(channel.labels.get(value).cloned().unwrap_or_default());
+                triangles.push(Vec::new());
+                names.len() - 1
+            });
+            triangles[number].push(triangle);
+        }
+        Self { names, triangles }
+    }
+
+    /// What geometry is put into.
+    fn document(&self) -> Value {
+        let generator = concat!("limitmesh ", env!("CARGO_PKG_VERSION"));
+        let mut document = json!({"asset": {"version": "2.0", "generator": generator}});
+        if self.triangles.is_empty() {
+            return document;
+        }
+        let mut materials: Vec<Value> = Vec::new();
+        let primitives = self.names.iter().map(|name| {
+            let mut primitive = json!({"attributes": {}});
+            if !name.is_empty() {
+                primitive["material"] = materials.len().into();
+                materials.push(json!({ "name": name }));
+            }
+            primitive
+        });
+        let primitives: Vec<Value> = primitives.collect();
+        document["scene"] = 0.into();
+        document["scenes"] = json!([{"nodes": [0]}]);
+        document["nodes"] = json!([{"mesh": 0}]);
+        document["meshes"] = json!([{ "primitives": primitives }]);
+        if !materials.is_empty() {
+            document["materials"] = materials.into();
+        }
+        document
+    }
+}
+
+/// The channels that become attributes, by their names in the document.
+fn attributes<'a>(output: &Output<'a>) -> Vec<(String, &'a Channel)> {
+    let options = WriteOptions::default();
+    let held = output.channels.iter().filter(|own| own.domain != Domain::Face && own.value_count() > 0);
+    let mut named: Vec<(String, &Channel)> = Vec::new();
+    for channel in held.filter(|own| crate::holds(Format::Glb, &options, own)) {
+        let usual = match channel.semantic {
+            Semantic::TextureCoordinates => Some("TEXCOORD_"),
+            Semantic::Colour => Some("COLOR_"),
+            _ => None,
+        };
+        let name = match usual {
+            Some(kind) => {
+                let count = named.iter().filter(|(name, _)| name.starts_with(kind)).count();
+                format!("{kind}{count}")
+            }
+            None => own_name(&channel.name),
+        };
+        if named.iter().all(|(known, _)| *known != name) {
+            named.push((name, channel));
+        }
+    }
+    named
+}
+
+/// A name that is no name of the specification's: these begin with a line below.
+fn own_name(name: &str) -> String {
+    let visible = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' });
+    let visible: String = visible.collect();
+    if visible.starts_with('_') { visible } else { format!("_{visible}") }
+}
+
+/// The vertices of a primitive, in the order of the file.
+struct Part {
+    /// Of the surface.
+    vertices: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    attributes: Vec<VertexAttribute>,
+}
+
+impl Part {
+    fn of(output: &Output<'_>, channels: &[(String, &Channel)], triangles: &[usize]) -> Self {
+        let Triangles { triangles: corners, .. } = output.surface;
+        let mut known: HashMap<(u32, Vec<u32>), u32> = HashMap::new();
+        let mut vertices = Vec::new();
+        let mut values: Vec<Vec<u32>> = vec![Vec::new(); channels.len()];
+        let mut number = |triangle: usize, corner: usize| {
+            let vertex = corners[triangle][corner];
+            let index = |(_, channel): &(String, &Channel)| match channel.domain {
+                Domain::Vertex => channel.indices[vertex as usize],
+                _ => channel.indices[3 * triangle + corner],
+            };
+            let own: Vec<u32> = channels.iter().map(index).collect();
+            *known.entry((vertex, own)).or_insert_with_key(|(vertex, own)| {
+                vertices.push(*vertex);
+                values.iter_mut().zip(own).for_each(|(list, &value)| list.push(value));
+                vertices.len() as u32 - 1
+            })
+        };
+        let triangles = triangles.iter().map(|&triangle| [0, 1, 2].map(|corner| number(triangle, corner)));
+        let triangles = triangles.collect();
+        let attributes =
+            channels.iter().zip(&values).map(|((name, channel), values)| attribute(name, channel, values));
+        Self { vertices, triangles, attributes: attributes.collect() }
+    }
+}
+
+fn attribute(name: &str, channel: &Channel, indices: &[u32]) -> VertexAttribute {
+    let is_texture = channel.semantic == Semantic::TextureCoordinates;
+    let width = if is_texture { 2 } else { channel.arity };
+    let mut values = Vec::with_capacity(width * indices.len());
+    for &index in indices {
+        let value = &channel.values[index as usize * channel.arity..][..channel.arity];
+        match is_texture {
+            true => values.extend([value[0], 1.0 - value.get(1).copied().unwrap_or(0.0)]),
+            false => values.extend(value),
+        }
+    }
+    VertexAttribute { name: name.to_owned(), width, values, is_integer: false }
 }

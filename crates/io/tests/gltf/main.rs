@@ -6,6 +6,7 @@ mod accessors;
 mod assets;
 mod editing;
 mod flaws;
+mod fresh_documents;
 mod joining;
 mod mutations;
 mod scenes;
