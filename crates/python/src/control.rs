@@ -124,9 +124,10 @@ impl Control {
         !self.channels.iter().all(is_one)
     }
 
-    /// The input's face that a control face is from.
-    pub(crate) fn input_face(&self, face: u32) -> u32 {
-        self.faces[self.parts.whole(face) as usize]
+    /// The input's faces that control faces are from; none where nothing is told of them.
+    pub(crate) fn input_faces(&self, faces: &[u32]) -> Option<Vec<u32>> {
+        let input = |&face: &u32| self.faces[self.parts.whole(face) as usize];
+        (!faces.is_empty()).then(|| faces.iter().map(input).collect())
     }
 }
 

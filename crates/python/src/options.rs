@@ -95,7 +95,7 @@ pub(crate) struct Goals {
     optimize: bool,
     balance: bool,
     flat_regions: bool,
-    origins: bool,
+    pub(crate) origins: bool,
     max_triangles: Option<usize>,
     max_levels: Option<usize>,
     max_memory: Option<usize>,

@@ -167,10 +167,8 @@ fn exact(
     };
     let inverted = found.inverted_triangles();
     let (side_corners, side_normals) = std::mem::take(&mut found.sides).into_iter().unzip();
-    let origins = (!found.origins.is_empty()).then(|| Origins::new(control, &found.origins));
-    let parents = std::mem::take(&mut found.parents);
-    let parents = (parents.len() == found.mesh.face_count())
-        .then(|| parents.into_iter().map(|face| control.input_face(face)).collect());
+    let origins = Origins::new(control, &found.origins);
+    let parents = control.input_faces(&found.parents);
     let error = found.error;
     let (positions, triangles) = found.mesh.into_positions_and_triangles();
     Ok(Refined {
@@ -204,13 +202,17 @@ fn exact(
 }
 
 impl Origins {
-    fn new(control: &Control, origins: &[Origin]) -> Self {
+    /// None where the library tells of none.
+    fn new(control: &Control, origins: &[Origin]) -> Option<Self> {
+        if origins.is_empty() {
+            return None;
+        }
         let on_whole = |origin: &Origin| control.parts.on_whole(origin.face, origin.barycentric);
         let (faces, barycentric): (Vec<u32>, Vec<[f64; 3]>) = origins.iter().map(on_whole).unzip();
         let corners = |&face: &u32| [0, 1, 2].map(|corner| control.corners[3 * face as usize + corner]);
         let vertices = faces.iter().map(corners).collect();
         let faces = faces.into_iter().map(|face| control.faces[face as usize]).collect();
-        Self { faces, vertices, barycentric }
+        Some(Self { faces, vertices, barycentric })
     }
 }
 
@@ -235,13 +237,14 @@ fn stepwise(
     };
     let (mesh, scheme, cap) = (&control.mesh, recipe.scheme, goals.cap());
     let carries = !control.channels.is_empty();
+    let traces = carries || goals.origins;
     let found = match criterion {
         Some(criterion) => {
-            let options = StepwiseOptions::default().levels(goals.levels).origins(carries).max_triangles(cap);
+            let options = StepwiseOptions::default().levels(goals.levels).origins(traces).max_triangles(cap);
             stepwise_observed(mesh, scheme, criterion.as_ref(), &options, observer)?
         }
         None => {
-            let options = UniformOptions::default().levels(goals.levels).origins(carries).max_triangles(cap);
+            let options = UniformOptions::default().levels(goals.levels).origins(traces).max_triangles(cap);
             uniform_observed(mesh, scheme, &options, observer)?
         }
     };
@@ -249,6 +252,8 @@ fn stepwise(
         true => carried(&control.channels, mesh, scheme, &found)?,
         false => Vec::new(),
     };
+    let origins = Origins::new(control, &found.origins);
+    let parents = control.input_faces(&found.parents);
     let (side_corners, side_normals, normals) = sided_normals(&found.mesh, recipe)?;
     let (positions, triangles) = found.mesh.into_positions_and_triangles();
     Ok(Refined {
@@ -259,8 +264,8 @@ fn stepwise(
         normals,
         side_corners,
         side_normals,
-        origins: None,
-        parents: None,
+        origins,
+        parents,
         channels,
         error: None,
         stop: match found.stop {

@@ -108,6 +108,31 @@ def test_origins_are_places_of_the_input(grid):
     assert (middles >= corners.min(axis=1) - 1e-9).all() and (middles <= corners.max(axis=1) + 1e-9).all()
 
 
+@pytest.mark.parametrize("method", ["uniform", "limit-normal", "amresh"])
+def test_origins_of_steps_are_places_of_the_input(grid, method):
+    vertices, faces = grid
+    angle = None if method == "uniform" else 3
+    found = limitmesh.refine(vertices, faces, method=method, levels=2, angle=angle)
+    assert len(found.faces) > len(faces)
+    np.testing.assert_allclose(found.barycentric.sum(axis=1), 1.0)
+    assert (np.sort(faces[found.vertex_face], axis=1) == np.sort(found.barycentric_vertices, axis=1)).all()
+    places = np.einsum("nk,nkx->nx", found.barycentric, vertices[found.barycentric_vertices])
+    # Each triangle is a part of its face: parts have the area of the whole together.
+    sides = np.diff(places[found.faces][:, :, :2], axis=1)
+    area = np.abs(np.linalg.det(sides)) / 2
+    np.testing.assert_allclose(np.bincount(found.parent_face, area, len(faces)), 0.5)
+    corners = vertices[faces[found.parent_face]][:, :, :2]
+    middles = places[found.faces][:, :, :2].mean(axis=1)
+    assert (middles >= corners.min(axis=1) - 1e-9).all() and (middles <= corners.max(axis=1) + 1e-9).all()
+    if method == "uniform":
+        # Steps keep x and y where they are linear around, and divide every face in four.
+        np.testing.assert_array_equal(found.parent_face, np.arange(len(faces)).repeat(16))
+        inside = (places[:, :2] >= 1.0).all(axis=1) & (places[:, :2] <= 3.0).all(axis=1)
+        np.testing.assert_allclose(found.vertices[inside, :2], places[inside, :2], atol=1e-12)
+    bare = limitmesh.refine(vertices, faces, method=method, levels=2, angle=angle, origins=False)
+    assert bare.vertices.tobytes() == found.vertices.tobytes() and bare.barycentric is None and bare.parent_face is None
+
+
 def test_whatever_asarray_takes_gives_the_same(octahedron):
     vertices, faces = octahedron
     expected = limitmesh.refine(vertices, faces, tolerance=0.05)

@@ -91,9 +91,9 @@ class Refined:
         (n, 3) unit limit normals of the vertices; at sharp edges an average of the sides, zero where there is none.
     parent_face
         (m,) the row of ``faces`` of the input that each triangle came from, with ``optimize`` one of those that it reaches over; None
-        for methods that do not tell.
+        for stepwise methods with ``origins=False``.
     vertex_face
-        (n,) a row of ``faces`` of the input on which each vertex was.
+        (n,) a row of ``faces`` of the input on which each vertex was; None with ``origins=False``, as the next two are.
     barycentric
         (n, 3) where on it: weights of the vertices ``barycentric_vertices``.
     barycentric_vertices
