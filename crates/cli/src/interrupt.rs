@@ -4,7 +4,7 @@
 //! Files are written to a temporary neighbour and renamed, so no reader ever sees half of one. The guard here
 //! keeps a signal from leaving such a temporary file behind: it waits for the file in hand.
 
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use anyhow::Context;
@@ -82,7 +82,7 @@ fn end(signal: Signal) {
     let mut state = state();
     match &state.writing {
         Some(name) => {
-            eprintln!("{}{} is written to its end first", line_start(), name);
+            say(&format!("{name} is written to its end first"));
             state.asked = Some(signal);
         }
         None if state.is_left_to_caller => state.asked = Some(signal),
@@ -126,8 +126,13 @@ fn exit(state: &State, signal: Signal) -> ! {
         [] => "nothing was written".to_owned(),
         names => format!("{} written by then", names.join(", ")),
     };
-    eprintln!("{}cancelled by {}{doing}; {written}", line_start(), signal.name);
+    say(&format!("cancelled by {}{doing}; {written}", signal.name));
     std::process::exit(128 + signal.number)
+}
+
+/// Prints a line on standard error, if anybody is left to read it.
+fn say(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{}{line}", line_start());
 }
 
 /// Clears the line of the spinner on a terminal.

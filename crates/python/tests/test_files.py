@@ -148,3 +148,15 @@ def test_real_meshes_are_read_and_refined():
     for name in ("duck.glb", "teapot.obj", "bunny_1k.off", "featuretype.stl", "sphere_320.ply"):
         found = limitmesh.refine(folder / name, tolerance="1%")
         assert found.met and found.error.upper <= 0.01 * limitmesh.info(folder / name)["bounding_box"]["diagonal"]
+
+
+def test_the_program_does_batches_with_processes_of_its_own(tmp_path):
+    jobs = [{"input": f"builtin:{name}", "output": str(tmp_path / f"{name}.ply"), "tolerance": "1%"} for name in ("cube", "cup")]
+    (tmp_path / "jobs.jsonl").write_text("\n".join(map(json.dumps, jobs)))
+    command = [sys.executable, "-m", "limitmesh", "batch", str(tmp_path / "jobs.jsonl"), "-o", str(tmp_path / "results.jsonl")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    results = [json.loads(line) for line in (tmp_path / "results.jsonl").read_text().splitlines()]
+    for job, result in zip(jobs, results, strict=True):
+        assert result["status"] == "done"
+        assert len(limitmesh.load(job["output"]).faces) == result["report"]["output"]["triangles"]

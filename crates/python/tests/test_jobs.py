@@ -123,6 +123,40 @@ def test_processes_that_are_started_after_a_call(method):
     assert all(one == expected for one in found)
 
 
+def by_joblib(job, names):
+    joblib = pytest.importorskip("joblib")
+    return joblib.Parallel(n_jobs=2, backend="loky")(joblib.delayed(job)(name) for name in names)
+
+
+def by_dask(job, names):
+    distributed = pytest.importorskip("dask.distributed")
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
+        return client.gather(client.map(job, names, pure=False))
+
+
+def by_ray(job, names):
+    ray = pytest.importorskip("ray")
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
+    try:
+        return ray.get([ray.remote(job).remote(name) for name in names])
+    finally:
+        ray.shutdown()
+
+
+@pytest.mark.parametrize("engine", [by_joblib, by_dask, by_ray])
+@pytest.mark.filterwarnings("ignore")
+def test_engines_that_are_started_after_a_call(engine):
+    # Pickled by value: an engine's processes need not find this file.
+    def job(name):
+        import limitmesh
+
+        return limitmesh.refine(name, tolerance="0.2%", threads=1).vertices.tobytes()
+
+    expected = in_a_child("builtin:cup")
+    assert all(one == expected for one in engine(job, ["builtin:cup"] * 4))
+
+
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_a_fork_amid_a_call_of_another_thread():

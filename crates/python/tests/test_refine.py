@@ -270,6 +270,20 @@ def test_results_pickle(octahedron):
         found.stop = "never"
 
 
+def test_options_and_errors_pickle(octahedron):
+    camera = limitmesh.Camera(eye=(0, 0, 5))
+    assert pickle.loads(pickle.dumps(camera)) == camera
+    mesh = limitmesh.Mesh(*octahedron, {"x": limitmesh.Channel(octahedron[0][:, 0])}, creases=[(0, 2)])
+    again = pickle.loads(pickle.dumps(mesh))
+    options = {"cameras": camera, "pixels": 2.0, "crease_angle": 80, "threads": 1}
+    options = pickle.loads(pickle.dumps(options))
+    assert limitmesh.refine(again, **options).vertices.tobytes() == limitmesh.refine(mesh, **options).vertices.tobytes()
+    assert pickle.loads(pickle.dumps(limitmesh.estimate(mesh, tolerance="1%"))) == limitmesh.estimate(mesh, tolerance="1%")
+    for kind in (limitmesh.Error, limitmesh.MeshError, limitmesh.OptionError, limitmesh.ReadError):
+        told = pickle.loads(pickle.dumps(kind("faces[3]")))
+        assert type(told) is kind and str(told) == "faces[3]"
+
+
 def test_notebooks_see_a_picture(octahedron):
     html = limitmesh.refine(*octahedron)._repr_html_()
     assert html.startswith("<div><img") and "certainly within" in html

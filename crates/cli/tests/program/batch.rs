@@ -296,6 +296,34 @@ fn killed_twice_and_resumed_it_gives_the_same_bytes() {
     assert!(meshes(&outputs) == whole);
 }
 
+/// Whether a process has this word on its command line.
+#[cfg(target_os = "linux")]
+fn is_running(word: &str) -> bool {
+    let processes = std::fs::read_dir("/proc").expect("a folder").filter_map(Result::ok);
+    let mut lines = processes.filter_map(|own| std::fs::read(own.path().join("cmdline")).ok());
+    lines.any(|line| String::from_utf8_lossy(&line).contains(word))
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn jobs_do_not_outlive_a_batch_that_is_killed() {
+    let folder = folder();
+    let output = below(&folder, "long.ply");
+    let list = jobs(&folder, &[json!({"input": "builtin:bunny", "output": output, "tolerance": 1e-12})]);
+    let running = Running::start("batch {} -o {}", &[&list, &folder.path().join("found.jsonl")]);
+    let wait_until = |expected: bool| {
+        let start = Instant::now();
+        while is_running(&output) != expected {
+            assert!(start.elapsed() < Duration::from_secs(60), "running is not {expected}");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    };
+    wait_until(true);
+    drop(running);
+    wait_until(false);
+    assert_eq!(names(folder.path()), ["found.jsonl", "jobs.jsonl"]);
+}
+
 #[cfg(unix)]
 #[test]
 fn signals_leave_results_that_can_be_resumed_and_nothing_else() {
