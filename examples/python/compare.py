@@ -12,13 +12,13 @@ results = {}
 if find_spec("trimesh"):
     import trimesh
 
-    results["trimesh.remesh.subdivide_loop"] = trimesh.remesh.subdivide_loop(vertices, faces, iterations=2)
+    results["trimesh.remesh.subdivide_loop"] = trimesh.remesh.subdivide_loop(vertices, faces, iterations=1)
 if find_spec("pyvista"):
     import pyvista
 
-    loop = pyvista.PolyData.from_regular_faces(vertices, faces).subdivide(2, subfilter="loop")
+    loop = pyvista.PolyData.from_regular_faces(vertices, faces).subdivide(1, subfilter="loop")
     results["pyvista subdivide, loop"] = (loop.points, loop.regular_faces)
-uniform = limitmesh.refine(mesh, method="uniform", levels=2)
+uniform = limitmesh.refine(mesh, method="uniform", levels=1)
 results["uniform, limitmesh"] = (uniform.vertices, uniform.faces)
 results["exact, limitmesh"] = limitmesh.refine(mesh, triangles=len(uniform.faces))
 
