@@ -135,19 +135,24 @@ def memory(value: float | str | None) -> int | None:
     if value is None:
         return None
     if isinstance(value, str):
-        text = value.strip()
-        found = re.fullmatch(r"([0-9.]+(?:e[0-9]+)?)\s*(%|[KMGT]?i?B?)", text, re.IGNORECASE)
-        try:
-            amount = float(found[1]) if found else float("nan")
-        except ValueError:
-            amount = float("nan")
-        if not found or not amount > 0.0:
-            raise OptionError(f"max_memory is {value!r}, expected bytes, such as '500MB', or '50%' of the machine's")
-        if found[2] == "%":
-            whole_memory = machine_memory()
-            return None if whole_memory is None else int(amount / 100.0 * whole_memory)
-        return int(amount * _UNITS[found[2].upper().rstrip("B").rstrip("I")])
+        return _memory_of(value)
     return int(number(value, "max_memory", "bytes above 0", lambda x: 0.0 < x < 2**62))
+
+
+@functools.cache
+def _memory_of(value: str) -> int | None:
+    text = value.strip()
+    found = re.fullmatch(r"([0-9.]+(?:e[0-9]+)?)\s*(%|[KMGT]?i?B?)", text, re.IGNORECASE)
+    try:
+        amount = float(found[1]) if found else float("nan")
+    except ValueError:
+        amount = float("nan")
+    if not found or not amount > 0.0:
+        raise OptionError(f"max_memory is {value!r}, expected bytes, such as '500MB', or '50%' of the machine's")
+    if found[2] == "%":
+        whole_memory = machine_memory()
+        return None if whole_memory is None else int(amount / 100.0 * whole_memory)
+    return int(amount * _UNITS[found[2].upper().rstrip("B").rstrip("I")])
 
 
 @functools.cache
