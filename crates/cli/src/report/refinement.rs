@@ -113,6 +113,13 @@ pub(crate) struct AttributeReport {
     pub(crate) upper: Option<f64>,
 }
 
+impl AttributeReport {
+    /// Whether it is not known to be met.
+    pub(crate) fn is_missed(&self) -> bool {
+        self.upper.is_none_or(|upper| upper > self.tolerance)
+    }
+}
+
 /// The name of a stepwise method's stop: all steps were done, no face was divisible any more, or the next step would
 /// have passed the cap.
 pub(crate) fn stop_name(stop: Stop) -> &'static str {

@@ -133,3 +133,39 @@ fn attributes_of_assets_are_carried_as_asked() {
         .expect(2)
         .saying("no channel 'HEAT'; there are: _HEAT; _SIDE");
 }
+
+/// A conversion moves nothing: texture coordinates are those of the file, to the digit.
+#[test]
+fn no_steps_leave_texture_coordinates_where_they_are() {
+    let folder = folder();
+    let text = "v 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nv 2 1 2\nvt 0 0\nvt 0.9 0.1\nvt 1 1\nvt 0 0.7\nvt 0.3 0.45\n\
+        f 1/1 2/2 5/5\nf 2/2 3/3 5/5\nf 3/3 4/4 5/5\nf 4/4 1/1 5/5\n";
+    let (input, output) = (file(&folder, "in.obj", text), folder.path().join("out.obj"));
+    run("refine {} -o {} --method uniform --levels 0", &[&input, &output]).expect(0);
+    let corners = |path: &std::path::Path| {
+        let soup = soup(path);
+        let texture = soup.channels.iter().find(|own| own.name == limitmesh_io::TEXTURE).expect("a texture");
+        (0..12).map(|corner| texture.value(corner).to_vec()).collect::<Vec<_>>()
+    };
+    assert_eq!(corners(&input), corners(&output));
+}
+
+/// What an OBJ file leads to and the output does not is told, and corners that have no texture coordinates are counted.
+#[test]
+fn materials_that_stay_behind_are_told() {
+    let folder = folder();
+    let text = "mtllib paint.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl red\n\
+        f 1/1 2/2 3/3\nf 1 3 4\n";
+    let input = file(&folder, "in.obj", text);
+    run("refine {} -o {}", &[&input, &folder.path().join("out.glb")])
+        .expect(0)
+        .saying("left out: paint.mtl (of materials the names alone")
+        .saying("3 corners have no texture coordinates");
+    let other = folder.path().join("other");
+    std::fs::create_dir(&other).expect("a folder");
+    run("refine {} -o {}", &[&input, &other.join("out.obj")])
+        .expect(0)
+        .saying("paint.mtl: named, not copied");
+    let beside = run("refine {} -o {}", &[&input, &folder.path().join("out.obj")]).expect(0);
+    assert!(!beside.stderr.contains("paint.mtl"), "{}", beside.stderr);
+}

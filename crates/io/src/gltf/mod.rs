@@ -49,7 +49,7 @@ use crate::read::read_all;
 use changes::Changes;
 use flaw::Result as Flawed;
 use limitmesh::PolygonSoup;
-use scene::Scene;
+use scene::{Placement, Scene};
 use scene_channels::SceneChannels;
 use source::Source;
 use std::collections::BTreeSet;
@@ -224,13 +224,29 @@ impl Asset {
             let soup = self.shape(mesh)?;
             for placement in self.scene.shown(mesh) {
                 for v in 0..soup.soup.positions.len() {
-                    let p = placement.apply(&soup, v);
+                    let p = self.shown(mesh, placement, &soup, v)?;
                     let [low, high] = found.get_or_insert([p, p]);
                     (0..3).for_each(|i| (low[i], high[i]) = (low[i].min(p[i]), high[i].max(p[i])));
                 }
             }
         }
         Ok(found)
+    }
+
+    /// Where the scene shows a vertex of a mesh: matrices of nodes, instances and skins may hold anything.
+    fn shown(
+        &self,
+        mesh: usize,
+        placement: &Placement,
+        soup: &MeshSoup,
+        v: usize,
+    ) -> Result<[f64; 3], ReadError> {
+        let p = placement.apply(soup, v);
+        if p.iter().all(|x| x.is_finite()) {
+            return Ok(p);
+        }
+        let met = format!("vertex {v} of {}, which it shows at {p:?}", self.mesh_name(mesh));
+        Err(self.told(GltfFlaw::new("the scene", met, "finite coordinates")))
     }
 
     /// Everything that the scene shows as one soup in the scene's coordinates, with texture coordinates, colours, names of materials
@@ -254,7 +270,9 @@ impl Asset {
                     let met = format!("more than {MOST} vertices or triangles with all instances");
                     return Err(self.told(GltfFlaw::new("the scene", met, "fewer")));
                 }
-                all.positions.extend((0..own.soup.positions.len()).map(|v| placement.apply(&own, v)));
+                for v in 0..own.soup.positions.len() {
+                    all.positions.push(self.shown(mesh, placement, &own, v)?);
+                }
                 for face in own.soup.faces.iter() {
                     let mut corners: Vec<u32> = face.iter().map(|&v| v + first as u32).collect();
                     if placement.mirrors() {

@@ -112,6 +112,10 @@ impl Reader<'_> {
             self.left_out.note(Kind::Materials);
         }
         let (vertices, faces) = (self.soup.positions.len(), &self.soup.faces);
+        let bare = self.attributes.corners_without_textures(faces.corner_count());
+        if bare > 0 {
+            self.left_out.other(format!("that {bare} corners have no texture coordinates: they have 0 0"));
+        }
         self.soup.channels = self.attributes.channels(vertices, faces.len(), faces.corner_count());
         self.soup.left_out = self.left_out.in_words();
         Ok(self.soup)

@@ -131,3 +131,22 @@ fn with_primitive(bytes: &[u8], primitive: &str) -> Vec<u8> {
     let (text, bin) = parts(bytes);
     glb(&text.replace(r#""attributes":{"POSITION":0}"#, primitive), &bin)
 }
+
+/// Matrices may bring vertices anywhere: what is no place is an error, in the box of the scene and in the scene as one mesh. Found by fuzzing.
+#[test]
+fn vertices_that_are_shown_nowhere_are_refused() {
+    let top = r#""extensionsUsed":["EXT_mesh_gpu_instancing"],"scene":0,"scenes":[{"nodes":[0]}],
+        "nodes":[{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1}}}}],
+        "buffers":[{"byteLength":48}],
+        "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":12}],
+        "accessors":[{"count":3,"type":"VEC3","componentType":5126,"bufferView":0},
+            {"count":1,"type":"VEC3","componentType":5126,"bufferView":1}]"#;
+    let text = super::support::document(top, r#""attributes":{"POSITION":0}"#);
+    let corners = [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, f32::NAN, 0.0, 0.0];
+    let bin: Vec<u8> = corners.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let asset = limitmesh_io::Asset::from_bytes(&super::support::glb(&text, &bin), None).unwrap();
+    for error in [asset.bounding_box().unwrap_err(), asset.scene_soup().unwrap_err()] {
+        let error = error.to_string();
+        assert!(error.contains("the scene") && error.contains("finite coordinates"), "{error}");
+    }
+}

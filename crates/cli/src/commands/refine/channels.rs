@@ -1,5 +1,7 @@
 //! What the input carries beside its shape, on its way to the output: texture coordinates, colours, materials, groups.
 
+use std::path::{Path, PathBuf};
+
 use limitmesh::Mesh;
 use limitmesh::carry::carried;
 use limitmesh::mesh::{Channel, Domain, FaceParts};
@@ -15,8 +17,19 @@ fn names(channels: &[Channel]) -> String {
     names.join("; ")
 }
 
+/// Whether the output stands beside the input, so that it finds what that names.
+fn is_beside(arguments: &RefineArguments) -> bool {
+    let folder = |path: &Path| path.parent().map(Path::to_owned).unwrap_or_default();
+    let output = arguments.output.as_deref().map(folder);
+    let real = |folder: PathBuf| {
+        let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder };
+        folder.canonicalize().ok()
+    };
+    output.is_none_or(|output| real(output) == real(folder(arguments.input())))
+}
+
 /// The channels of a mesh, and the files that they lead to.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Channels {
     channels: Vec<Channel>,
     /// That describe materials.
@@ -47,6 +60,15 @@ impl Channels {
         }
         if kept.is_empty() {
             return Self::default();
+        }
+        if format != Format::Obj && !material_libraries.is_empty() {
+            let files = material_libraries.join("; ");
+            progress.note(format!(
+                "left out: {files} (of materials the names alone; only OBJ files name others)"
+            ));
+        } else if !material_libraries.is_empty() && !is_beside(arguments) {
+            let files = material_libraries.join("; ");
+            progress.note(format!("{files}: named, not copied to the output's folder"));
         }
         if format != Format::Ply && !texture_files.is_empty() {
             let files = texture_files.join("; ");

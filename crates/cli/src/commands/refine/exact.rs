@@ -22,8 +22,8 @@ use crate::format::{bytes, counted, number, thousands, upper_bound};
 use crate::progress::{Phases, Progress};
 use crate::report::refinement::exact_stop_name;
 use crate::report::{
-    CameraReport, ErrorReport, ExactParametersReport, InputDistanceReport, MethodReport, ParametersReport,
-    RoundEntry,
+    AttributeReport, CameraReport, ErrorReport, ExactParametersReport, InputDistanceReport, MethodReport,
+    ParametersReport, RoundEntry,
 };
 
 /// The tolerance where no goal is given: facets can hardly be seen then in a picture a thousand pixels wide.
@@ -162,9 +162,11 @@ impl Goals {
         options
     }
 
-    /// The goals on quality, as a list in words.
-    fn in_words(&self) -> String {
-        let tolerance = self.tolerance.map(|tolerance| match tolerance {
+    /// The goals on quality that were not met, or all where nobody knows which, as a list in words.
+    fn in_words(&self, found: &Exact) -> String {
+        let is_far = self.length.is_some_and(|length| found.error.upper > length);
+        let is_off = self.attributes.reached(found).iter().any(AttributeReport::is_missed);
+        let tolerance = self.tolerance.filter(|_| is_far || !is_off).map(|tolerance| match tolerance {
             Extent::Length(Length { value, unit }) => {
                 format!("the tolerance of {}{}", as_typed(value), unit_in_words(unit))
             }
@@ -172,7 +174,7 @@ impl Goals {
         });
         let angle = self.angle_degrees.map(|degrees| format!("the angle of {}°", as_typed(degrees)));
         let pixels = self.pixels.map(|pixels| format!("the {} pixels", as_typed(pixels)));
-        let attributes = self.attributes.in_words().map(str::to_owned);
+        let attributes = self.attributes.in_words().filter(|_| is_off || !is_far).map(str::to_owned);
         let goals: Vec<String> = [tolerance, angle, pixels, attributes].into_iter().flatten().collect();
         if goals.is_empty() { "the triangles asked for".to_owned() } else { goals.join(" and ") }
     }
@@ -464,10 +466,10 @@ fn outcome(
             format!("the control mesh has more than {cap} already")
         }
         ExactStop::TriangleCap | ExactStop::MemoryCap if triangles == control.face_count() => {
-            format!("{} would take more than {cap}, and nothing was divided", goals.in_words())
+            format!("{} would take more than {cap}, and nothing was divided", goals.in_words(found))
         }
         ExactStop::TriangleCap | ExactStop::MemoryCap | ExactStop::LevelCap => {
-            format!("{cap} was reached before {}", goals.in_words())
+            format!("{cap} was reached before {}", goals.in_words(found))
         }
         ExactStop::Triangles if goals.triangles.is_some_and(|wanted| triangles > wanted) => {
             let wanted = thousands(goals.triangles.unwrap_or_default());
@@ -480,7 +482,7 @@ fn outcome(
                 )
             }
         }
-        ExactStop::Rounding => format!("{} is finer than rounding leaves certain", goals.in_words()),
+        ExactStop::Rounding => format!("{} is finer than rounding leaves certain", goals.in_words(found)),
         _ => return Outcome::Done,
     };
     let written = format!(

@@ -110,6 +110,11 @@ impl PutBack<'_> {
             let mut targets: Vec<Vec<VertexAttribute>> = vec![Vec::new(); part.targets.len()];
             for (target, own) in targets.iter_mut().enumerate() {
                 own.extend(self.added_positions(number, target, &numbered));
+                let names = &part.targets[target];
+                let has = |name: &str| names.iter().any(|own| own == name);
+                if has("NORMAL") && !has("POSITION") {
+                    told.left_out.push("NORMAL of morph targets that move nothing".to_owned());
+                }
                 if has_normals(part, target) {
                     let moved = moved_normals[target].as_deref();
                     own.push(added_normals(moved, &numbered.surface, &directions));

@@ -39,7 +39,10 @@ pub(super) fn run(
 ) -> anyhow::Result<Refined> {
     let is_traced = keeps_origins || !channels.all().is_empty();
     let refined = refine(&control, is_traced, arguments, progress)?;
-    let channels = channels.refined(&control, &refined, arguments)?;
+    // Where nothing moves, values stay what they are, too.
+    let is_same = refined.mesh.positions() == control.positions() && !arguments.limit;
+    let channels =
+        if is_same { channels.clone() } else { channels.refined(&control, &refined, arguments)? };
     drop(control);
     let Refinement { mesh, steps, stop, origins, parents, .. } = refined;
     let (mesh, normals) = finish(mesh, arguments, format, progress)?;

@@ -78,6 +78,9 @@ const SHARES: usize = 256;
 /// Triangles that splitting a leaf adds, closing included, on the average.
 const ADDED: usize = 6;
 
+/// Goals for attributes are tried up to 2 to the power of this times as coarse where there is no room for what they ask.
+const COARSEST: u32 = 64;
+
 /// Under a budget with angles or pixels, the part that is kept for leaves that fail among their neighbours (one in so many) where
 /// that was too little.
 const RESERVE: usize = 100;
@@ -99,9 +102,12 @@ pub(super) fn adaptive(
     let (most, cap) = options.budget();
     let room = most.saturating_sub(mesh.face_count()) / ADDED;
     let watched = (mesh.face_count(), options.max_levels as u32, room);
-    let demands = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
-    let fits = demands.is_some();
-    let mut demands = demands.unwrap_or_default();
+    let demanded = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
+    let fits = demanded.is_some();
+    let mut demands = match demanded {
+        Some(demands) => demands,
+        None => fitting(&options.attributes, scheme, watched, observer)?,
+    };
     loop {
         let mut found = once(mesh, scheme, (options, &demands), observer)?;
         let held = functions.held(mesh, &found, &SharedWatch::new(observer, Stage::Bounding))?;
@@ -121,6 +127,31 @@ pub(super) fn adaptive(
             return Ok(found);
         }
     }
+}
+
+/// The nodes that goals ask for which are as many times coarser, by powers of two, as it takes for there to be no more than there may be;
+/// none where no such goals are.
+fn fitting(
+    goals: &[AttributeGoal],
+    scheme: &dyn Scheme,
+    watched: (usize, u32, usize),
+    observer: &mut Observer<'_>,
+) -> Result<Demands, RefineError> {
+    for halvings in 1..=COARSEST {
+        let coarser = scaled(goals, f64::from(halvings).exp2());
+        let functions = Functions::of(&coarser, scheme)?;
+        let found = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
+        if let Some(demands) = found {
+            return Ok(demands);
+        }
+    }
+    Ok(Demands::default())
+}
+
+/// Goals so many times as coarse.
+fn scaled(goals: &[AttributeGoal], times: f64) -> Vec<AttributeGoal> {
+    let coarser = |goal: &AttributeGoal| AttributeGoal { tolerance: times * goal.tolerance, ..goal.clone() };
+    goals.iter().map(coarser).collect()
 }
 
 /// Refines with some nodes divided in any case.
@@ -161,8 +192,7 @@ pub(super) fn count(
     times: f64,
     observer: &mut Observer<'_>,
 ) -> Result<usize, RefineError> {
-    let coarser = |goal: &AttributeGoal| AttributeGoal { tolerance: times * goal.tolerance, ..goal.clone() };
-    let goals: Vec<AttributeGoal> = options.attributes.iter().map(coarser).collect();
+    let goals = scaled(&options.attributes, times);
     let functions = Functions::of(&goals, scheme)?;
     let watched = (mesh.face_count(), options.max_levels as u32, usize::MAX);
     let demands = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;

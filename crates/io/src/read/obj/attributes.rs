@@ -120,6 +120,14 @@ impl Attributes {
         self.texture_corners.iter().any(|&index| index >= count && index != NONE)
     }
 
+    /// How many of so many corners have no texture coordinates where others do.
+    pub(super) fn corners_without_textures(&self, corners: usize) -> usize {
+        if self.texture_corners.is_empty() || self.has_wrong_textures() {
+            return 0;
+        }
+        corners - self.texture_corners.iter().filter(|&&index| index != NONE).count()
+    }
+
     /// Whether one of so many faces has a material.
     pub(super) fn has_materials(&self, faces: usize) -> bool {
         self.labels[LabelKind::Material as usize].are_used(faces)
