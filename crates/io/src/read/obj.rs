@@ -114,7 +114,9 @@ impl Reader<'_> {
         let (vertices, faces) = (self.soup.positions.len(), &self.soup.faces);
         let bare = self.attributes.corners_without_textures(faces.corner_count());
         if bare > 0 {
-            self.left_out.other(format!("that {bare} corners have no texture coordinates: they have 0 0"));
+            let corners = if bare == 1 { "corner has" } else { "corners have" };
+            self.left_out
+                .other(format!("that {bare} {corners} no texture coordinates: 0 0 takes their place"));
         }
         self.soup.channels = self.attributes.channels(vertices, faces.len(), faces.corner_count());
         self.soup.left_out = self.left_out.in_words();
