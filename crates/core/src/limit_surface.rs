@@ -4,6 +4,8 @@
 //! 1998: around an irregular vertex the regular parts shrink by half with each level), which is evaluated; at corners the scheme's
 //! limit stencils are. Places that share a piece share its refinement.
 
+mod places;
+
 use crate::certificate::Sheet;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::{LimitError, SidedNormals};
@@ -11,15 +13,14 @@ use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::large_rings::LargeRings;
-use crate::patch::{LimitPoint, Patch, Quartic, Rules, child_corners, root_patch};
+use crate::patch::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
+use crate::patch::{self, LimitPoint, Patch, Quartic, RefinedPatch, Rules, child_corners, root_patch};
 use crate::scheme::Scheme;
 use crate::vector::vector;
+use places::{Answers, Coordinates, Place, Points, parted, take_corners, take_nearest};
 
 /// Levels after which a place counts as the nearest corner of its part, which is 2⁻⁴⁰ as large as the face.
 const DEEPEST: u32 = 40;
-
-/// Places that are evaluated together.
-const LANES: usize = 4;
 
 /// Faces that are evaluated together.
 const BLOCK: usize = 64;
@@ -89,28 +90,14 @@ impl<'a> LimitSurface<'a> {
 
     /// The points over several places of a face, as [`Self::at`] gives them.
     pub fn over(&self, face: FaceId, places: &[[f64; 3]]) -> Vec<SurfacePoint> {
-        let mut found = vec![NOWHERE; places.len()];
-        if face.index() >= self.mesh.face_count() {
-            return found;
+        let mut points = vec![NOWHERE; places.len()];
+        if face.index() < self.mesh.face_count() {
+            let mut places = places.iter().enumerate().map(|(at, &weights)| Place::of(at, weights)).collect();
+            let with_normals = self.normals.is_some();
+            let mut found = Points { with_normals, points: &mut points };
+            self.find(face, &mut places, &mut Vec::new(), &mut found);
         }
-        let topology = self.mesh.topology();
-        let corners = [0, 1, 2].map(|corner| {
-            let h = HalfEdgeId::of(face, corner);
-            let position = vector(self.positions[topology.origin(h).index()]);
-            let normal = self.normals.as_ref().map_or([0.0; 3], |normals| normals.at(topology, h));
-            LimitPoint { position, normal: vector(normal) }
-        });
-        let mut left: Vec<Place> = places
-            .iter()
-            .enumerate()
-            .map(|(at, &weights)| Place { at, weights: on_triangle(weights) })
-            .collect();
-        take_corners(corners, &mut left, &mut found);
-        if !left.is_empty() {
-            let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
-            self.descend(&patch, corners, left, DEEPEST, &mut found);
-        }
-        found
+        points
     }
 
     /// The points over places of many faces, in order, on all threads. Places of one face that stand together share its work.
@@ -126,53 +113,46 @@ impl<'a> LimitSurface<'a> {
         blocks.concat()
     }
 
-    /// The first `axes` coordinates of the points over places of faces that there are, one after the other; places are in order, as
-    /// [`Self::at`] would bring them. Places of a face share its work wherever they stand.
-    pub(crate) fn coordinates(&self, places: &[(FaceId, [f64; 3])], axes: usize) -> Vec<f64> {
-        let faces = self.mesh.face_count();
-        let mut starts = vec![0; faces + 1];
-        places.iter().for_each(|(face, _)| starts[face.index() + 1] += 1);
-        (0..faces).for_each(|face| starts[face + 1] += starts[face]);
-        let (mut next, mut order) = (starts.clone(), vec![0; places.len()]);
-        for (at, (face, _)) in places.iter().enumerate() {
-            order[next[face.index()]] = at;
-            next[face.index()] += 1;
-        }
-        let blocks = parallel::pieces_of(faces, BLOCK, |block| {
-            let mut found = Vec::with_capacity(axes * (starts[block.end] - starts[block.start]));
+    /// The first coordinates of points over places of faces, face by face, in blocks; `places` calls what it is given with each place
+    /// of a face.
+    pub(crate) fn coordinates<const AXES: usize>(
+        &self,
+        places: impl Fn(usize, &mut dyn FnMut([f64; 3])) + Sync + Send,
+    ) -> Vec<Vec<[f64; AXES]>> {
+        parallel::pieces_of(self.mesh.face_count(), BLOCK, |block| {
+            let (mut coordinates, mut own, mut spare) = (Vec::new(), Vec::new(), Vec::new());
             for face in block {
-                let own: Vec<[f64; 3]> =
-                    order[starts[face]..starts[face + 1]].iter().map(|&at| places[at].1).collect();
-                if !own.is_empty() {
-                    self.coordinates_of_face(FaceId(face as u32), &own, axes, &mut found);
-                }
+                own.clear();
+                places(face, &mut |place| own.push(Place::of(own.len(), place)));
+                let first = coordinates.len();
+                coordinates.resize(first + own.len(), [0.0; AXES]);
+                let mut found = Coordinates(&mut coordinates[first..]);
+                self.find(FaceId(face as u32), &mut own, &mut spare, &mut found);
             }
-            found
-        });
-        let mut all = vec![0.0; axes * places.len()];
-        let found = blocks.iter().flat_map(|block| block.chunks_exact(axes.max(1)));
-        order.iter().zip(found).for_each(|(&at, own)| all[axes * at..][..axes].copy_from_slice(own));
-        all
+            coordinates
+        })
     }
 
-    fn coordinates_of_face(&self, face: FaceId, places: &[[f64; 3]], axes: usize, found: &mut Vec<f64>) {
-        let (sheet, _) = self.sheet(face);
-        let Patch::Regular(points) = &sheet.patch else {
-            return found.extend(self.over(face, places).iter().flat_map(|point| &point.position[..axes]));
-        };
-        let piece = Quartic::of(&BezierTriangle::of(points), 0);
-        for some in places.chunks(2 * LANES) {
-            let [mut u, mut v] = [[0.0; 2 * LANES]; 2];
-            for (lane, weights) in some.iter().enumerate() {
-                [u[lane], v[lane]] = [weights[1], weights[2]];
-            }
-            let mut points = piece.points_at(&u, &v, axes);
-            for (lane, weights) in some.iter().enumerate() {
-                if let Some(corner) = weights.iter().position(|&weight| weight == 1.0) {
-                    (0..axes).for_each(|axis| points[axis][lane] = sheet.corners[corner][axis]);
-                }
-                found.extend(points[..axes].iter().map(|axis| axis[lane]));
-            }
+    /// Answers for places over a face that there is. `spare` is scratch space.
+    fn find(
+        &self,
+        face: FaceId,
+        places: &mut Vec<Place>,
+        spare: &mut Vec<Place>,
+        found: &mut impl Answers,
+    ) {
+        let topology = self.mesh.topology();
+        let corners = [0, 1, 2].map(|corner| {
+            let h = HalfEdgeId::of(face, corner);
+            let position = vector(self.positions[topology.origin(h).index()]);
+            let normal = self.normals.as_ref().map_or([0.0; 3], |normals| normals.at(topology, h));
+            LimitPoint { position, normal: vector(normal) }
+        });
+        take_corners(corners, places, found);
+        if !places.is_empty() {
+            let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
+            spare.resize(places.len(), Place::default());
+            self.descend(&patch, corners, [places, spare], DEEPEST, found);
         }
     }
 
@@ -188,102 +168,114 @@ impl<'a> LimitSurface<'a> {
         self.rules.failure()
     }
 
-    /// Places on a regular piece.
-    fn evaluate(&self, piece: &Quartic, places: &[Place], found: &mut [SurfacePoint]) {
-        for some in places.chunks(LANES) {
-            let [mut u, mut v] = [[0.0; LANES]; 2];
-            for (lane, place) in some.iter().enumerate() {
-                [u[lane], v[lane]] = [place.weights[1], place.weights[2]];
-            }
-            let [points, normals] = match self.normals {
-                Some(_) => piece.points_and_normals_at(&u, &v),
-                None => [piece.points_at(&u, &v, 3), [[0.0; LANES]; 3]],
-            };
-            for (lane, place) in some.iter().enumerate() {
-                let [position, normal] = [points, normals].map(|by_axis| by_axis.map(|axis| axis[lane]));
-                found[place.at] = SurfacePoint { position, normal };
-            }
-        }
-    }
-
+    /// Answers for the places over a piece, given its corners; the other slice, as long, is scratch space.
     fn descend(
         &self,
         patch: &Patch,
         corners: [LimitPoint; 3],
-        left: Vec<Place>,
+        slices: [&mut [Place]; 2],
         levels: u32,
-        found: &mut [SurfacePoint],
+        found: &mut impl Answers,
     ) {
-        if let Patch::Regular(points) = patch {
-            return self.evaluate(&Quartic::of(&BezierTriangle::of(points), 0), &left, found);
+        match patch {
+            Patch::Regular(points) => found.are_on(&regular(points), slices[0]),
+            _ if levels == 0 => take_nearest(corners, slices[0], found),
+            Patch::Extraordinary(patch) => self.descend_to_vertex(patch, corners, slices, levels, found),
+            _ => self.descend_to_parts(&patch.refined(&self.rules), corners, slices, levels, found),
         }
-        if levels == 0 {
-            for Place { at, weights } in left {
-                let nearest = (0..3).max_by(|&a, &b| weights[a].total_cmp(&weights[b])).unwrap_or(0);
-                found[at] = corners[nearest].into();
-            }
-            return;
-        }
-        let refined = patch.refined(&self.rules);
-        let middles = [0, 1, 2].map(|edge| refined.middle(edge));
-        let mut parts = [0; 4].map(|_| Vec::with_capacity(left.len() / 3));
-        for place in left {
-            let child = place.child();
-            parts[child].push(place.in_child(child));
-        }
-        for (child, mut own) in parts.into_iter().enumerate() {
-            let corners = child_corners(corners, middles, child);
-            take_corners(corners, &mut own, found);
-            if !own.is_empty() {
-                self.descend(&refined.part(child), corners, own, levels - 1, found);
+    }
+
+    /// [`Self::descend`] for a piece with one irregular corner; nearly all are such after one refinement.
+    fn descend_to_vertex(
+        &self,
+        patch: &ExtraordinaryPatch,
+        corners: [LimitPoint; 3],
+        slices: [&mut [Place]; 2],
+        levels: u32,
+        found: &mut impl Answers,
+    ) {
+        match levels {
+            0 => take_nearest(corners, slices[0], found),
+            _ => {
+                let refined = patch.refined(self.rules.beta(patch.ring.len()));
+                self.descend_to_parts(&refined, corners, slices, levels, found);
             }
         }
     }
+
+    fn descend_to_parts(
+        &self,
+        refined: &impl Parts,
+        corners: [LimitPoint; 3],
+        [places, spare]: [&mut [Place]; 2],
+        levels: u32,
+        found: &mut impl Answers,
+    ) {
+        let middles = [0, 1, 2].map(|edge| refined.middle(edge));
+        let of_parts = [0, 1, 2, 3].map(|part| child_corners(corners, middles, part));
+        let ranges = parted(places, spare, &of_parts, found);
+        for (part, own) in ranges.into_iter().enumerate().filter(|(_, own)| !own.is_empty()) {
+            let (corners, slices) = (of_parts[part], [&mut spare[own.clone()], &mut places[own]]);
+            if let Some(points) = refined.points(part) {
+                found.are_on(&regular(&points), slices[0]);
+            } else if let Some(patch) = refined.extraordinary(part) {
+                self.descend_to_vertex(patch, corners, slices, levels - 1, found);
+            } else {
+                self.descend(&refined.part(part), corners, slices, levels - 1, found);
+            }
+        }
+    }
+}
+
+/// The parts of a refined piece, as [`RefinedPatch`] has them.
+trait Parts {
+    fn middle(&self, edge: usize) -> LimitPoint;
+    fn points(&self, part: usize) -> Option<patch::Points>;
+    fn extraordinary(&self, part: usize) -> Option<&ExtraordinaryPatch>;
+    fn part(&self, part: usize) -> Patch;
+}
+
+impl Parts for RefinedPatch<'_> {
+    fn middle(&self, edge: usize) -> LimitPoint {
+        self.middle(edge)
+    }
+
+    fn points(&self, part: usize) -> Option<patch::Points> {
+        self.points(part)
+    }
+
+    fn extraordinary(&self, part: usize) -> Option<&ExtraordinaryPatch> {
+        self.extraordinary(part)
+    }
+
+    fn part(&self, part: usize) -> Patch {
+        self.part(part)
+    }
+}
+
+// Without the wrapping, which would be copied along at each level.
+impl Parts for RefinedExtraordinary {
+    fn middle(&self, edge: usize) -> LimitPoint {
+        let (at, ring) = self.middle(edge);
+        LimitPoint::regular(at, &ring)
+    }
+
+    fn points(&self, part: usize) -> Option<patch::Points> {
+        self.points(part)
+    }
+
+    fn extraordinary(&self, part: usize) -> Option<&ExtraordinaryPatch> {
+        (!self.is_regular(part)).then(|| self.own())
+    }
+
+    fn part(&self, part: usize) -> Patch {
+        self.part(part)
+    }
+}
+
+/// A regular piece as a polynomial.
+fn regular(points: &patch::Points) -> Quartic {
+    Quartic::of(&BezierTriangle::of(points), 0)
 }
 
 const NOWHERE: SurfacePoint = SurfacePoint { position: [0.0; 3], normal: [0.0; 3] };
-
-impl From<LimitPoint> for SurfacePoint {
-    fn from(LimitPoint { position, normal }: LimitPoint) -> Self {
-        Self { position: position.to_array(), normal: normal.to_array() }
-    }
-}
-
-/// A place in a part, and the number of its point.
-struct Place {
-    at: usize,
-    weights: [f64; 3],
-}
-
-impl Place {
-    /// The part of four that it is in: those at the corners, and the middle one.
-    fn child(&self) -> usize {
-        self.weights.iter().position(|&weight| weight >= 0.5).unwrap_or(3)
-    }
-
-    fn in_child(self, child: usize) -> Self {
-        let weights = match child {
-            3 => self.weights.map(|weight| 1.0 - 2.0 * weight),
-            _ => core::array::from_fn(|i| 2.0 * self.weights[i] - if i == child { 1.0 } else { 0.0 }),
-        };
-        Self { weights, ..self }
-    }
-}
-
-/// Barycentric coordinates that are in order.
-fn on_triangle(weights: [f64; 3]) -> [f64; 3] {
-    let [_, u, v] = weights.map(|weight| if weight > 0.0 { weight.min(1.0) } else { 0.0 });
-    let v = v.min(1.0 - u);
-    [1.0 - u - v, u, v]
-}
-
-/// Answers for the places that are corners.
-fn take_corners(corners: [LimitPoint; 3], places: &mut Vec<Place>, found: &mut [SurfacePoint]) {
-    places.retain(|place| match place.weights.iter().position(|&weight| weight == 1.0) {
-        Some(corner) => {
-            found[place.at] = corners[corner].into();
-            false
-        }
-        None => true,
-    });
-}

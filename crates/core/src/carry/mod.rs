@@ -9,18 +9,17 @@
 mod borders;
 mod places;
 mod seams;
+mod sites;
 
 pub use borders::borders;
 
-use std::collections::HashMap;
-
-use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::mesh::{Channel, ChannelError, Domain, Interpolation, Mesh, SeamRule};
 use crate::refine::{AttributeGoal, Origin, Traced};
 use crate::scheme::Scheme;
 use places::Places;
 use seams::value_mesh;
+use sites::Sites;
 
 /// Numbers that are evaluated together: a value mesh has as many coordinates.
 const TOGETHER: usize = 3;
@@ -82,14 +81,14 @@ fn one(
     match by_corner.interpolation {
         Interpolation::Nearest => nearest(by_corner, places),
         Interpolation::Linear => {
-            let (indices, wanted) = wanted(&by_corner, places)?;
-            let values = linear(&by_corner, &wanted);
-            Ok(Channel { indices, values, ..by_corner })
+            let sites = Sites::of(&by_corner, places)?;
+            let values = linear(&by_corner, &sites);
+            Ok(Channel { indices: sites.indices, values, ..by_corner })
         }
         Interpolation::Smooth(rule) => {
-            let (indices, wanted) = wanted(&by_corner, places)?;
-            let values = smooth(&by_corner, rule, control, scheme, &wanted)?;
-            Ok(Channel { indices, values, ..by_corner })
+            let sites = Sites::of(&by_corner, places)?;
+            let values = smooth(&by_corner, rule, control, scheme, &sites)?;
+            Ok(Channel { indices: sites.indices, values, ..by_corner })
         }
     }
 }
@@ -132,56 +131,29 @@ fn by_corner(channel: &Channel, control: &Mesh) -> Channel {
 
 /// Each corner has the value of the nearest corner of its control face, the first of those that are as near.
 fn nearest(channel: Channel, places: &Places<'_>) -> Result<Channel, ChannelError> {
-    let mut indices = Vec::with_capacity(3 * places.parents.len());
-    places.for_each_corner(|_, Origin { face, barycentric }| {
+    let of_corner = |corner: usize| {
+        let Origin { face, barycentric } = places.known_place(corner)?;
         let mut first = 0;
         for corner in 1..3 {
             if barycentric[corner] > barycentric[first] {
                 first = corner;
             }
         }
-        indices.push(channel.indices[3 * face as usize + first]);
-    })?;
+        Ok(channel.indices[3 * face as usize + first])
+    };
+    let indices = (0..places.corners().len()).map(of_corner).collect::<Result<_, _>>()?;
     Ok(Channel { indices, ..channel })
 }
 
-/// A value's number by corner, and where each value is to be found: in a face in which a corner has it.
-fn wanted(channel: &Channel, places: &Places<'_>) -> Result<(Vec<u32>, Vec<Wanted>), ChannelError> {
-    let mut wanted: Vec<Wanted> = Vec::with_capacity(places.vertex_count);
-    let mut add = |origin: Origin| {
-        wanted.push((FaceId(origin.face), origin.barycentric));
-        wanted.len() as u32 - 1
-    };
-    // Most vertices have one value, wherever one looks at them from.
-    let mut of_vertex = vec![SEVERAL; places.vertex_count];
-    places.for_each_vertex_of_one_value(channel, |vertex, origin| of_vertex[vertex] = add(origin));
-    let mut others: HashMap<(u32, Key), u32> = HashMap::new();
-    let mut indices: Vec<u32> = places.corners().iter().map(|&vertex| of_vertex[vertex as usize]).collect();
-    places.for_each_corner_of(&mut indices, |vertex, origin| {
-        *others.entry((vertex, places.key(channel, origin))).or_insert_with(|| add(origin))
-    })?;
-    Ok((indices, wanted))
-}
-
-/// In place of a value's number: at this vertex there may be several.
-const SEVERAL: u32 = u32::MAX;
-
-/// The numbers of the values at the control vertices of the face, edge or vertex that a place is in: what it depends on where
-/// channels are linear, and on which side of seams it is.
-type Key = [u32; 3];
-
-/// Where a value is to be found.
-type Wanted = (FaceId, [f64; 3]);
-
-fn linear(channel: &Channel, wanted: &[Wanted]) -> Vec<f64> {
-    let mut values = Vec::with_capacity(channel.arity * wanted.len());
-    for (face, barycentric) in wanted {
-        let corners = [0, 1, 2].map(|corner| channel.value(3 * face.index() + corner));
-        for i in 0..channel.arity {
+/// Values on the plane of the control faces.
+fn linear(channel: &Channel, sites: &Sites<'_>) -> Vec<f64> {
+    let mut values = Vec::with_capacity(channel.arity * sites.len());
+    for &Origin { face, barycentric: [at_first, at_second, at_third] } in sites.iter() {
+        let [first, second, third] = [0, 1, 2].map(|corner| channel.value(3 * face as usize + corner));
+        for ((&a, &b), &c) in first.iter().zip(second).zip(third) {
             // What is at a corner, or the same at all, is that to the bit.
-            let [a, b, c] = corners.map(|value| value[i]);
             let is_one = a == b && b == c;
-            let sum = barycentric[0] * a + barycentric[1] * b + barycentric[2] * c;
+            let sum = at_first * a + at_second * b + at_third * c;
             values.push(if is_one { a } else { sum });
         }
     }
@@ -228,26 +200,36 @@ fn smooth(
     rule: SeamRule,
     control: &Mesh,
     scheme: &dyn Scheme,
-    wanted: &[Wanted],
+    sites: &Sites<'_>,
 ) -> Result<Vec<f64>, ChannelError> {
-    let values = ValueMeshes::of(channel, rule, control)?;
-    let mut found = Vec::new();
+    let meshes = ValueMeshes::of(channel, rule, control)?;
+    let by_face = sites.by_face(control.face_count());
+    let places = |face: usize, visit: &mut dyn FnMut([f64; 3])| by_face.for_each_place(face, visit);
+    let mut values = vec![0.0; channel.arity * sites.len()];
     for first in (0..channel.arity).step_by(TOGETHER) {
-        let mesh = values.mesh(first)?;
+        let mesh = meshes.mesh(first)?;
         let surface =
             LimitSurface::without_normals(&mesh, scheme).map_err(|error| no_limit(channel, error))?;
-        let own = first..channel.arity.min(first + TOGETHER);
-        let coordinates = surface.coordinates(wanted, own.len());
+        let starts = by_face.numbers().map(|number| number * channel.arity + first);
+        match channel.arity - first {
+            1 => put(&mut values, starts, surface.coordinates::<1>(places)),
+            2 => put(&mut values, starts, surface.coordinates::<2>(places)),
+            _ => put(&mut values, starts, surface.coordinates::<TOGETHER>(places)),
+        }
         if let Some(error) = surface.failure() {
             return Err(no_limit(channel, error));
         }
-        if channel.arity <= TOGETHER {
-            return Ok(coordinates);
-        }
-        found.resize(channel.arity * wanted.len(), 0.0);
-        for (point, value) in coordinates.chunks_exact(own.len()).zip(found.chunks_exact_mut(channel.arity)) {
-            value[own.clone()].copy_from_slice(point);
-        }
     }
-    Ok(found)
+    Ok(values)
+}
+
+/// Puts some numbers of each value where these start.
+fn put<const AXES: usize>(
+    values: &mut [f64],
+    starts: impl Iterator<Item = usize>,
+    found: Vec<Vec<[f64; AXES]>>,
+) {
+    for (own, start) in found.iter().flatten().zip(starts) {
+        values[start..][..AXES].copy_from_slice(own);
+    }
 }

@@ -2,11 +2,14 @@
 //!
 //! A vertex knows one face that it came from; a triangle that has it may be in another beside that one.
 
-use super::{Key, SEVERAL};
 use crate::geometry::NONE;
 use crate::index::HalfEdgeId;
 use crate::mesh::{Channel, ChannelError, Mesh};
 use crate::refine::{Origin, Traced};
+
+/// The numbers of the values at the control vertices of the face, edge or vertex that a place is in: what it depends on where
+/// channels are linear, and on which side of seams it is.
+pub(super) type Key = [u32; 3];
 
 /// A refined mesh's places on its control mesh.
 pub(super) struct Places<'a> {
@@ -14,7 +17,6 @@ pub(super) struct Places<'a> {
     result: &'a dyn Traced,
     /// By triangle, its control face.
     pub(super) parents: &'a [u32],
-    pub(super) vertex_count: usize,
 }
 
 impl<'a> Places<'a> {
@@ -35,20 +37,19 @@ impl<'a> Places<'a> {
         if !is_by_face && result.origins().len() != mesh.vertex_count() {
             return unknown("the vertices have no origins");
         }
-        let places = Self { control, result, parents: result.parents(), vertex_count: mesh.vertex_count() };
-        let faces = control.face_count();
-        let is_known = |face: u32| (face as usize) < faces;
-        if !places.parents.iter().all(|&face| is_known(face))
-            || !result.origins().iter().all(|origin| is_known(origin.face))
-        {
+        let places = Self { control, result, parents: result.parents() };
+        // Without a way out of the loops several are looked at together.
+        let last_parent = places.parents.iter().copied().max();
+        let last_origin = result.origins().iter().map(|origin| origin.face).max();
+        if last_parent.max(last_origin).is_some_and(|face| face as usize >= control.face_count()) {
             return unknown("they come from another control mesh");
         }
         Ok(places)
     }
 
-    /// The place of a corner.
-    fn place(&self, corner: u32) -> Option<Origin> {
-        self.result.corner_origin(self.control.triangles(), HalfEdgeId(corner))
+    /// Where vertices came from.
+    pub(super) fn origins(&self) -> &'a [Origin] {
+        self.result.origins()
     }
 
     /// The vertices of all corners.
@@ -56,62 +57,44 @@ impl<'a> Places<'a> {
         self.result.mesh().triangles().as_flattened()
     }
 
-    /// Calls `visit` with the vertex and the place of each corner, triangle by triangle.
-    ///
-    /// # Errors
-    /// A triangle reaches over several control faces, of which nobody knows where.
-    pub(super) fn for_each_corner(&self, mut visit: impl FnMut(u32, Origin)) -> Result<(), ChannelError> {
-        self.corners().iter().enumerate().try_for_each(|(corner, &vertex)| {
-            visit(vertex, self.known_place(corner as u32)?);
-            Ok(())
-        })
-    }
-
-    /// Gives what `find` does for their vertices and places to the corners that have [`SEVERAL`].
-    ///
-    /// # Errors
-    /// As for [`Self::for_each_corner`].
-    pub(super) fn for_each_corner_of(
-        &self,
-        numbers: &mut [u32],
-        mut find: impl FnMut(u32, Origin) -> u32,
-    ) -> Result<(), ChannelError> {
-        for (corner, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number == SEVERAL) {
-            *number = find(self.corners()[corner], self.known_place(corner as u32)?);
-        }
-        Ok(())
-    }
-
-    /// Calls `visit` with the vertices, and their places, at which a channel has one value in whatever face: those inside of control
-    /// faces, and on edges that are no seams.
-    pub(super) fn for_each_vertex_of_one_value(
-        &self,
-        channel: &Channel,
-        mut visit: impl FnMut(usize, Origin),
-    ) {
+    /// Calls `visit` with the vertices at which a channel has one value in whatever face: those inside of control faces, on edges that
+    /// are no seams, and at control vertices where no seam ends.
+    pub(super) fn for_each_vertex_of_one_value(&self, channel: &Channel, mut visit: impl FnMut(usize)) {
         let topology = self.control.topology();
         let is_seam: Vec<bool> = topology
             .half_edges()
             .map(|h| topology.twin(h).is_some_and(|twin| !channel.is_continuous(h, twin)))
             .collect();
-        for (vertex, origin) in self.result.origins().iter().enumerate() {
-            let [a, b, c] = origin.barycentric.map(|weight| weight == 0.0);
-            let has_one = match (a, b, c) {
-                (false, false, false) => true,
+        let triangles = self.control.triangles();
+        let has_one = values_of_vertices(channel, self.control);
+        let has_one = |face: u32, corner: usize| has_one[triangles[face as usize][corner] as usize];
+        for (vertex, &Origin { face, barycentric }) in self.origins().iter().enumerate() {
+            let is_one = match barycentric.map(|weight| weight == 0.0) {
+                [false, false, false] => true,
                 // The edge opposite the corner without weight.
-                (true, false, false) => !is_seam[3 * origin.face as usize + 1],
-                (false, true, false) => !is_seam[3 * origin.face as usize + 2],
-                (false, false, true) => !is_seam[3 * origin.face as usize],
-                _ => false,
+                [true, false, false] => !is_seam[3 * face as usize + 1],
+                [false, true, false] => !is_seam[3 * face as usize + 2],
+                [false, false, true] => !is_seam[3 * face as usize],
+                [false, true, true] => has_one(face, 0),
+                [true, false, true] => has_one(face, 1),
+                [true, true, false] => has_one(face, 2),
+                // A vertex of no face.
+                [true, true, true] => false,
             };
-            if has_one {
-                visit(vertex, *origin);
+            if is_one {
+                visit(vertex);
             }
         }
     }
 
-    fn known_place(&self, corner: u32) -> Result<Origin, ChannelError> {
-        self.place(corner)
+    /// The place of a corner.
+    ///
+    /// # Errors
+    /// Its triangle reaches over several control faces, of which nobody knows where.
+    pub(super) fn known_place(&self, corner: usize) -> Result<Origin, ChannelError> {
+        let corner = HalfEdgeId(corner as u32);
+        self.result
+            .corner_origin(self.control.triangles(), corner)
             .ok_or(ChannelError::Unknown { why: "a triangle reaches over several control faces" })
     }
 
@@ -127,4 +110,18 @@ impl<'a> Places<'a> {
         own.sort_unstable();
         own.map(|(_, value)| value)
     }
+}
+
+/// By control vertex, whether all corners at it have one value.
+fn values_of_vertices(channel: &Channel, control: &Mesh) -> Vec<bool> {
+    let mut first = vec![NONE; control.vertex_count()];
+    let mut has_one = vec![true; control.vertex_count()];
+    for (&vertex, &value) in control.triangles().as_flattened().iter().zip(&channel.indices) {
+        let (first, has_one) = (&mut first[vertex as usize], &mut has_one[vertex as usize]);
+        match *first {
+            NONE => *first = value,
+            other => *has_one &= other == value,
+        }
+    }
+    has_one
 }

@@ -65,7 +65,7 @@ pub(crate) struct LimitPoint {
 
 impl LimitPoint {
     /// The limit of a regular vertex: weights 1/2 and 1/12, tangents by cosines and sines.
-    fn regular(at: DVec3, ring: &[DVec3; 6]) -> Self {
+    pub(crate) fn regular(at: DVec3, ring: &[DVec3; 6]) -> Self {
         const SINE: f64 = 0.866_025_403_784_438_6;
         let [a, b, c, d, e, f] = *ring;
         let position = (6.0 * at + (a + d) + (b + e) + (c + f)) / 12.0;

@@ -1,0 +1,114 @@
+//! Where the values of a channel of corners stand on a refined mesh, and which of them each corner has.
+//!
+//! Nearly all vertices have one value, wherever one looks at them from: those are numbered first, in the order of the vertices. Vertices
+//! on seams have several, which follow in the order in which corners have them.
+
+use core::ops::Range;
+use std::collections::HashMap;
+
+use super::places::{Key, Places};
+use crate::mesh::{Channel, ChannelError};
+use crate::refine::Origin;
+
+/// In place of a value's number: at this vertex there may be several.
+const SEVERAL: u32 = u32::MAX;
+
+/// The values of a channel: where they are to be found, and who has them.
+pub(super) struct Sites<'a> {
+    /// A value's number by corner.
+    pub(super) indices: Vec<u32>,
+    /// The vertices of those that are their vertices' only ones.
+    vertices: Vec<u32>,
+    origins: &'a [Origin],
+    /// Where the others are, each in a face in which a corner has it.
+    others: Vec<Origin>,
+}
+
+impl<'a> Sites<'a> {
+    /// # Errors
+    /// It is not known where a corner is.
+    pub(super) fn of(channel: &Channel, places: &Places<'a>) -> Result<Self, ChannelError> {
+        let origins = places.origins();
+        let mut vertices = Vec::with_capacity(origins.len());
+        let mut of_vertex = vec![SEVERAL; origins.len()];
+        places.for_each_vertex_of_one_value(channel, |vertex| {
+            of_vertex[vertex] = vertices.len() as u32;
+            vertices.push(vertex as u32);
+        });
+        let corners = places.corners();
+        if vertices.len() == origins.len() {
+            return Ok(Self { indices: corners.to_vec(), vertices, origins, others: Vec::new() });
+        }
+        let mut numbers: HashMap<(u32, Key), u32> = HashMap::new();
+        let mut others: Vec<Origin> = Vec::new();
+        let mut indices: Vec<u32> = corners.iter().map(|&vertex| of_vertex[vertex as usize]).collect();
+        for (corner, number) in indices.iter_mut().enumerate().filter(|(_, number)| **number == SEVERAL) {
+            let origin = places.known_place(corner)?;
+            let key = (corners[corner], places.key(channel, origin));
+            *number = *numbers.entry(key).or_insert_with(|| {
+                others.push(origin);
+                (vertices.len() + others.len() - 1) as u32
+            });
+        }
+        Ok(Self { indices, vertices, origins, others })
+    }
+
+    /// How many values there are.
+    pub(super) fn len(&self) -> usize {
+        self.vertices.len() + self.others.len()
+    }
+
+    /// Where a value is.
+    pub(super) fn origin(&self, number: u32) -> &Origin {
+        let number = number as usize;
+        match self.vertices.get(number) {
+            Some(&vertex) => &self.origins[vertex as usize],
+            None => &self.others[number - self.vertices.len()],
+        }
+    }
+
+    /// Where all values are, in order.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &Origin> {
+        self.vertices.iter().map(|&vertex| &self.origins[vertex as usize]).chain(&self.others)
+    }
+
+    /// The values by face, of which there are `faces`.
+    pub(super) fn by_face(&self, faces: usize) -> SitesByFace<'_> {
+        let mut runs: Vec<(u32, Range<u32>)> = Vec::new();
+        for (number, origin) in (0..).zip(self.iter()) {
+            match runs.last_mut() {
+                Some((face, run)) if *face == origin.face => run.end = number + 1,
+                _ => runs.push((origin.face, number..number + 1)),
+            }
+        }
+        // A stable sort: runs of a face stay in order.
+        runs.sort_by_key(|(face, _)| *face);
+        let mut starts = vec![0; faces + 1];
+        runs.iter().for_each(|(face, _)| starts[*face as usize + 1] += 1);
+        (0..faces).for_each(|face| starts[face + 1] += starts[face]);
+        SitesByFace { sites: self, starts, runs }
+    }
+}
+
+/// Values in the order of their faces.
+pub(super) struct SitesByFace<'a> {
+    sites: &'a Sites<'a>,
+    /// Where the runs of each face start, and the end.
+    starts: Vec<usize>,
+    /// Runs of values, with their faces; a refined mesh numbers most vertices of a face one after the other.
+    runs: Vec<(u32, Range<u32>)>,
+}
+
+impl SitesByFace<'_> {
+    /// Calls `visit` with the place of each value of a face.
+    pub(super) fn for_each_place(&self, face: usize, mut visit: impl FnMut([f64; 3])) {
+        for (_, run) in &self.runs[self.starts[face]..self.starts[face + 1]] {
+            run.clone().for_each(|number| visit(self.sites.origin(number).barycentric));
+        }
+    }
+
+    /// The numbers of all values, face by face.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = usize> {
+        self.runs.iter().flat_map(|(_, run)| run.start as usize..run.end as usize)
+    }
+}
