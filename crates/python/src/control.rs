@@ -125,9 +125,11 @@ impl Control {
     }
 
     /// The input's faces that control faces are from; none where nothing is told of them.
-    pub(crate) fn input_faces(&self, faces: &[u32]) -> Option<Vec<u32>> {
-        let input = |&face: &u32| self.faces[self.parts.whole(face) as usize];
-        (!faces.is_empty()).then(|| faces.iter().map(input).collect())
+    pub(crate) fn input_faces(&self, mut faces: Vec<u32>) -> Option<Vec<u32>> {
+        for face in &mut faces {
+            *face = self.faces[self.parts.whole(*face) as usize];
+        }
+        (!faces.is_empty()).then_some(faces)
     }
 }
 

@@ -11,7 +11,9 @@ mod files;
 mod limit;
 mod measure;
 mod options;
+mod origins;
 mod picture;
+mod pool;
 mod program;
 mod refine;
 mod run;
@@ -33,7 +35,11 @@ mod _limitmesh {
     #[pymodule_export]
     use super::measure::{examine, measure, measure_limit};
     #[pymodule_export]
+    use super::origins::Origins;
+    #[pymodule_export]
     use super::picture::picture;
+    #[pymodule_export]
+    use super::pool::end_threads;
     #[pymodule_export]
     use super::program::{program, refine_file};
     #[pymodule_export]
@@ -42,9 +48,13 @@ mod _limitmesh {
     use super::simplify::{repair, simplify};
 
     use pyo3::prelude::*;
+    use pyo3::types::PyTuple;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let names =
+            limitmesh::mesh::Diagnosis::default().findings().map(|(name, _)| name).collect::<Vec<_>>();
+        module.add("FINDINGS", PyTuple::new(module.py(), names)?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -183,7 +183,7 @@ pub(crate) fn examine<'py>(
     mesh: MeshIn<'py>,
     control: ControlOptions,
     threads: usize,
-) -> PyResult<(String, Bound<'py, PyDict>)> {
+) -> PyResult<(String, Option<Bound<'py, PyDict>>)> {
     let (soup, recipe) = (mesh.soup()?, Recipe::new(control)?);
     let (json, diagnosis) = run(py, threads, None, move |_| {
         let (mesh, diagnosis): (Mesh, _) = recipe.plain(&soup)?;

@@ -8,18 +8,21 @@ use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{Channel, Diagnosis};
 use limitmesh::progress::Observer;
 use limitmesh::refine::{
-    ExactStop, Origin, StepwiseOptions, Stop, UniformOptions, exact_estimate_observed, exact_observed,
+    ExactStop, StepwiseOptions, Stop, UniformOptions, exact_estimate_observed, exact_observed,
     stepwise_observed, uniform_observed,
 };
 use limitmesh::{HalfEdgeId, Mesh};
 use numpy::PyArray1;
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use rayon::prelude::*;
 
 use crate::channels;
 use crate::control::{Control, InterpolatedTold, Recipe};
 use crate::errors::{Failure, OptionError};
 use crate::options::{ControlOptions, Goals};
+use crate::origins::Origins;
 use crate::run::run;
 use crate::soup::MeshIn;
 use crate::tell;
@@ -31,7 +34,7 @@ struct Refined {
     /// How control points were found, if that was asked for.
     interpolated: Option<InterpolatedTold>,
     positions: Vec<[f64; 3]>,
-    triangles: Vec<[u32; 3]>,
+    triangles: Indices,
     normals: Vec<[f64; 3]>,
     /// Corners, three a triangle, whose normal is not that of their vertex, and these normals.
     side_corners: Vec<u32>,
@@ -41,71 +44,76 @@ struct Refined {
     parents: Option<Vec<u32>>,
     channels: Vec<Channel>,
     /// Lower, upper, whether that is proven, and where the lower one was found.
-    error: Option<(f64, f64, bool, [f64; 3])>,
+    error: Option<(f64, f64, bool, Point)>,
     stop: &'static str,
     levels: usize,
     pixels: Option<f64>,
     open_cones: usize,
     unfolded: usize,
     inverted: Option<usize>,
+    /// That the library took.
+    seconds: f64,
 }
 
-/// Where vertices came from: the input's face, the input's vertices at a triangle of it, and the weights of these.
-struct Origins {
-    faces: Vec<u32>,
-    vertices: Vec<[u32; 3]>,
-    barycentric: Vec<[f64; 3]>,
+/// A tuple for Python, not a list.
+type Point = (f64, f64, f64);
+
+/// Rows of vertices, as wide as Python wants them, so that nobody has to convert them while others wait for the interpreter.
+enum Indices {
+    Narrow(Vec<[u32; 3]>),
+    Wide(Vec<[i64; 3]>),
 }
 
-/// Refines a mesh; a dictionary with all that is known of the result.
+/// Refines a mesh; a dictionary of what a result is made of, by the names of its parts.
 #[pyfunction]
 pub(crate) fn refine<'py>(
     py: Python<'py>,
     mesh: MeshIn<'py>,
     control: ControlOptions,
     goals: Goals,
+    has_wide_indices: bool,
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (soup, recipe) = (mesh.soup()?, Recipe::new(control)?);
     let method = Method::of(&goals)?;
     drop(mesh);
-    let (refined, seconds) = run(py, threads, progress, move |observer| {
+    let refined = run(py, threads, progress, move |observer| {
         let start = Instant::now();
         let mut control = recipe.control(soup, observer)?;
-        let refined = match method {
-            Method::Exact => exact(&mut control, &recipe, &goals, observer)?,
-            _ => stepwise(&mut control, &recipe, (method, &goals), observer)?,
+        let mut refined = match method {
+            Method::Exact => exact(&mut control, &recipe, &goals, start, observer)?,
+            _ => stepwise(&mut control, &recipe, (method, &goals), start, observer)?,
         };
-        drop(control);
-        Ok((refined, start.elapsed().as_secs_f64()))
+        if has_wide_indices {
+            refined.triangles = refined.triangles.widened();
+        }
+        Ok(refined)
     })?;
     let dict = PyDict::new(py);
-    dict.set_item("seconds", seconds)?;
-    dict.set_item("diagnosis", tell::diagnosis(py, &refined.diagnosis)?)?;
-    dict.set_item("interpolation", refined.interpolated.map(|told| told.told(py)).transpose()?)?;
-    dict.set_item("vertices", tell::rows(py, refined.positions)?)?;
-    dict.set_item("faces", tell::rows(py, refined.triangles)?)?;
-    dict.set_item("normals", tell::rows(py, refined.normals)?)?;
-    dict.set_item("side_corners", PyArray1::from_vec(py, refined.side_corners))?;
-    dict.set_item("side_normals", tell::rows(py, refined.side_normals)?)?;
-    dict.set_item("parent_face", refined.parents.map(|list| PyArray1::from_vec(py, list)))?;
-    let (faces, vertices, barycentric) = match refined.origins {
-        Some(all) => (Some(all.faces), Some(all.vertices), Some(all.barycentric)),
-        None => (None, None, None),
-    };
-    dict.set_item("vertex_face", faces.map(|list| PyArray1::from_vec(py, list)))?;
-    dict.set_item("vertex_corners", vertices.map(|list| tell::rows(py, list)).transpose()?)?;
-    dict.set_item("barycentric", barycentric.map(|list| tell::rows(py, list)).transpose()?)?;
+    dict.set_item(intern!(py, "seconds"), refined.seconds)?;
+    dict.set_item(intern!(py, "diagnosis"), tell::diagnosis(py, &refined.diagnosis)?)?;
+    dict.set_item(intern!(py, "interpolation"), refined.interpolated.map(|told| told.told(py)).transpose()?)?;
+    dict.set_item(intern!(py, "vertices"), tell::rows(py, refined.positions)?)?;
+    match refined.triangles {
+        Indices::Narrow(rows) => dict.set_item(intern!(py, "faces"), tell::rows(py, rows)?)?,
+        Indices::Wide(rows) => dict.set_item(intern!(py, "faces"), tell::rows(py, rows)?)?,
+    }
+    dict.set_item(intern!(py, "normals"), tell::rows(py, refined.normals)?)?;
+    let sides = (PyArray1::from_vec(py, refined.side_corners), tell::rows(py, refined.side_normals)?);
+    dict.set_item(intern!(py, "_sides"), sides)?;
+    let parents = refined.parents.map(|list| PyArray1::from_vec(py, list));
+    dict.set_item(intern!(py, "_parents"), parents)?;
+    dict.set_item(intern!(py, "_origins"), refined.origins)?;
     let channels = refined.channels.into_iter().map(|channel| channels::told(py, channel));
-    dict.set_item("channels", PyList::new(py, channels.collect::<PyResult<Vec<_>>>()?)?)?;
-    dict.set_item("error", refined.error)?;
-    dict.set_item("stop", refined.stop)?;
-    dict.set_item("levels", refined.levels)?;
-    dict.set_item("pixels", refined.pixels)?;
-    dict.set_item("open_cones", refined.open_cones)?;
-    dict.set_item("unfolded", refined.unfolded)?;
-    dict.set_item("inverted", refined.inverted)?;
+    dict.set_item(intern!(py, "channels"), PyList::new(py, channels.collect::<PyResult<Vec<_>>>()?)?)?;
+    dict.set_item(intern!(py, "error"), refined.error)?;
+    dict.set_item(intern!(py, "stop"), refined.stop)?;
+    dict.set_item(intern!(py, "levels"), refined.levels)?;
+    dict.set_item(intern!(py, "pixels"), refined.pixels)?;
+    dict.set_item(intern!(py, "open_cones"), refined.open_cones)?;
+    dict.set_item(intern!(py, "unfolded"), refined.unfolded)?;
+    dict.set_item(intern!(py, "inverted"), refined.inverted)?;
     Ok(dict)
 }
 
@@ -155,6 +163,7 @@ fn exact(
     control: &mut Control,
     recipe: &Recipe,
     goals: &Goals,
+    start: Instant,
     observer: &mut Observer<'_>,
 ) -> Result<Refined, Failure> {
     let options = goals
@@ -166,23 +175,24 @@ fn exact(
         false => carried(&control.channels, &control.mesh, recipe.scheme, &found)?,
     };
     let inverted = found.inverted_triangles();
+    let seconds = start.elapsed().as_secs_f64();
     let (side_corners, side_normals) = std::mem::take(&mut found.sides).into_iter().unzip();
-    let origins = Origins::new(control, &found.origins);
-    let parents = control.input_faces(&found.parents);
+    let parents = control.input_faces(std::mem::take(&mut found.parents));
+    let origins = Origins::new(control, std::mem::take(&mut found.origins));
     let error = found.error;
     let (positions, triangles) = found.mesh.into_positions_and_triangles();
     Ok(Refined {
         diagnosis: std::mem::take(&mut control.diagnosis),
         interpolated: control.interpolated.take(),
         positions,
-        triangles,
+        triangles: Indices::Narrow(triangles),
         normals: found.normals,
         side_corners,
         side_normals,
         origins,
         parents,
         channels,
-        error: Some((error.lower, error.upper, error.certified, error.at)),
+        error: Some((error.lower, error.upper, error.certified, error.at.into())),
         stop: match found.stop {
             ExactStop::Met => "met",
             ExactStop::Triangles => "triangles",
@@ -198,23 +208,23 @@ fn exact(
         open_cones: found.open_cones,
         unfolded: found.unfolded,
         inverted: Some(inverted),
+        seconds,
     })
 }
 
-impl Origins {
-    /// None where the library tells of none.
-    fn new(control: &Control, origins: &[Origin]) -> Option<Self> {
-        if origins.is_empty() {
-            return None;
+impl Indices {
+    fn widened(self) -> Self {
+        match self {
+            Self::Narrow(rows) => {
+                Self::Wide(rows.into_par_iter().with_min_len(ROWS).map(|row| row.map(i64::from)).collect())
+            }
+            wide => wide,
         }
-        let on_whole = |origin: &Origin| control.parts.on_whole(origin.face, origin.barycentric);
-        let (faces, barycentric): (Vec<u32>, Vec<[f64; 3]>) = origins.iter().map(on_whole).unzip();
-        let corners = |&face: &u32| [0, 1, 2].map(|corner| control.corners[3 * face as usize + corner]);
-        let vertices = faces.iter().map(corners).collect();
-        let faces = faces.into_iter().map(|face| control.faces[face as usize]).collect();
-        Some(Self { faces, vertices, barycentric })
     }
 }
+
+/// Rows that are widened on one thread: for fewer it is not worth waking another.
+const ROWS: usize = 1 << 14;
 
 /// The angle where none is given, in degrees: the paper's middle one.
 const USUAL_ANGLE: f64 = 10.0;
@@ -223,6 +233,7 @@ fn stepwise(
     control: &mut Control,
     recipe: &Recipe,
     (method, goals): (Method, &Goals),
+    start: Instant,
     observer: &mut Observer<'_>,
 ) -> Result<Refined, Failure> {
     let angle = goals.angle.unwrap_or(USUAL_ANGLE).to_radians();
@@ -238,7 +249,7 @@ fn stepwise(
     let (mesh, scheme, cap) = (&control.mesh, recipe.scheme, goals.cap());
     let carries = !control.channels.is_empty();
     let traces = carries || goals.origins;
-    let found = match criterion {
+    let mut found = match criterion {
         Some(criterion) => {
             let options = StepwiseOptions::default().levels(goals.levels).origins(traces).max_triangles(cap);
             stepwise_observed(mesh, scheme, criterion.as_ref(), &options, observer)?
@@ -252,15 +263,16 @@ fn stepwise(
         true => carried(&control.channels, mesh, scheme, &found)?,
         false => Vec::new(),
     };
-    let origins = Origins::new(control, &found.origins);
-    let parents = control.input_faces(&found.parents);
     let (side_corners, side_normals, normals) = sided_normals(&found.mesh, recipe)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let parents = control.input_faces(std::mem::take(&mut found.parents));
+    let origins = Origins::new(control, std::mem::take(&mut found.origins));
     let (positions, triangles) = found.mesh.into_positions_and_triangles();
     Ok(Refined {
         diagnosis: std::mem::take(&mut control.diagnosis),
         interpolated: control.interpolated.take(),
         positions,
-        triangles,
+        triangles: Indices::Narrow(triangles),
         normals,
         side_corners,
         side_normals,
@@ -279,6 +291,7 @@ fn stepwise(
         open_cones: 0,
         unfolded: 0,
         inverted: None,
+        seconds,
     })
 }
 

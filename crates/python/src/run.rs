@@ -1,8 +1,7 @@
 //! Long jobs: on threads of their own, without the interpreter's lock, while the calling thread wakes for signals and progress.
 //!
-//! Each job has a pool that nobody else knows, so that a process that is forked afterwards finds no threads missing. The calling
-//! thread only waits: every [`WAKE`] it takes the lock, lets Python handle signals and tells of progress. If either raises, the job
-//! is told to stop, and left to itself if it does not at once.
+//! Each job has a [pool](crate::pool) to itself. The calling thread only waits: every [`WAKE`] it takes the lock, lets Python handle
+//! signals and tells of progress. If either raises, the job is told to stop, and left to itself, with its pool, if it does not at once.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -13,9 +12,9 @@ use std::time::Duration;
 use limitmesh::progress::{Observer, Progress};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use rayon::ThreadPoolBuilder;
 
 use crate::errors::Failure;
+use crate::pool::Pool;
 
 /// How often the calling thread looks for signals.
 const WAKE: Duration = Duration::from_millis(50);
@@ -41,17 +40,11 @@ pub(crate) fn run<T: Send + 'static>(
     progress: Option<Py<PyAny>>,
     job: impl FnOnce(&mut Observer<'_>) -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<T> {
-    let pool = ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .thread_name(|_| "limitmesh".to_owned())
-        // The panic is told by its hook, and by the channel that closes.
-        .panic_handler(|_| ())
-        .build()
-        .map_err(|why| PyRuntimeError::new_err(format!("{threads} threads could not be started: {why}")))?;
+    let pool = Pool::take(threads)?;
     let line = Arc::new(Line::default());
     let (sender, receiver) = sync_channel(1);
     let (ears, is_heard) = (Arc::clone(&line), progress.is_some());
-    pool.spawn(move || {
+    pool.start(move || {
         let mut observer = |at: &Progress| {
             if is_heard {
                 *ears.latest.lock().unwrap_or_else(PoisonError::into_inner) = Some(*at);
@@ -61,28 +54,31 @@ pub(crate) fn run<T: Send + 'static>(
         // Nobody listens any more if the caller went on.
         let _ = sender.send(job(&mut observer));
     });
-    let result = py.detach(move || wait(receiver, &line, progress.as_ref()))?;
-    Ok(result?)
+    let (result, is_idle) = py.detach(move || wait(&receiver, &line, progress.as_ref()));
+    if is_idle {
+        pool.keep();
+    }
+    Ok(result??)
 }
 
-/// Waits for the job, waking now and then.
+/// Waits for the job, waking now and then; what came of it, and whether it has come to its end.
 fn wait<T>(
-    receiver: Receiver<Result<T, Failure>>,
+    receiver: &Receiver<Result<T, Failure>>,
     line: &Line,
     progress: Option<&Py<PyAny>>,
-) -> PyResult<Result<T, Failure>> {
+) -> (PyResult<Result<T, Failure>>, bool) {
     loop {
         match receiver.recv_timeout(WAKE) {
-            Ok(result) => return Ok(result),
+            Ok(result) => return (Ok(result), true),
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(PyRuntimeError::new_err("an internal error ended the job; please report it"));
+                let why = "an internal error ended the job; please report it";
+                return (Err(PyRuntimeError::new_err(why)), false);
             }
             Err(RecvTimeoutError::Timeout) => {}
         }
         if let Err(raised) = Python::attach(|py| look_up(py, line, progress)) {
             line.is_stopped.store(true, Relaxed);
-            let _ = receiver.recv_timeout(PATIENCE);
-            return Err(raised);
+            return (Err(raised), receiver.recv_timeout(PATIENCE).is_ok());
         }
     }
 }

@@ -3,7 +3,7 @@
 use limitmesh::mesh::Diagnosis;
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyDict, PyTuple};
 
 /// Rows of three as an array.
 pub(crate) fn rows<T: Element>(py: Python<'_>, rows: Vec<[T; 3]>) -> PyResult<Bound<'_, PyArray2<T>>> {
@@ -11,16 +11,19 @@ pub(crate) fn rows<T: Element>(py: Python<'_>, rows: Vec<[T; 3]>) -> PyResult<Bo
     PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
 }
 
-/// What was found in the input, for the Python half.
-pub(crate) fn diagnosis<'py>(py: Python<'py>, found: &Diagnosis) -> PyResult<Bound<'py, PyDict>> {
+/// What was found in the input, for the Python half; none where nothing was, as in most meshes.
+pub(crate) fn diagnosis<'py>(py: Python<'py>, found: &Diagnosis) -> PyResult<Option<Bound<'py, PyDict>>> {
+    if found.findings().all(|(_, finding)| finding.is_empty()) {
+        return Ok(None);
+    }
     let dict = PyDict::new(py);
     dict.set_item("clean", found.is_clean())?;
-    dict.set_item("repairs", PyList::new(py, found.repairs())?)?;
-    dict.set_item("preparations", PyList::new(py, found.preparations())?)?;
+    dict.set_item("repairs", PyTuple::new(py, found.repairs())?)?;
+    dict.set_item("preparations", PyTuple::new(py, found.preparations())?)?;
     let findings = PyDict::new(py);
-    for (name, finding) in found.findings() {
-        findings.set_item(name, (finding.count, &finding.first))?;
+    for (name, finding) in found.findings().filter(|(_, finding)| !finding.is_empty()) {
+        findings.set_item(name, (finding.count, PyTuple::new(py, &finding.first)?))?;
     }
     dict.set_item("findings", findings)?;
-    Ok(dict)
+    Ok(Some(dict))
 }

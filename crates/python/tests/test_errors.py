@@ -161,3 +161,23 @@ def test_random_soups_give_a_mesh_or_an_error(soup, crease_angle, boundary, inte
     limitmesh.info(vertices, faces)
     limitmesh.limit(vertices, faces)
     limitmesh.repair(vertices, faces)
+
+
+def test_options_that_are_equal_but_not_the_same(octahedron):
+    # What was made of options is remembered: True is 1, and an array may be changed in place.
+    with pytest.warns(limitmesh.StoppedShort):
+        limitmesh.refine(*octahedron, triangles=1)
+    with pytest.raises(limitmesh.OptionError, match="triangles is True"):
+        limitmesh.refine(*octahedron, triangles=True)
+    eye = np.array([9.0, 0.0, 0.0])
+    one = limitmesh.refine(*octahedron, angle=5, eye=eye)
+    eye[:] = [0.0, 9.0, 0.0]
+    other = limitmesh.refine(*octahedron, angle=5, eye=eye)
+    again = limitmesh.refine(*octahedron, angle=5, eye=[0.0, 9.0, 0.0])
+    assert one.vertices.tobytes() != other.vertices.tobytes() == again.vertices.tobytes()
+
+
+@pytest.mark.parametrize("tolerance", ["0.1%", 0.01])
+def test_an_option_without_its_name(tolerance):
+    with pytest.raises(limitmesh.MeshError, match="options have names, such as tolerance="):
+        limitmesh.refine("builtin:cup", tolerance)

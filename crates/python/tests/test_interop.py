@@ -113,3 +113,13 @@ def test_plots(octahedron):
     assert axes.name == "3d"
     with pytest.raises(limitmesh.OptionError, match="crayons"):
         limitmesh.refine(*octahedron).plot(backend="crayons")
+
+
+def test_what_trimesh_has_beside_meshes():
+    trimesh = pytest.importorskip("trimesh")
+    scene = trimesh.Scene([trimesh.creation.box()])
+    with pytest.raises(limitmesh.MeshError, match="a trimesh scene of 1 meshes, expected one mesh"):
+        limitmesh.refine(scene)
+    assert limitmesh.refine(scene.to_mesh(), crease_angle=30).met
+    with pytest.raises(limitmesh.MeshError, match="PointCloud has no faces"):
+        limitmesh.refine(trimesh.PointCloud([[0, 0, 0], [1, 0, 0], [0, 1, 0]]))

@@ -194,6 +194,86 @@ def test_a_fork_amid_a_call_of_another_thread():
         thread.join()
 
 
+needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
+needs_tasks = pytest.mark.skipif(not os.path.exists("/proc/self/task"), reason="no /proc here")
+
+
+def last_line_of(program: str) -> str:
+    command = [sys.executable, "-W", "error", "-c", textwrap.dedent(program)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()[-1]
+
+
+@needs_fork
+@needs_tasks
+def test_no_threads_are_left_when_a_process_is_forked():
+    # From 3.12 on Python also warns of threads, which is an error here.
+    program = """
+        import os, time, warnings
+        counts = []
+        def count():
+            # A thread that was waited for may stand in the list for a moment.
+            end = time.monotonic() + 10
+            while len(os.listdir("/proc/self/task")) > 1 and time.monotonic() < end:
+                time.sleep(0.001)
+            counts.append(len(os.listdir("/proc/self/task")))
+        # Called last, as those that are registered later are called earlier.
+        os.register_at_fork(before=count)
+        os.environ["OPENBLAS_NUM_THREADS"] = "1"
+        import limitmesh
+        for threads in (1, 3, 3):
+            expected = limitmesh.refine("builtin:cup", tolerance="0.5%", threads=threads).vertices.tobytes()
+        child = os.fork()
+        found = limitmesh.refine("builtin:cup", tolerance="0.5%", threads=3).vertices.tobytes()
+        if child == 0:
+            os._exit(0 if found == expected else 1)
+        print(counts, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), found == expected)
+        """
+    assert last_line_of(program) == "[1] 0 True"
+
+
+@needs_fork
+def test_forks_that_python_does_not_know_of():
+    program = """
+        import ctypes, os, time
+        import limitmesh
+        expected = limitmesh.refine("builtin:cup", tolerance="0.5%", threads=2).vertices.tobytes()
+        child = ctypes.PyDLL(None).fork()
+        if child == 0:
+            for threads in (2, 1):
+                found = limitmesh.refine("builtin:cup", tolerance="0.5%", threads=threads).vertices.tobytes()
+            os._exit(0 if found == expected else 1)
+        for _ in range(600):
+            ended, status = os.waitpid(child, os.WNOHANG)
+            if ended:
+                break
+            time.sleep(0.1)
+        else:
+            os.kill(child, 9)
+        print(ended == child and status == 0)
+        """
+    assert last_line_of(program) == "True"
+
+
+@needs_tasks
+def test_threads_are_kept_and_do_not_grow_in_number(octahedron):
+    def count() -> int:
+        return len(os.listdir("/proc/self/task"))
+
+    limitmesh.refine(*octahedron, tolerance=0.05, threads=2)
+    before = count()
+    for _ in range(20):
+        limitmesh.refine(*octahedron, tolerance=0.05, threads=2)
+    assert count() <= before
+    for threads in range(1, 9):
+        limitmesh.refine(*octahedron, tolerance=0.05, threads=threads)
+    deadline = time.monotonic() + 30
+    while count() > before + 6 and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert count() <= before + 6
+
+
 def resident() -> int:
     with open("/proc/self/statm", encoding="ascii") as file:
         return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")

@@ -86,7 +86,10 @@ def test_results_are_arrays_of_their_own(octahedron):
     assert found.faces.shape == (m, 3) and found.parent_face.shape == (m,)
     assert found.vertices.flags.writeable and found.vertices.flags.c_contiguous
     for dtype in (np.int32, np.uint32, np.uint64, "int64"):
-        assert limitmesh.refine(*octahedron, tolerance=0.05, index_dtype=dtype).faces.dtype == np.dtype(dtype)
+        other = limitmesh.refine(*octahedron, tolerance=0.05, index_dtype=dtype)
+        for name in ("faces", "parent_face", "vertex_face", "barycentric_vertices"):
+            assert getattr(other, name).dtype == np.dtype(dtype)
+            np.testing.assert_array_equal(getattr(other, name), getattr(found, name))
     for dtype in (np.int16, float, "apples"):
         with pytest.raises(limitmesh.OptionError, match="index_dtype"):
             limitmesh.refine(*octahedron, tolerance=0.05, index_dtype=dtype)

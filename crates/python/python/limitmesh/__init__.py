@@ -10,6 +10,9 @@ Lengths are in the mesh's unit, or as ``"0.1%"`` parts of the diagonal of its bo
 changed in place. Everything raises `Error`, a ``ValueError``, where its arguments are at fault.
 """
 
+import os as _os
+
+from . import _limitmesh
 from ._errors import Error, MeshError, OptionError, ReadError, StoppedShort, ToleranceNotMet
 from ._files import load, models, refine_file, save
 from ._interop import (
@@ -28,6 +31,10 @@ from ._options import Camera, Progress
 from ._refine import Estimate, estimate, refine
 from ._refined import Diagnosis, ErrorBounds, Finding, Refined, Split
 from ._simplify import Repaired, Simplified, repair, simplify
+
+if hasattr(_os, "register_at_fork"):
+    # The child would have none of the threads that are kept for the next call.
+    _os.register_at_fork(before=_limitmesh.end_threads)
 
 __all__ = [
     "Camera",

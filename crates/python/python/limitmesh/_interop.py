@@ -69,6 +69,13 @@ def from_trimesh(mesh: Any) -> Mesh:
     >>> smooth.diagnosis.clean
     True
     """
+    if hasattr(mesh, "geometry"):
+        raise MeshError(
+            f"a trimesh scene of {len(mesh.geometry)} meshes, expected one mesh: its to_mesh() makes one of them, and refine_file() "
+            "keeps a file as it is"
+        )
+    if not hasattr(mesh, "faces"):
+        raise MeshError(f"a trimesh {type(mesh).__name__} has no faces, expected a trimesh.Trimesh")
     channels: dict[str, Channel] = {}
     for domain, attributes in (("vertex", mesh.vertex_attributes), ("face", mesh.face_attributes)):
         for name, values in attributes.items():

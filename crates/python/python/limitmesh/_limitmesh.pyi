@@ -1,15 +1,18 @@
 from collections.abc import Callable
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "FINDINGS",
     "Error",
     "MeshError",
     "OptionError",
+    "Origins",
     "ReadError",
     "__version__",
+    "end_threads",
     "estimate",
     "examine",
     "limit",
@@ -25,6 +28,7 @@ __all__ = [
     "save",
     "simplify",
 ]
+FINDINGS: tuple[str, ...]
 __version__: str
 
 class Error(ValueError): ...
@@ -34,8 +38,19 @@ class ReadError(Error): ...
 
 _Callback = Callable[[str, int, int | None, int], object] | None
 
+@final
+class Origins:
+    def rows(
+        self,
+    ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], npt.NDArray[np.float64]]: ...
+
 def refine(
-    mesh: Any, control: dict[str, Any], goals: dict[str, Any], threads: int, progress: _Callback
+    mesh: Any,
+    control: dict[str, Any],
+    goals: dict[str, Any],
+    has_wide_indices: bool,
+    threads: int,
+    progress: _Callback,
 ) -> dict[str, Any]: ...
 def estimate(
     mesh: Any, control: dict[str, Any], goals: dict[str, Any], threads: int, progress: _Callback
@@ -55,7 +70,7 @@ def measure_limit(
 def limit(
     mesh: Any, control: dict[str, Any], threads: int, progress: _Callback
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
-def examine(mesh: Any, control: dict[str, Any], threads: int) -> tuple[str, dict[str, Any]]: ...
+def examine(mesh: Any, control: dict[str, Any], threads: int) -> tuple[str, dict[str, Any] | None]: ...
 def simplify(
     mesh: Any,
     control: dict[str, Any],
@@ -86,5 +101,6 @@ def save(
     linked: list[list[str]],
     ascii: bool,
 ) -> list[str]: ...
+def end_threads() -> None: ...
 def program(arguments: list[str], again: list[str]) -> int: ...
 def refine_file(arguments: list[str], threads: int, progress: _Callback) -> tuple[str | None, list[str]]: ...

@@ -241,6 +241,8 @@ MeshLike: TypeAlias = "Mesh | Refined | tuple[npt.ArrayLike, Any] | str | os.Pat
 def as_mesh(mesh: Any, faces: Any = None, name: str = "vertices") -> Mesh:
     """A mesh from whatever stands for one."""
     if faces is not None:
+        if isinstance(faces, (str, float, int)):
+            raise MeshError(f"faces is {faces!r}, expected rows of vertex numbers; options have names, such as tolerance={faces!r}")
         return Mesh(mesh, faces)
     if isinstance(mesh, Mesh):
         return mesh

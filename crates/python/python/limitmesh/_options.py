@@ -7,7 +7,7 @@ import os
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -76,6 +76,8 @@ class Progress:
 
 
 ProgressCallback: TypeAlias = Callable[[Progress], object]
+
+_Made = TypeVar("_Made")
 
 
 def number(value: Any, name: str, expected: str, fits: Callable[[float], bool]) -> float:
@@ -267,6 +269,46 @@ def cameras_of(cameras: Iterable[Camera]) -> list[tuple[Any, ...]]:
             raise OptionError(f"{name} has a picture of {size[0]} x {size[1]}, which is too large")
         found.append((*places, fov, *size))
     return found
+
+
+def of_refinement(
+    *,
+    interpolate: bool | Length,
+    crease_angle: float | None,
+    boundary: str,
+    concave_corners: str | None,
+    scheme: str,
+    weld: float | None,
+    repair: bool,
+    **goals: Any,
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """How the control mesh comes about, and the goals."""
+    control = control_of(
+        interpolate=interpolate,
+        crease_angle=crease_angle,
+        boundary=boundary,
+        concave_corners=concave_corners,
+        scheme=scheme,
+        weld=weld,
+        repair=repair,
+    )
+    return control, goals_of(**goals)
+
+
+def remembered(make: Callable[..., _Made], **options: Any) -> _Made:
+    """What `make` makes of options, made once of those that are alike: what is refined often is refined alike."""
+    # Anything else could be changed in place, and be told from nothing that it was before.
+    if all(type(value) in _PLAIN for value in options.values()):
+        return _remembered(make, **options)  # type: ignore[return-value]
+    return make(**options)
+
+
+_PLAIN = frozenset((type(None), bool, int, float, str))
+
+
+@functools.lru_cache(maxsize=256, typed=True)
+def _remembered(make: Callable[..., object], **options: Any) -> object:
+    return make(**options)
 
 
 def goals_of(

@@ -138,7 +138,8 @@ def refine(
     (3, dtype('int64'))
     """
     mesh = _mesh_of(vertices, faces, channels, creases, corners)
-    control = _options.control_of(
+    control, goals = _options.remembered(
+        _options.of_refinement,
         interpolate=interpolate,
         crease_angle=crease_angle,
         boundary=boundary,
@@ -146,8 +147,6 @@ def refine(
         scheme=scheme,
         weld=weld,
         repair=repair,
-    )
-    goals = _options.goals_of(
         method=method,
         levels=levels,
         tolerance=tolerance,
@@ -168,7 +167,7 @@ def refine(
     )
     dtype = _index_dtype(index_dtype)
     told = _limitmesh.refine(
-        mesh._native(), control, goals, _options.threads_of(threads), _options.callback_of(progress)
+        mesh._native(), control, goals, dtype == np.int64, _options.threads_of(threads), _options.callback_of(progress)
     )
     result = _refined(told, dtype)
     short = _short(result, goals)
@@ -205,36 +204,18 @@ def _index_dtype(index_dtype: npt.DTypeLike) -> np.dtype[Any]:
 
 
 def _refined(told: dict[str, Any], dtype: np.dtype[Any]) -> Refined:
-    def indices(name: str) -> Any:
-        return None if told[name] is None else told[name].astype(dtype, copy=False)
-
-    error = told["error"]
-    channels = {one["name"]: Channel._of_native(one, triangles=True) for one in told["channels"]}
-    return Refined(
-        vertices=told["vertices"],
-        faces=indices("faces"),
-        normals=told["normals"],
-        parent_face=indices("parent_face"),
-        vertex_face=indices("vertex_face"),
-        barycentric=told["barycentric"],
-        barycentric_vertices=indices("vertex_corners"),
-        channels=channels,
-        error=None if error is None else ErrorBounds(error[0], error[1], error[2], tuple(error[3])),
-        stop=told["stop"],
-        diagnosis=Diagnosis._of_native(told["diagnosis"]),
-        levels=told["levels"],
-        pixels=told["pixels"],
-        open_cones=told["open_cones"],
-        unfolded=told["unfolded"],
-        inverted=told["inverted"],
-        interpolation=told["interpolation"],
-        seconds=told["seconds"],
-        _sides=(told["side_corners"], told["side_normals"]),
-    )
+    told["faces"] = told["faces"].astype(dtype, copy=False)
+    if told["error"] is not None:
+        told["error"] = ErrorBounds(*told["error"])
+    told["channels"] = {one["name"]: Channel._of_native(one, triangles=True) for one in told["channels"]}
+    told["diagnosis"] = Diagnosis._of_native(told["diagnosis"])
+    return Refined(**told)
 
 
 def _short(result: Refined, goals: dict[str, Any]) -> str | None:
     """Why a result is less than what was asked for, if it is."""
+    if result.stop == "met":
+        return None
     count = len(result.faces)
     reached = f"what was reached has {count} triangles"
     if result.error is not None and np.isfinite(result.error.upper):

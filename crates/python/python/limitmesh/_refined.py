@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import base64
+import functools
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -71,9 +72,14 @@ class Diagnosis:
     findings: Mapping[str, Finding]
 
     @staticmethod
-    def _of_native(told: Mapping[str, Any]) -> Diagnosis:
-        findings = {name: Finding(count, tuple(first)) for name, (count, first) in told["findings"].items()}
-        return Diagnosis(told["clean"], tuple(told["repairs"]), tuple(told["preparations"]), findings)
+    def _of_native(told: Mapping[str, Any] | None) -> Diagnosis:
+        if told is None:
+            return Diagnosis(True, (), (), dict(_NOTHING))
+        findings = {name: Finding(count, first) for name, (count, first) in told["findings"].items()}
+        return Diagnosis(told["clean"], told["repairs"], told["preparations"], {**_NOTHING, **findings})
+
+
+_NOTHING = dict.fromkeys(_limitmesh.FINDINGS, Finding(0, ()))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -136,10 +142,6 @@ class Refined:
     vertices: Floats
     faces: AnyIntegers
     normals: Floats
-    parent_face: AnyIntegers | None
-    vertex_face: AnyIntegers | None
-    barycentric: Floats | None
-    barycentric_vertices: AnyIntegers | None
     channels: Mapping[str, Channel]
     error: ErrorBounds | None
     stop: str
@@ -151,7 +153,38 @@ class Refined:
     inverted: int | None
     interpolation: Mapping[str, Any] | None
     seconds: float
-    _sides: tuple[AnyIntegers, Floats] = field(repr=False)
+    _sides: tuple[AnyIntegers, Floats]
+    _parents: AnyIntegers | None
+    _origins: _limitmesh.Origins | None
+
+    # These are made when they are asked for: for most who refine they would be the greater part of what is handed over.
+
+    @functools.cached_property
+    def parent_face(self) -> AnyIntegers | None:
+        return None if self._parents is None else self._parents.astype(self.faces.dtype, copy=False)
+
+    @property
+    def vertex_face(self) -> AnyIntegers | None:
+        return self._places[0]
+
+    @property
+    def barycentric(self) -> Floats | None:
+        return self._places[2]
+
+    @property
+    def barycentric_vertices(self) -> AnyIntegers | None:
+        return self._places[1]
+
+    @functools.cached_property
+    def _places(self) -> tuple[AnyIntegers | None, AnyIntegers | None, Floats | None]:
+        if self._origins is None:
+            return None, None, None
+        faces, vertices, weights = self._origins.rows()
+        dtype = self.faces.dtype
+        return faces.astype(dtype, copy=False), vertices.astype(dtype, copy=False), weights
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_places": self._places, "_origins": None}
 
     @property
     def corner_normals(self) -> Floats:
