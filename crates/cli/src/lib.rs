@@ -88,6 +88,7 @@ fn run(arguments: &Arguments, again: &[OsString], progress: &Progress) -> anyhow
         Command::Render(arguments) => commands::render::run(arguments, progress),
         Command::Reproduce(arguments) => commands::reproduce::run(arguments, progress),
         Command::Info(arguments) => commands::info::run(arguments, progress),
+        Command::Evaluate(arguments) => commands::evaluate::run(arguments, progress),
         Command::Models(arguments) => commands::models::run(arguments),
         Command::Batch(own) => commands::batch::run(own, again, arguments.global.threads, progress),
         Command::BatchJob(arguments) => commands::batch_job::run(arguments, progress),

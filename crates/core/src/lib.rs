@@ -70,7 +70,7 @@ pub mod simplify;
 mod vector;
 
 pub use index::{FaceId, HalfEdgeId, VertexId};
-pub use limit_surface::{LimitSurface, SurfacePoint};
+pub use limit_surface::{Curvature, Derivatives, LimitSurface, SurfacePoint};
 pub use mesh::{Mesh, PolygonSoup, Triangles};
 
 #[cfg(doctest)]

@@ -1,10 +1,14 @@
-//! Points and normals of the limit surface at any place of its control faces.
+//! The limit surface as an object: points, normals, derivatives and curvature at any place of its control faces, area and volume.
 //!
 //! A piece is refined towards the place until its part there is a polynomial (Stam, "Evaluation of Loop Subdivision Surfaces",
 //! 1998: around an irregular vertex the regular parts shrink by half with each level), which is evaluated; at corners the scheme's
 //! limit stencils are. Places that share a piece share its refinement.
 
+mod derivatives;
 mod places;
+mod size;
+
+pub use derivatives::{Curvature, Derivatives};
 
 use crate::certificate::Sheet;
 use crate::index::{FaceId, HalfEdgeId};
@@ -12,8 +16,8 @@ use crate::limit::{LimitError, SidedNormals};
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::large_rings::LargeRings;
 use crate::patch::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
+use crate::patch::large_rings::LargeRings;
 use crate::patch::{self, LimitPoint, Patch, Quartic, RefinedPatch, Rules, child_corners, root_patch};
 use crate::scheme::Scheme;
 use crate::vector::vector;
@@ -134,13 +138,7 @@ impl<'a> LimitSurface<'a> {
     }
 
     /// Answers for places over a face that there is. `spare` is scratch space.
-    fn find(
-        &self,
-        face: FaceId,
-        places: &mut Vec<Place>,
-        spare: &mut Vec<Place>,
-        found: &mut impl Answers,
-    ) {
+    fn find(&self, face: FaceId, places: &mut Vec<Place>, spare: &mut Vec<Place>, found: &mut impl Answers) {
         let topology = self.mesh.topology();
         let corners = [0, 1, 2].map(|corner| {
             let h = HalfEdgeId::of(face, corner);

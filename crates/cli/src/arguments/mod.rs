@@ -5,6 +5,7 @@ mod batch;
 mod camera;
 mod channels;
 mod compare;
+mod evaluate;
 mod exact;
 mod features;
 mod info;
@@ -24,6 +25,7 @@ pub(crate) use batch::{BatchArguments, BatchJobArguments};
 pub(crate) use camera::cameras_in;
 pub(crate) use channels::ChannelArguments;
 pub(crate) use compare::CompareArguments;
+pub(crate) use evaluate::{EvaluateArguments, Place, Places};
 pub(crate) use exact::ExactArguments;
 pub(crate) use features::{Boundary, ConcaveCorners, CreasesFrom, FeatureArguments, Featured};
 pub(crate) use info::InfoArguments;
@@ -48,6 +50,8 @@ Examples:
         says what is in a file and what would be repaired
   limitmesh measure head.ply --limit-of builtin:head
         how far the refined mesh is from the limit surface
+  limitmesh evaluate builtin:head --at 0,0.5,0.25,0.25
+        point, normal and curvature of the limit surface over a place of face 0
   limitmesh compare builtin:head --angle 5
         the methods side by side at equal triangle counts
   limitmesh batch jobs.jsonl -o results.jsonl
@@ -95,6 +99,7 @@ pub(crate) enum Command {
     Render(RenderArguments),
     Reproduce(ReproduceArguments),
     Info(InfoArguments),
+    Evaluate(EvaluateArguments),
     Models(ModelsArguments),
     Batch(BatchArguments),
     #[command(hide = true)]
@@ -111,6 +116,7 @@ impl Command {
             Self::Render(_) => "render",
             Self::Reproduce(_) => "reproduce",
             Self::Info(_) => "info",
+            Self::Evaluate(_) => "evaluate",
             Self::Models(_) => "models",
             Self::Batch(_) => "batch",
             Self::BatchJob(_) => "batch-job",

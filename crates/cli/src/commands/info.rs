@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use limitmesh::Mesh;
+use anyhow::Context;
+use limitmesh::scheme::Loop;
+use limitmesh::{LimitSurface, Mesh};
 
-use crate::arguments::InfoArguments;
+use crate::arguments::{FeatureArguments, InfoArguments};
 use crate::bulk::Bulk;
 use crate::dihedral::Dihedrals;
-use crate::failure::Outcome;
+use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, point, table, thousands};
 use crate::input;
 use crate::mesh_info;
@@ -21,6 +23,12 @@ use crate::report::{
 
 /// Examines a file and prints what it holds.
 pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Result<Outcome> {
+    if !arguments.limit && arguments.features.are_given() {
+        return usage(
+            "--crease-angle, --boundary and --concave-corners belong to a limit surface; they need --limit",
+        );
+    }
+    arguments.features.check_of_scene()?;
     let input::Soup { name, format, soup, asset, package, .. } =
         input::read(&arguments.input, &arguments.build, progress)?;
     let options = arguments.build.options()?;
@@ -46,6 +54,8 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
     }
     drop(soup);
     progress.stage("examining the mesh");
+    let limit = arguments.limit.then(|| limit(&mesh, &arguments.features)).transpose();
+    let limit = limit.with_context(|| name.clone())?;
     let report = InformationReport {
         version: VERSION,
         input,
@@ -55,6 +65,7 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         package: package.map(PackageInformation::from),
         diagnosis: (&diagnosis).into(),
         mesh: mesh_info::examine(&mesh),
+        limit,
     };
     progress.clear();
     if arguments.json {
@@ -69,9 +80,19 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         found.iter().for_each(|line| text.push_str(&format!("  {line}\n")));
         text.push_str("\ncontrol mesh\n");
         text.push_str(&describe_mesh(&report.mesh));
+        if let Some(limit) = &report.limit {
+            text.push_str(&format!("\nlimit surface\n  {}\n", bulk_in_words(limit)));
+        }
         output::print(&text)?;
     }
     Ok(Outcome::Done)
+}
+
+/// The area and volume of the limit surface by Loop's scheme.
+fn limit(mesh: &Mesh, features: &FeatureArguments) -> anyhow::Result<Bulk> {
+    let control = features.apply(mesh.clone())?.mesh;
+    let surface = LimitSurface::new(&control, &Loop)?;
+    Ok(Bulk { area: surface.area().unwrap_or(0.0), volume: surface.volume() })
 }
 
 fn describe_file(report: &InformationReport) -> String {

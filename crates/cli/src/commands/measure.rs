@@ -6,7 +6,7 @@ use std::time::Instant;
 use limitmesh::measure::{CertifiedHausdorff, Hausdorff, SamplingOptions, hausdorff_observed};
 use limitmesh::{Mesh, Triangles};
 
-use super::{certified, certified_limit, heatmap, interpolation};
+use super::{certified, certified_limit, heatmap, limit_control};
 use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, point, table, thousands, upper_bound};
@@ -135,14 +135,8 @@ fn load_reference(
     let scheme = arguments.scheme.unwrap_or_default();
     let report = describe(&input);
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
-    let mesh = input.with_creases(arguments.features.creases_from)?.mesh;
-    let mesh = arguments.features.apply(mesh)?.mesh;
-    let (mesh, _) = interpolation::apply(
-        mesh,
-        (arguments.interpolation, arguments.build.unit),
-        scheme.scheme(),
-        progress,
-    )?;
+    let interpolation = (arguments.interpolation, arguments.build.unit);
+    let mesh = limit_control::prepared(input, &arguments.features, interpolation, scheme, progress)?;
     let (mesh, levels) = if arguments.certified {
         (mesh, 0)
     } else {

@@ -26,6 +26,8 @@ pub(crate) struct InformationReport {
     pub(crate) package: Option<PackageInformation>,
     pub(crate) diagnosis: DiagnosisReport,
     pub(crate) mesh: MeshInformation,
+    /// The limit surface; null unless it was asked for.
+    pub(crate) limit: Option<Bulk>,
 }
 
 /// What a glTF document holds.

@@ -35,6 +35,13 @@ impl ExtraordinaryPatch {
         core::iter::once(self.at).chain(self.ring.iter().copied()).chain(self.outer)
     }
 
+    /// Moves all so that the irregular vertex is at the origin, and gives where it was.
+    pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
+        let from = core::mem::take(&mut self.at);
+        self.ring.iter_mut().chain(&mut self.outer).for_each(|point| *point -= from);
+        from
+    }
+
     /// The points after one refinement; `beta` is the weight of each neighbour of the irregular vertex.
     pub(crate) fn refined(&self, beta: f64) -> RefinedExtraordinary {
         let valence = self.ring.len();

@@ -13,8 +13,6 @@ mod from_mesh;
 pub(crate) mod large_rings;
 pub(crate) mod mesh_patch;
 mod pole;
-// Nobody asks for second derivatives yet.
-#[allow(dead_code)]
 pub(crate) mod quartic;
 mod rules;
 mod sector;
@@ -129,6 +127,31 @@ impl Patch {
             Self::Sectors(sectors) => RefinedPatch::Sectors(sectors.refined(rules)),
             Self::SemiSharp(patch) => RefinedPatch::SemiSharp(patch.refined(rules)),
             Self::Mesh(local) => RefinedPatch::Mesh(local.refined(rules)),
+        }
+    }
+
+    /// Whether a corner is known to be an irregular vertex inside the surface, at which no part is ever regular.
+    pub(crate) fn is_irregular_at(&self, corner: usize) -> bool {
+        match self {
+            Self::Extraordinary(patch) => patch.corner == corner,
+            Self::Pole(patch) => patch.corner() == corner,
+            Self::Regular(_) | Self::Sectors(_) | Self::SemiSharp(_) | Self::Mesh(_) => false,
+        }
+    }
+
+    /// Moves the piece so that one of its points is at the origin, and gives where that was. Pieces that are refined a few times before
+    /// they are others, or of which nobody asks for more than limits, stay.
+    pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
+        match self {
+            Self::Regular(points) => {
+                let from = points[0];
+                points.iter_mut().for_each(|point| *point -= from);
+                from
+            }
+            Self::Extraordinary(patch) => patch.moved_to_origin(),
+            Self::Pole(patch) => patch.moved_to_origin(),
+            Self::Sectors(sectors) => sectors.moved_to_origin(),
+            Self::SemiSharp(_) | Self::Mesh(_) => DVec3::ZERO,
         }
     }
 

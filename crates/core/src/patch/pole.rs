@@ -48,6 +48,18 @@ impl PolePatch {
         self.valence
     }
 
+    /// Which of the face's corners is the irregular one.
+    pub(crate) fn corner(&self) -> usize {
+        self.near.corner
+    }
+
+    /// Moves all so that the irregular vertex is at the origin, and gives where it was.
+    pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
+        let from = self.near.moved_to_origin();
+        self.mean -= from;
+        from
+    }
+
     /// Points whose hull holds the piece.
     pub(crate) fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
         self.near.points().chain([self.mean])

@@ -87,6 +87,7 @@ impl Quartic {
 
     /// The unit normal at (u, v), on the side from which the corners run counter-clockwise; zero where the tangents span
     /// no plane.
+    #[cfg(test)]
     pub(crate) fn normal(&self, u: f64, v: f64) -> DVec3 {
         let mut normals = [[0.0; 3]];
         self.points_and_normals_along(v, u, 0.0, &mut [[0.0; 3]], &mut normals);

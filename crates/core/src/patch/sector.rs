@@ -197,6 +197,19 @@ impl SectorPatch {
         })
     }
 
+    /// Moves all so that the first corner is at the origin, and gives where it was.
+    pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
+        let from = self.0[0].at;
+        for sector in &mut self.0 {
+            sector.at -= from;
+            sector.neighbours.iter_mut().for_each(|point| *point -= from);
+            if let Far::Mean { mean, .. } = &mut sector.far {
+                *mean -= from;
+            }
+        }
+        from
+    }
+
     /// The points after one refinement.
     pub(crate) fn refined(&self, rules: &Rules) -> RefinedSectors<'_> {
         RefinedSectors {

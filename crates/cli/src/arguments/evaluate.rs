@@ -1,0 +1,105 @@
+//! `limitmesh evaluate`.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args;
+
+use super::values;
+use super::{BuildArguments, FeatureArguments, InterpolationArguments, SchemeName};
+
+const EXAMPLES: &str = "\
+Examples:
+  limitmesh evaluate builtin:cup --at 12,0.5,0.25,0.25
+        the point, normal and curvature over a place of face 12
+  limitmesh evaluate part.obj --crease-angle 30 --at 0,1,0,0 --at 7,0.2,0.3,0.5 --json
+  limitmesh evaluate part.obj --at places.txt --json
+        one place a line: FACE W0 W1 W2";
+
+/// Say where the limit surface is over places of its control faces, and how it bends there
+///
+/// Faces are the triangles of the control mesh, counted from 0 as in the file where that has triangles that need no repair; a
+/// place is given by the weights of the three corners, which add up to 1. The limit surface itself is evaluated, not a mesh
+/// that stands for it. Curvature is in 1 / unit (Gaussian: 1 / unit²), below 0 on convex places whose normals point outwards; there
+/// is none at irregular vertices, nor for schemes other than loop and loop-warren.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct EvaluateArguments {
+    /// Control mesh: a file, - for standard input, or builtin:NAME
+    #[arg(value_name = "CONTROL")]
+    pub(crate) control: PathBuf,
+
+    /// A place, or a file of places, one a line, with commas or blanks between the numbers; may be given more than once
+    #[arg(long, value_name = "FACE,W0,W1,W2|FILE", required = true, num_args = 1.., allow_hyphen_values = true)]
+    pub(crate) at: Vec<Places>,
+
+    /// Scheme of the limit surface
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) scheme: SchemeName,
+
+    #[command(flatten)]
+    pub(crate) features: FeatureArguments,
+
+    #[command(flatten)]
+    pub(crate) interpolation: InterpolationArguments,
+
+    #[command(flatten)]
+    pub(crate) build: BuildArguments,
+
+    /// Print JSON instead of text: a list of places
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// A place of a control mesh: a triangle, and the weights of its corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) face: u32,
+    pub(crate) weights: [f64; 3],
+}
+
+/// A place, or a file that holds some.
+#[derive(Clone, Debug)]
+pub(crate) enum Places {
+    One(Place),
+    File(PathBuf),
+}
+
+impl FromStr for Places {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        // The name of a file may hold commas, but not numbers alone between them.
+        let is_place = text.contains(',') && text.split(',').all(|part| part.trim().parse::<f64>().is_ok());
+        if is_place { text.parse().map(Self::One) } else { Ok(Self::File(text.into())) }
+    }
+}
+
+/// How far the sum of weights may be from 1, where they are written with few digits.
+const ROUNDING: f64 = 1e-6;
+
+impl FromStr for Place {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let words: Vec<&str> =
+            text.split(|c: char| c == ',' || c.is_whitespace()).filter(|word| !word.is_empty()).collect();
+        let [face, weights @ ..] = &words[..] else {
+            return Err("FACE,W0,W1,W2 is expected".to_owned());
+        };
+        let weights = weights.iter().map(|weight| values::finite(weight)).collect::<Result<Vec<_>, _>>()?;
+        let weights = <[f64; 3]>::try_from(weights).map_err(|weights| {
+            format!("{} weights in '{text}', three are expected: FACE,W0,W1,W2", weights.len())
+        })?;
+        let face =
+            face.parse().map_err(|_| format!("'{face}' is not the number of a face, counted from 0"))?;
+        if let Some(weight) = weights.iter().find(|weight| **weight < 0.0) {
+            return Err(format!("the weight {weight} in '{text}' is below 0: the place is not on the face"));
+        }
+        let sum: f64 = weights.iter().sum();
+        if (sum - 1.0).abs() > ROUNDING {
+            return Err(format!("the weights in '{text}' add up to {sum}, 1 is expected"));
+        }
+        Ok(Self { face, weights })
+    }
+}

@@ -1,0 +1,66 @@
+//! What `limitmesh evaluate` says of a place.
+
+use limitmesh::{Curvature, Derivatives};
+use serde::Serialize;
+
+use crate::arguments::Place;
+
+/// A place of a limit surface.
+#[derive(Debug, Serialize)]
+pub(crate) struct EvaluationReport {
+    /// The control mesh's triangle, from 0.
+    pub(crate) face: u32,
+    pub(crate) barycentric: [f64; 3],
+    pub(crate) point: [f64; 3],
+    /// The unit normal on the face's side; null where there is none.
+    pub(crate) normal: Option<[f64; 3]>,
+    /// By the second and third weight; null where there are none.
+    pub(crate) derivatives: Option<DerivativesReport>,
+    /// Null where there is none.
+    pub(crate) curvature: Option<CurvatureReport>,
+}
+
+/// Derivatives by the weights of the second (u) and third corner (v).
+#[derive(Debug, Serialize)]
+pub(crate) struct DerivativesReport {
+    pub(crate) u: [f64; 3],
+    pub(crate) v: [f64; 3],
+    pub(crate) uu: [f64; 3],
+    pub(crate) uv: [f64; 3],
+    pub(crate) vv: [f64; 3],
+}
+
+/// How the surface bends.
+#[derive(Debug, Serialize)]
+pub(crate) struct CurvatureReport {
+    pub(crate) gaussian: f64,
+    pub(crate) mean: f64,
+    /// The greatest and the least.
+    pub(crate) principal: [f64; 2],
+    /// Their unit directions.
+    pub(crate) directions: [[f64; 3]; 2],
+}
+
+impl EvaluationReport {
+    /// `limits` are the point and the normal that hold where there are no derivatives.
+    pub(crate) fn new(
+        Place { face, weights }: Place,
+        limits: limitmesh::SurfacePoint,
+        derivatives: Option<Derivatives>,
+    ) -> Self {
+        let limit_normal = (limits.normal != [0.0; 3]).then_some(limits.normal);
+        Self {
+            face,
+            barycentric: weights,
+            point: derivatives.map_or(limits.position, |derivatives| derivatives.position),
+            normal: derivatives.and_then(|derivatives| derivatives.normal()).or(limit_normal),
+            derivatives: derivatives.map(|Derivatives { first: [u, v], second: [uu, uv, vv], .. }| {
+                DerivativesReport { u, v, uu, uv, vv }
+            }),
+            curvature: derivatives.and_then(|derivatives| derivatives.curvature()).map(|curvature| {
+                let Curvature { gaussian, mean, principal, directions, .. } = curvature;
+                CurvatureReport { gaussian, mean, principal, directions }
+            }),
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! Area and volume of the limit surface.
+//!
+//! By the divergence theorem the volume is ⅓ ∮ S·(S_u × S_v) du dv. On a regular piece that is a polynomial of degree 10, which a product
+//! of Gauss rules with six nodes integrates exactly; the area's integrand |S_u × S_v| is none, and pieces are divided until two rules
+//! agree. Towards irregular vertices pieces are refined until what is left is a speck, for which a flat triangle stands.
+
+use super::{LimitSurface, regular};
+use crate::index::FaceId;
+use crate::parallel;
+use crate::patch::{Patch, Quartic, child_corners, root_patch};
+use crate::vector::{DVec3, vector};
+
+/// Faces that are integrated together.
+const BLOCK: usize = 64;
+
+/// Pieces are refined until their triangle is this part of the face's. Beside an irregular vertex they are flat then, but their edges
+/// are bent at every size, so that the triangle's own error is some tenths of it.
+const SPECK: f64 = 1e-12;
+
+/// Refinements at most, where pieces do not get smaller.
+const DEEPEST: u32 = 64;
+
+/// Two rules agree if they differ by less than this part of the face's area.
+const AGREEMENT: f64 = 1e-11;
+
+/// Times that a piece is divided at most, where the surface has a cusp.
+const MOST_DIVISIONS: u32 = 10;
+
+/// Nodes and weights of Gauss's rule on −1 to 1, the positive ones (Abramowitz and Stegun, table 25.4).
+const SIX: [(f64, f64); 3] = [
+    (0.238_619_186_083_196_9, 0.467_913_934_572_691),
+    (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
+    (0.932_469_514_203_152_1, 0.171_324_492_379_170_4),
+];
+const FOUR: [(f64, f64); 2] = [
+    (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
+    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+];
+
+/// Area, and the volume towards the origin.
+#[derive(Clone, Copy, Default)]
+struct Size {
+    area: f64,
+    volume: f64,
+}
+
+impl core::ops::AddAssign for Size {
+    fn add_assign(&mut self, other: Self) {
+        self.area += other.area;
+        self.volume += other.volume;
+    }
+}
+
+impl LimitSurface<'_> {
+    /// The area, to some 1e-9 of it, in squares of the control mesh's unit; `None` for schemes outside the Loop family.
+    pub fn area(&self) -> Option<f64> {
+        self.size(DVec3::ZERO).map(|size| size.area)
+    }
+
+    /// The volume that a closed surface encloses, to some 1e-11 of it, in cubes of the control mesh's unit: below 0 where normals point
+    /// inwards. `None` for surfaces with a boundary, and for schemes outside the Loop family.
+    ///
+    /// ```
+    /// use limitmesh::{LimitSurface, Mesh, scheme::Loop};
+    ///
+    /// let mesh = Mesh::from_triangles(
+    ///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],
+    ///     vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]],
+    /// )?;
+    /// let volume = LimitSurface::new(&mesh, &Loop)?.volume().ok_or("an open surface")?;
+    /// assert!((volume.abs() - 0.1029931143).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn volume(&self) -> Option<f64> {
+        let topology = self.mesh.topology();
+        if topology.half_edges().any(|h| topology.twin(h).is_none()) {
+            return None;
+        }
+        // Seen from its middle, a surface far from the origin keeps its digits.
+        let points = self.positions.len().max(1) as f64;
+        let middle = self.positions.iter().fold(DVec3::ZERO, |sum, &point| sum + vector(point) / points);
+        self.size(middle).map(|size| size.volume)
+    }
+
+    fn size(&self, origin: DVec3) -> Option<Size> {
+        if !self.rules.is_certified() {
+            return None;
+        }
+        let faces = parallel::pieces_of(self.mesh.face_count(), BLOCK, |block| {
+            let mut sum = Size::default();
+            block.for_each(|face| sum += self.size_of_face(FaceId(face as u32), origin));
+            sum
+        });
+        let mut sum = Size::default();
+        faces.into_iter().for_each(|block| sum += block);
+        Some(sum)
+    }
+
+    fn size_of_face(&self, face: FaceId, origin: DVec3) -> Size {
+        let corners = self.mesh.triangles()[face.index()].map(|v| vector(self.positions[v as usize]));
+        let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
+        let whole = triangle(corners, origin);
+        self.size_of(&patch, corners, (origin, whole.area), DEEPEST)
+    }
+
+    /// The size of a piece, given its corners and the area of its face.
+    fn size_of(&self, patch: &Patch, corners: [DVec3; 3], of: (DVec3, f64), levels: u32) -> Size {
+        if let Patch::Regular(points) = patch {
+            return regular_size(&regular(points), of);
+        }
+        let flat = triangle(corners, of.0);
+        if flat.area <= SPECK * of.1 || levels == 0 {
+            return flat;
+        }
+        let refined = patch.refined(&self.rules);
+        let middles = [0, 1, 2].map(|edge| refined.middle(edge).position);
+        let mut sum = Size::default();
+        for part in 0..4 {
+            sum += match refined.points(part) {
+                Some(points) => regular_size(&regular(&points), of),
+                None => {
+                    self.size_of(&refined.part(part), child_corners(corners, middles, part), of, levels - 1)
+                }
+            };
+        }
+        sum
+    }
+}
+
+/// A flat triangle's.
+fn triangle([a, b, c]: [DVec3; 3], origin: DVec3) -> Size {
+    let normal = (b - a).cross(c - a);
+    Size { area: 0.5 * normal.length(), volume: (a - origin).dot(normal) / 6.0 }
+}
+
+fn regular_size(piece: &Quartic, (origin, whole): (DVec3, f64)) -> Size {
+    let volume = integral(&SIX, Part::WHOLE, |u, v| {
+        let [by_u, by_v] = piece.tangents(u, v);
+        (piece.point(u, v) - origin).dot(by_u.cross(by_v)) / 3.0
+    });
+    Size { area: area(piece, Part::WHOLE, AGREEMENT * whole, MOST_DIVISIONS), volume }
+}
+
+fn area(piece: &Quartic, part: Part, agreement: f64, divisions: u32) -> f64 {
+    let density = |u: f64, v: f64| {
+        let [by_u, by_v] = piece.tangents(u, v);
+        by_u.cross(by_v).length()
+    };
+    let (coarse, fine) = (integral(&FOUR, part, density), integral(&SIX, part, density));
+    if (coarse - fine).abs() <= agreement || divisions == 0 {
+        return fine;
+    }
+    part.parts().into_iter().map(|part| area(piece, part, 0.25 * agreement, divisions - 1)).sum()
+}
+
+/// A part of the parameter triangle: a corner and the size from there, below 0 where it stands on its head.
+#[derive(Clone, Copy)]
+struct Part {
+    corner: [f64; 2],
+    size: f64,
+}
+
+impl Part {
+    const WHOLE: Self = Self { corner: [0.0, 0.0], size: 1.0 };
+
+    fn parts(self) -> [Self; 4] {
+        let ([u, v], half) = (self.corner, 0.5 * self.size);
+        let at = |corner| Self { corner, size: half };
+        [at([u, v]), at([u + half, v]), at([u, v + half]), Self { corner: [u + half, v + half], size: -half }]
+    }
+}
+
+/// The integral over a part, by a product of rules on the square that is collapsed to the triangle.
+fn integral(rule: &[(f64, f64)], part: Part, density: impl Fn(f64, f64) -> f64) -> f64 {
+    let nodes = || rule.iter().flat_map(|&(at, weight)| [(-at, weight), (at, weight)]);
+    let mut sum = 0.0;
+    for (x, of_x) in nodes() {
+        let x = 0.5 + 0.5 * x;
+        for (y, of_y) in nodes() {
+            let y = (0.5 + 0.5 * y) * (1.0 - x);
+            let [u, v] = [part.corner[0] + part.size * x, part.corner[1] + part.size * y];
+            sum += of_x * of_y * (1.0 - x) * density(u, v);
+        }
+    }
+    0.25 * sum * part.size * part.size
+}
