@@ -11,6 +11,7 @@ mod channels;
 mod common;
 mod compare;
 mod concave;
+mod evaluate;
 mod exact;
 mod examine;
 mod glb;

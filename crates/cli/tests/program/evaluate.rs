@@ -1,0 +1,106 @@
+//! `evaluate`, and `info --limit`: the limit surface itself, at places and as a whole.
+
+use crate::common::{file, folder, run};
+
+/// Corners in the order of the axes, faces counter-clockwise from outside.
+const OCTAHEDRON: &str = "v 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\n\
+    f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n";
+
+#[track_caller]
+fn near(found: &serde_json::Value, expected: f64) {
+    let found = found.as_f64().expect("a number");
+    assert!((found - expected).abs() < 1e-9, "{found} and {expected}");
+}
+
+/// Rational values follow by hand from Loop's masks; the others from a computation that shares no code with this.
+#[test]
+fn places_of_an_octahedron() {
+    let folder = folder();
+    let control = file(&folder, "octahedron.obj", OCTAHEDRON);
+    let places = file(
+        &folder,
+        "places.txt",
+        "# an edge's middle, a face's centre\n4 0.5 0.5 0\n\n7,0.3333333333333333, 0.3333333333333333 0.3333333333333334\n",
+    );
+    let command = "evaluate {} --at 0,0.5,0.3,0.2 0,1,0,0 --at {} --json";
+    let found = run(command, &[&control, &places]).expect(0).json();
+    let [place, corner, edge, centre] = &found.as_array().expect("a list")[..] else { panic!("{found}") };
+    assert_eq!((&place["face"], &place["barycentric"][1]), (&0.into(), &0.3.into()));
+    for (axis, expected) in [0.32634375, 0.20559375, 0.144].into_iter().enumerate() {
+        near(&place["point"][axis], expected);
+    }
+    // The limit of a vertex of valence 4, which has no curvature.
+    near(&corner["point"][0], 24.0 / 55.0);
+    near(&corner["normal"][0], 1.0);
+    assert!(corner["curvature"].is_null() && corner["derivatives"].is_null());
+    for (found, [gaussian, mean]) in
+        [(edge, [5.983379501385, -2.531187639857]), (centre, [3.848001180091, -1.961632274431])]
+    {
+        near(&found["curvature"]["gaussian"], gaussian);
+        near(&found["curvature"]["mean"], mean);
+        let [most, least] = [0, 1].map(|i| found["curvature"]["principal"][i].as_f64().expect("a number"));
+        assert!(most >= least && (most * least - gaussian).abs() < 1e-9);
+    }
+    let text = run("evaluate {} --at 0,0.5,0.3,0.2", &[&control]).expect(0).stdout;
+    assert!(text.contains("0.326") && text.contains("Gaussian"), "{text}");
+}
+
+#[test]
+fn sharp_edges_have_a_normal_on_each_side() {
+    // The middle of an edge of a cube, seen from both of its faces.
+    let cube = "evaluate builtin:cube --crease-angle 30 --json --at";
+    let mut normals = Vec::new();
+    for face in 0..12 {
+        let found = run(&format!("{cube} {face},0.25,0.25,0.5"), &[]).expect(0).json();
+        let normal: Vec<f64> =
+            found[0]["normal"].as_array().expect("three").iter().filter_map(|x| x.as_f64()).collect();
+        assert_eq!(normal.iter().filter(|x| x.abs() > 1.0 - 1e-12).count(), 1, "{normal:?}");
+        near(&found[0]["curvature"]["gaussian"], 0.0);
+        normals.push(normal);
+    }
+    normals.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+    normals.dedup_by(|a, b| a.iter().zip(&**b).all(|(a, b)| (a - b).abs() < 1e-9));
+    assert_eq!(normals.len(), 6);
+}
+
+#[test]
+fn places_that_are_none_are_errors() {
+    let folder = folder();
+    let control = file(&folder, "octahedron.obj", OCTAHEDRON);
+    let bad = file(&folder, "bad.txt", "0 1 0 0\n1 0.5 0.5\n");
+    let empty = file(&folder, "empty.txt", "# nothing\n");
+    run("evaluate {} --at 8,1,0,0", &[&control])
+        .expect(1)
+        .saying("no face 8: the control mesh has 8 triangles");
+    run("evaluate {} --at 0,0.5,0.5,0.5", &[&control]).expect(2).saying("add up to 1.5");
+    run("evaluate {} --at 0,1.5,-0.5,0", &[&control]).expect(2).saying("-0.5");
+    run("evaluate {} --at 0,1,0", &[&control]).expect(2).saying("2 weights");
+    run("evaluate {} --at {}", &[&control, &bad]).expect(1).saying("line 2: 2 weights");
+    run("evaluate {} --at {}", &[&control, &empty]).expect(1).saying("no places");
+    run("evaluate {} --at nowhere.txt", &[&control]).expect(1).saying("nowhere.txt");
+    run("evaluate {}", &[&control]).expect(2).saying("--at");
+}
+
+#[test]
+fn polygons_are_told_to_be_triangles() {
+    let folder = folder();
+    let quad = file(&folder, "quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    run("evaluate {} --at 1,0.2,0.3,0.5", &[&quad]).expect(0).saying("2 triangles of the control mesh");
+}
+
+#[test]
+fn limits_have_area_and_volume() {
+    let folder = folder();
+    let control = file(&folder, "octahedron.obj", OCTAHEDRON);
+    let found = run("info {} --limit --json", &[&control]).expect(0).json();
+    near(&found["limit"]["volume"], 0.303854909279);
+    assert!(run("info {} --limit", &[&control]).expect(0).stdout.contains("volume 0.30385"));
+    assert!(run("info {} --json", &[&control]).expect(0).json()["limit"].is_null());
+    // With all edges sharp it is the octahedron.
+    let found = run("info {} --limit --crease-angle 30 --json", &[&control]).expect(0).json();
+    near(&found["limit"]["volume"], 4.0 / 3.0);
+    near(&found["limit"]["area"], 4.0 * 3f64.sqrt());
+    run("info {} --crease-angle 30", &[&control]).expect(2).saying("--limit");
+    let sheet = run("info builtin:sheet --limit --json", &[]).expect(0).json();
+    assert!(sheet["limit"]["volume"].is_null() && sheet["limit"]["area"].as_f64() > Some(0.0));
+}
