@@ -19,6 +19,7 @@ mod refine;
 mod run;
 mod simplify;
 mod soup;
+mod surface;
 mod tell;
 
 use pyo3::prelude::*;
@@ -46,6 +47,8 @@ mod _limitmesh {
     use super::refine::{estimate, refine};
     #[pymodule_export]
     use super::simplify::{repair, simplify};
+    #[pymodule_export]
+    use super::surface::limit_surface;
 
     use pyo3::prelude::*;
     use pyo3::types::PyTuple;

@@ -31,6 +31,7 @@ from ._options import Camera, Progress
 from ._refine import Estimate, estimate, refine
 from ._refined import Diagnosis, ErrorBounds, Finding, Refined, Split
 from ._simplify import Repaired, Simplified, repair, simplify
+from ._surface import SurfacePoints, limit_surface
 
 if hasattr(_os, "register_at_fork"):
     # The child would have none of the threads that are kept for the next call.
@@ -57,6 +58,7 @@ __all__ = [
     "Simplified",
     "Split",
     "StoppedShort",
+    "SurfacePoints",
     "ToleranceNotMet",
     "__version__",
     "estimate",
@@ -66,6 +68,7 @@ __all__ = [
     "from_trimesh",
     "info",
     "limit",
+    "limit_surface",
     "load",
     "measure",
     "models",

@@ -70,6 +70,21 @@ def measure_limit(
 def limit(
     mesh: Any, control: dict[str, Any], threads: int, progress: _Callback
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+def limit_surface(
+    mesh: Any,
+    control: dict[str, Any],
+    faces: npt.NDArray[np.int64],
+    barycentric: npt.NDArray[np.float64],
+    threads: int,
+    progress: _Callback,
+) -> tuple[
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float64],
+]: ...
 def examine(mesh: Any, control: dict[str, Any], threads: int) -> tuple[str, dict[str, Any] | None]: ...
 def simplify(
     mesh: Any,

@@ -1,0 +1,143 @@
+"""The limit surface itself, at places of its control faces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _limitmesh, _options
+from ._arrays import Floats
+from ._limitmesh import OptionError
+from ._mesh import MeshLike
+from ._options import Boundary, Length, ProgressCallback, Scheme
+from ._refine import _mesh_of
+
+
+@dataclass(frozen=True)
+class SurfacePoints:
+    """Points of a limit surface, one a place; NaN for what is not there.
+
+    Attributes
+    ----------
+    positions, normals
+        (n, 3), in the mesh's unit; normals are unit vectors, on the face's own side of sharp edges.
+    first
+        (n, 2, 3): the derivatives by the weights of the face's second and third corner, where that of the first is what they leave of 1.
+    second
+        (n, 3, 3): by the second corner's weight twice, by both, by the third's twice.
+    gaussian, mean
+        (n,): curvatures, in 1 / unit² and 1 / unit; the mean is below 0 on convex places whose normals point outwards.
+    principal, directions
+        (n, 2) and (n, 2, 3): the greatest and the least curvature, and the unit directions in which the surface bends so.
+    """
+
+    positions: Floats
+    normals: Floats
+    first: Floats
+    second: Floats
+    gaussian: Floats
+    mean: Floats
+    principal: Floats
+    directions: Floats
+
+
+def limit_surface(
+    vertices: npt.ArrayLike | MeshLike,
+    faces: Any = None,
+    *,
+    at: npt.ArrayLike,
+    barycentric: npt.ArrayLike,
+    interpolate: bool | Length = False,
+    crease_angle: float | None = None,
+    creases: Any = None,
+    corners: Any = None,
+    boundary: Boundary = "smooth",
+    concave_corners: str | None = None,
+    scheme: Scheme = "loop",
+    weld: float | None = 0.0,
+    threads: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> SurfacePoints:
+    """Where the limit surface is over places of its control faces, and how it bends there, exactly.
+
+    Parameters
+    ----------
+    vertices, faces
+        A mesh of triangles, as for `refine`; one that needs no repair, such as `repair` gives.
+    at
+        (n,): the faces, counted from 0.
+    barycentric
+        (n, 3): weights of the three corners, none below 0, which add up to 1.
+    interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, weld
+        What the limit surface is, as for `refine`.
+    threads, progress
+        As for `refine`.
+
+    Raises
+    ------
+    MeshError
+        As `refine`, and where the control mesh's triangles would not be ``faces``.
+    OptionError
+        A face that there is not, weights that are no place on it, or as `refine`.
+
+    Examples
+    --------
+    >>> import limitmesh
+    >>> vertices = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    >>> faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    >>> middle = limitmesh.limit_surface(vertices, faces, at=[0], barycentric=[[0.5, 0.5, 0]])
+    >>> round(float(middle.gaussian[0]), 9), round(float(middle.mean[0]), 9)
+    (15.75, -4.625)
+    """
+    control = _options.control_of(
+        interpolate=interpolate,
+        crease_angle=crease_angle,
+        boundary=boundary,
+        concave_corners=concave_corners,
+        scheme=scheme,
+        weld=weld,
+        repair=True,
+    )
+    rows, weights = _places_of(at, barycentric)
+    native = _mesh_of(vertices, faces, None, creases, corners)._native()
+    workers, callback = _options.threads_of(threads), _options.callback_of(progress)
+    found = _limitmesh.limit_surface(native, control, rows, weights, workers, callback)
+    positions, normals, first, second, directions, curvatures = found
+    gaussian, mean, most, least = np.ascontiguousarray(curvatures.reshape(-1, 4).T)
+    return SurfacePoints(
+        positions,
+        normals,
+        first.reshape(-1, 2, 3),
+        second.reshape(-1, 3, 3),
+        gaussian,
+        mean,
+        np.column_stack([most, least]),
+        directions.reshape(-1, 2, 3),
+    )
+
+
+def _places_of(
+    at: npt.ArrayLike, barycentric: npt.ArrayLike
+) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64]]:
+    faces = np.asarray(at)
+    if faces.ndim != 1 or (faces.dtype.kind not in "iu" and faces.size):
+        raise OptionError(f"at has the shape {faces.shape} and numbers of type {faces.dtype}, expected (n,) whole numbers")
+    try:
+        weights = np.ascontiguousarray(barycentric, dtype=np.float64)
+    except (ValueError, TypeError):
+        raise OptionError("barycentric is no array of numbers, expected (n, 3)") from None
+    if not weights.size:
+        weights = weights.reshape(-1, 3)
+    if weights.shape != (len(faces), 3):
+        raise OptionError(f"barycentric has the shape {weights.shape}, expected {(len(faces), 3)}: a row for each of at")
+    is_place = (weights >= 0.0).all(axis=1) & (np.abs(weights.sum(axis=1) - 1.0) <= 1e-6)
+    if not is_place.all():
+        row = int(np.argmin(is_place))
+        raise OptionError(f"barycentric[{row}] is {weights[row]}, expected weights of at least 0 that add up to 1")
+    return np.ascontiguousarray(faces, dtype=np.int64), weights
+
+
+__all__ = ["SurfacePoints", "limit_surface"]
