@@ -30,7 +30,7 @@ pub(crate) struct EvaluateArguments {
     pub(crate) control: PathBuf,
 
     /// A place, or a file of places, one a line, with commas or blanks between the numbers; may be given more than once
-    #[arg(long, value_name = "FACE,W0,W1,W2|FILE", required = true, num_args = 1.., allow_hyphen_values = true)]
+    #[arg(long, value_name = "FACE,W0,W1,W2|FILE", required = true)]
     pub(crate) at: Vec<Places>,
 
     /// Scheme of the limit surface

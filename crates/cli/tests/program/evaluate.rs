@@ -22,7 +22,7 @@ fn places_of_an_octahedron() {
         "places.txt",
         "# an edge's middle, a face's centre\n4 0.5 0.5 0\n\n7,0.3333333333333333, 0.3333333333333333 0.3333333333333334\n",
     );
-    let command = "evaluate {} --at 0,0.5,0.3,0.2 0,1,0,0 --at {} --json";
+    let command = "evaluate {} --at 0,0.5,0.3,0.2 --at 0,1,0,0 --at {} --json";
     let found = run(command, &[&control, &places]).expect(0).json();
     let [place, corner, edge, centre] = &found.as_array().expect("a list")[..] else { panic!("{found}") };
     assert_eq!((&place["face"], &place["barycentric"][1]), (&0.into(), &0.3.into()));
