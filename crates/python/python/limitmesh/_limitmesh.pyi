@@ -16,6 +16,7 @@ __all__ = [
     "estimate",
     "examine",
     "limit",
+    "limit_surface",
     "load",
     "measure",
     "measure_limit",

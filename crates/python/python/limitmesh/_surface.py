@@ -87,7 +87,7 @@ def limit_surface(
     --------
     >>> import limitmesh
     >>> vertices = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
-    >>> faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    >>> faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]
     >>> middle = limitmesh.limit_surface(vertices, faces, at=[0], barycentric=[[0.5, 0.5, 0]])
     >>> round(float(middle.gaussian[0]), 9), round(float(middle.mean[0]), 9)
     (15.75, -4.625)
