@@ -202,8 +202,19 @@ fn volumes_and_areas() {
     for (mesh, volume) in cases {
         let found = LimitSurface::new(&mesh, &Loop).unwrap().volume().unwrap();
         near(found / volume, 1.0, 1e-10);
-        // Far from the origin it is the same.
-        let moved = mesh.positions().iter().map(|p| p.map(|x| x + 1000.0)).collect();
+        // It is the same far from the origin, and grows with the third power of lengths whatever they are.
+        for (scale, power) in [(1e100, 1e300), (1e-100, 1e-300)] {
+            let scaled = mesh.positions().iter().map(|p| p.map(|x| x * scale)).collect();
+            let scaled = mesh.clone().with_positions(scaled).unwrap();
+            let surface = LimitSurface::new(&scaled, &Loop).unwrap();
+            near(surface.volume().unwrap() / power / found, 1.0, 1e-12);
+            let area = LimitSurface::new(&mesh, &Loop).unwrap().area().unwrap();
+            near(surface.area().unwrap() / scale / scale / area, 1.0, 1e-12);
+        }
+        let huge = mesh.positions().iter().map(|p| p.map(|x| x * 1e200)).collect();
+        let huge = mesh.clone().with_positions(huge).unwrap();
+        assert_eq!(LimitSurface::new(&huge, &Loop).unwrap().volume(), None);
+        let moved = mesh.positions().iter().map(|p| p.map(|x| x + 2f64.powi(40))).collect();
         let moved = mesh.clone().with_positions(moved).unwrap();
         near(LimitSurface::new(&moved, &Loop).unwrap().volume().unwrap(), found, 1e-9);
     }

@@ -20,7 +20,8 @@ Examples:
 ///
 /// Faces are the triangles of the control mesh, counted from 0 as in the file where that has triangles that need no repair; a
 /// place is given by the weights of the three corners, which add up to 1. The limit surface itself is evaluated, not a mesh
-/// that stands for it. Curvature is in 1 / unit (Gaussian: 1 / unit²), below 0 on convex places whose normals point outwards; there
+/// that stands for it. Derivatives are by the weights of the second (u) and the third corner (v). --crease-angle and --boundary may
+/// divide faces at concave corners, which are numbered anew then; --concave-corners as-tagged leaves them. Curvature is in 1 / unit (Gaussian: 1 / unit²), below 0 on convex places whose normals point outwards; there
 /// is none at irregular vertices, nor for schemes other than loop and loop-warren.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
@@ -29,7 +30,8 @@ pub(crate) struct EvaluateArguments {
     #[arg(value_name = "CONTROL")]
     pub(crate) control: PathBuf,
 
-    /// A place, or a file of places, one a line, with commas or blanks between the numbers; may be given more than once
+    /// A place, or a file of places (- for standard input), one a line, with commas or blanks between the numbers; may be given more
+    /// than once
     #[arg(long, value_name = "FACE,W0,W1,W2|FILE", required = true)]
     pub(crate) at: Vec<Places>,
 
@@ -69,9 +71,24 @@ impl FromStr for Places {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        // The name of a file may hold commas, but not numbers alone between them.
-        let is_place = text.contains(',') && text.split(',').all(|part| part.trim().parse::<f64>().is_ok());
+        // The name of a file may hold commas and blanks, but not numbers alone between them.
+        let words: Vec<&str> = words(text).collect();
+        let is_place = words.len() > 1 && words.iter().all(|word| word.parse::<f64>().is_ok());
         if is_place { text.parse().map(Self::One) } else { Ok(Self::File(text.into())) }
+    }
+}
+
+/// What stands between commas and blanks.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| c == ',' || c.is_whitespace()).filter(|word| !word.is_empty())
+}
+
+/// As much of a text as an error may show.
+fn shortened(text: &str) -> String {
+    const MOST: usize = 60;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
     }
 }
 
@@ -82,8 +99,8 @@ impl FromStr for Place {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let words: Vec<&str> =
-            text.split(|c: char| c == ',' || c.is_whitespace()).filter(|word| !word.is_empty()).collect();
+        let words: Vec<&str> = words(text).collect();
+        let text = &shortened(text);
         let [face, weights @ ..] = &words[..] else {
             return Err("FACE,W0,W1,W2 is expected".to_owned());
         };
@@ -91,15 +108,20 @@ impl FromStr for Place {
         let weights = <[f64; 3]>::try_from(weights).map_err(|weights| {
             format!("{} weights in '{text}', three are expected: FACE,W0,W1,W2", weights.len())
         })?;
-        let face =
-            face.parse().map_err(|_| format!("'{face}' is not the number of a face, counted from 0"))?;
-        if let Some(weight) = weights.iter().find(|weight| **weight < 0.0) {
-            return Err(format!("the weight {weight} in '{text}' is below 0: the place is not on the face"));
+        let face = face
+            .parse()
+            .map_err(|_| format!("'{}' is not the number of a face, counted from 0", shortened(face)))?;
+        if let Some(weight) = weights.iter().find(|weight| **weight < -ROUNDING) {
+            return Err(format!(
+                "the weight {weight:e} in '{text}' is below 0: the place is not on the face"
+            ));
         }
         let sum: f64 = weights.iter().sum();
         if (sum - 1.0).abs() > ROUNDING {
-            return Err(format!("the weights in '{text}' add up to {sum}, 1 is expected"));
+            return Err(format!(
+                "the weights in '{text}' add up to {sum:e}, 1 is expected (to {ROUNDING:e})"
+            ));
         }
-        Ok(Self { face, weights })
+        Ok(Self { face, weights: weights.map(|weight| weight.max(0.0)) })
     }
 }

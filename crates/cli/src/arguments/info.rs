@@ -20,10 +20,10 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct InfoArguments {
-    /// Mesh file (.obj, .ply, .stl, .off, .gltf, .glb), - for standard input, or builtin:NAME
+    /// Mesh file (.obj, .ply, .stl, .off, .gltf, .glb, .3mf), - for standard input, or builtin:NAME
     pub(crate) input: PathBuf,
 
-    /// Say also the area and the volume of the limit surface of the control mesh (Loop's scheme)
+    /// Say also the area and the volume of the limit surface of the control mesh (Loop's scheme), to some 1e-9 of them
     #[arg(long)]
     pub(crate) limit: bool,
 

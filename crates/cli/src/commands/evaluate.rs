@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, bail};
-use limitmesh::{FaceId, LimitSurface};
+use limitmesh::{FaceId, LimitSurface, SurfacePoint};
 
 use super::limit_control;
 use crate::arguments::{EvaluateArguments, Place, Places};
@@ -23,16 +23,14 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
     input::check_once(core::iter::once(&arguments.control).chain(files))?;
     let places: Vec<Place> = arguments.at.iter().map(places).collect::<anyhow::Result<Vec<_>>>()?.concat();
     let input = input::load(&arguments.control, &arguments.build, progress)?;
-    let (name, faces) = (input.name.clone(), input.face_inputs.clone());
+    let name = input.name.clone();
     let interpolation = (arguments.interpolation, arguments.build.unit);
-    let mesh =
+    let (mesh, faces) =
         limit_control::prepared(input, &arguments.features, interpolation, arguments.scheme, progress)?;
-    let is_as_read =
-        faces.len() == mesh.face_count() && faces.iter().zip(0..).all(|(&face, own)| face == own);
-    if !is_as_read {
+    if !faces.iter().zip(0..).all(|(&face, own)| face == own) {
         let count = counted(mesh.face_count(), "triangle", "triangles");
         progress.note(format!(
-            "{name}: places are on the {count} of the control mesh, which are not the file's faces"
+            "{name}: places are on the {count} of the control mesh, which are not the file's faces; --json names these as input_face"
         ));
     }
     if let Some(place) = places.iter().find(|place| place.face as usize >= mesh.face_count()) {
@@ -48,9 +46,10 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
         bail!("{name}: {error}");
     }
     let found = places.into_iter().zip(points).zip(derivatives);
-    let reports: Vec<EvaluationReport> = found
-        .map(|((place, limits), derivatives)| EvaluationReport::new(place, limits, derivatives))
-        .collect();
+    let report = |((place, limits), derivatives): ((Place, SurfacePoint), _)| {
+        EvaluationReport::new(place, faces[place.face as usize], limits, derivatives)
+    };
+    let reports: Vec<EvaluationReport> = found.map(report).collect();
     progress.clear();
     output::print(&if arguments.json { output::json(&reports)? } else { in_words(&reports) })?;
     Ok(Outcome::Done)
@@ -67,8 +66,15 @@ fn places(given: &Places) -> anyhow::Result<Vec<Place>> {
     } else {
         std::fs::read_to_string(path)
     };
-    let text = text.with_context(|| format!("{}: cannot be read as places", path.display()))?;
-    let lines = text.lines().zip(1..).map(|(line, row)| (line.split('#').next().unwrap_or("").trim(), row));
+    let text = text.with_context(|| {
+        format!("'{}' is no place FACE,W0,W1,W2, and cannot be read as a file of places", path.display())
+    })?;
+    // Editors may mark a file as UTF-8.
+    let lines = text
+        .trim_start_matches('\u{feff}')
+        .lines()
+        .zip(1..)
+        .map(|(line, row)| (line.split('#').next().unwrap_or("").trim(), row));
     let places = lines.filter(|(line, _)| !line.is_empty()).map(|(line, row)| {
         line.parse().map_err(|what| anyhow::anyhow!("{}: line {row}: {what}", path.display()))
     });

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use limitmesh::scheme::Loop;
 use limitmesh::{LimitSurface, Mesh};
 
@@ -92,7 +92,11 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
 fn limit(mesh: &Mesh, features: &FeatureArguments) -> anyhow::Result<Bulk> {
     let control = features.apply(mesh.clone())?.mesh;
     let surface = LimitSurface::new(&control, &Loop)?;
-    Ok(Bulk { area: surface.area().unwrap_or(0.0), volume: surface.volume() })
+    let is_closed = control.topology().boundary_edge_count() == 0;
+    match (surface.area(), surface.volume()) {
+        (Some(area), volume) if volume.is_some() || !is_closed => Ok(Bulk { area, volume }),
+        _ => bail!("area or volume of the limit surface is beyond what numbers hold"),
+    }
 }
 
 fn describe_file(report: &InformationReport) -> String {

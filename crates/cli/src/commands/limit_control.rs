@@ -3,11 +3,12 @@
 use limitmesh::Mesh;
 
 use super::interpolation;
-use crate::arguments::{FeatureArguments, InterpolationArguments, SchemeName, Unit};
+use crate::arguments::{FeatureArguments, Featured, InterpolationArguments, SchemeName, Unit};
 use crate::input::Input;
 use crate::progress::Progress;
 
-/// The mesh with its tags, and control points that let the surface pass through its vertices where that is asked for.
+/// The mesh with its tags, and control points that let the surface pass through its vertices where that is asked for; and by its faces, that
+/// of the file that each is from.
 ///
 /// # Errors
 /// Edges are to be sharp by what the file does not tell, or some vertex has no limit that is near enough.
@@ -17,8 +18,11 @@ pub(super) fn prepared(
     interpolation: (InterpolationArguments, Option<Unit>),
     scheme: SchemeName,
     progress: &Progress,
-) -> anyhow::Result<Mesh> {
-    let mesh = input.with_creases(features.creases_from)?.mesh;
-    let mesh = features.apply(mesh)?.mesh;
-    Ok(interpolation::apply(mesh, interpolation, scheme.scheme(), progress)?.0)
+) -> anyhow::Result<(Mesh, Vec<u32>)> {
+    let Input { mesh, face_inputs, .. } = input.with_creases(features.creases_from)?;
+    let Featured { mesh, concave } = features.apply(mesh)?;
+    let (mesh, _) = interpolation::apply(mesh, interpolation, scheme.scheme(), progress)?;
+    let input_of = |face| face_inputs[concave.parts.whole(face) as usize];
+    let face_inputs = (0..mesh.face_count() as u32).map(input_of).collect();
+    Ok((mesh, face_inputs))
 }

@@ -136,7 +136,7 @@ fn load_reference(
     let report = describe(&input);
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
     let interpolation = (arguments.interpolation, arguments.build.unit);
-    let mesh = limit_control::prepared(input, &arguments.features, interpolation, scheme, progress)?;
+    let (mesh, _) = limit_control::prepared(input, &arguments.features, interpolation, scheme, progress)?;
     let (mesh, levels) = if arguments.certified {
         (mesh, 0)
     } else {

@@ -10,6 +10,8 @@ use crate::arguments::Place;
 pub(crate) struct EvaluationReport {
     /// The control mesh's triangle, from 0.
     pub(crate) face: u32,
+    /// The file's face that this is, or is a part of.
+    pub(crate) input_face: u32,
     pub(crate) barycentric: [f64; 3],
     pub(crate) point: [f64; 3],
     /// The unit normal on the face's side; null where there is none.
@@ -45,12 +47,14 @@ impl EvaluationReport {
     /// `limits` are the point and the normal that hold where there are no derivatives.
     pub(crate) fn new(
         Place { face, weights }: Place,
+        input_face: u32,
         limits: limitmesh::SurfacePoint,
         derivatives: Option<Derivatives>,
     ) -> Self {
         let limit_normal = (limits.normal != [0.0; 3]).then_some(limits.normal);
         Self {
             face,
+            input_face,
             barycentric: weights,
             point: derivatives.map_or(limits.position, |derivatives| derivatives.position),
             normal: derivatives.and_then(|derivatives| derivatives.normal()).or(limit_normal),

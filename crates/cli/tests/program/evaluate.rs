@@ -20,7 +20,7 @@ fn places_of_an_octahedron() {
     let places = file(
         &folder,
         "places.txt",
-        "# an edge's middle, a face's centre\n4 0.5 0.5 0\n\n7,0.3333333333333333, 0.3333333333333333 0.3333333333333334\n",
+        "\u{feff}# an edge's middle, a face's centre\n4 0.5 0.5 0\n\n7,0.3333333333333333, 0.3333333333333333 0.3333333333333334\n",
     );
     let command = "evaluate {} --at 0,0.5,0.3,0.2 --at 0,1,0,0 --at {} --json";
     let found = run(command, &[&control, &places]).expect(0).json();
@@ -72,11 +72,12 @@ fn places_that_are_none_are_errors() {
     run("evaluate {} --at 8,1,0,0", &[&control])
         .expect(1)
         .saying("no face 8: the control mesh has 8 triangles");
-    run("evaluate {} --at 0,0.5,0.5,0.5", &[&control]).expect(2).saying("add up to 1.5");
-    run("evaluate {} --at 0,1.5,-0.5,0", &[&control]).expect(2).saying("-0.5");
+    run("evaluate {} --at 0,0.5,0.5,0.5", &[&control]).expect(2).saying("add up to 1.5e0");
+    run("evaluate {} --at 0,1.5,-0.5,0", &[&control]).expect(2).saying("-5e-1");
     run("evaluate {} --at 0,1,0", &[&control]).expect(2).saying("2 weights");
     run("evaluate {} --at {}", &[&control, &bad]).expect(1).saying("line 2: 2 weights");
     run("evaluate {} --at {}", &[&control, &empty]).expect(1).saying("no places");
+    run("evaluate {} --at 0,1,0,x", &[&control]).expect(1).saying("'0,1,0,x' is no place");
     run("evaluate {} --at nowhere.txt", &[&control]).expect(1).saying("nowhere.txt");
     run("evaluate {}", &[&control]).expect(2).saying("--at");
 }
@@ -86,6 +87,8 @@ fn polygons_are_told_to_be_triangles() {
     let folder = folder();
     let quad = file(&folder, "quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
     run("evaluate {} --at 1,0.2,0.3,0.5", &[&quad]).expect(0).saying("2 triangles of the control mesh");
+    let found = run("evaluate {} --at 1,0.2,0.3,0.5 --json", &[&quad]).expect(0).json();
+    assert_eq!((&found[0]["face"], &found[0]["input_face"]), (&1.into(), &0.into()));
 }
 
 #[test]

@@ -21,10 +21,10 @@ const SPECK: f64 = 1e-12;
 const DEEPEST: u32 = 64;
 
 /// Two rules agree if they differ by less than this part of the face's area.
-const AGREEMENT: f64 = 1e-11;
+const AGREEMENT: f64 = 1e-10;
 
 /// Times that a piece is divided at most, where the surface has a cusp.
-const MOST_DIVISIONS: u32 = 10;
+const MOST_DIVISIONS: u32 = 6;
 
 /// Nodes and weights of Gauss's rule on −1 to 1, the positive ones (Abramowitz and Stegun, table 25.4).
 const SIX: [(f64, f64); 3] = [
@@ -45,10 +45,8 @@ trait Integrand: Sync {
 
 struct Area;
 
-/// The volume between a surface and a point.
-struct Volume {
-    from: DVec3,
-}
+/// The volume between a surface and the origin.
+struct Volume;
 
 impl Integrand for Area {
     fn of_piece(&self, piece: &Quartic, whole: f64) -> f64 {
@@ -64,23 +62,24 @@ impl Integrand for Volume {
     fn of_piece(&self, piece: &Quartic, _: f64) -> f64 {
         integral(&SIX, Part::WHOLE, |u, v| {
             let [by_u, by_v] = piece.tangents(u, v);
-            (piece.point(u, v) - self.from).dot(by_u.cross(by_v)) / 3.0
+            piece.point(u, v).dot(by_u.cross(by_v)) / 3.0
         })
     }
 
     fn of_triangle(&self, [a, b, c]: [DVec3; 3]) -> f64 {
-        (a - self.from).dot((b - a).cross(c - a)) / 6.0
+        a.dot((b - a).cross(c - a)) / 6.0
     }
 }
 
 impl LimitSurface<'_> {
-    /// The area, to some 1e-9 of it, in squares of the control mesh's unit; `None` for schemes outside the Loop family.
+    /// The area, to some 1e-9 of it where the surface has no cusps, in squares of the control mesh's unit; `None` for schemes outside the
+    /// Loop family, and where it is beyond what numbers hold.
     pub fn area(&self) -> Option<f64> {
-        self.integrated(&Area)
+        self.integrated(&Area, 2)
     }
 
     /// The volume that a closed surface encloses, to some 1e-11 of it, in cubes of the control mesh's unit: below 0 where normals point
-    /// inwards. `None` for surfaces with a boundary, and for schemes outside the Loop family.
+    /// inwards. `None` for surfaces with a boundary, for schemes outside the Loop family, and where it is beyond what numbers hold.
     ///
     /// ```
     /// use limitmesh::{LimitSurface, Mesh, scheme::Loop};
@@ -98,21 +97,27 @@ impl LimitSurface<'_> {
         if topology.half_edges().any(|h| topology.twin(h).is_none()) {
             return None;
         }
-        // Seen from its middle, a surface far from the origin keeps its digits.
-        let points = self.positions.len().max(1) as f64;
-        let from = self.positions.iter().fold(DVec3::ZERO, |sum, &point| sum + vector(point) / points);
-        self.integrated(&Volume { from })
+        self.integrated(&Volume, 3)
     }
 
-    /// The sum over all faces; `None` where pieces are never regular.
-    fn integrated(&self, integrand: &impl Integrand) -> Option<f64> {
+    /// The sum over all faces, of an integrand that grows with that power of lengths.
+    fn integrated(&self, integrand: &impl Integrand, power: usize) -> Option<f64> {
         if !self.rules.is_certified() {
             return None;
         }
-        let blocks = parallel::pieces_of(self.mesh.face_count(), BLOCK, |block| {
-            block.map(|face| self.integrated_over(FaceId(face as u32), integrand)).sum::<f64>()
+        // Seen from its middle, and about as large as 1, a surface keeps its digits wherever it is and however large.
+        let [low, high] = self.mesh.as_triangles().bounding_box()?.map(|corner| 0.5 * vector(corner));
+        let (middle, size) = (low + high, (high - low).max_element());
+        let size = if size > 0.0 { size } else { 1.0 };
+        let positions =
+            self.mesh.positions().iter().map(|&p| ((vector(p) - middle) / size).to_array()).collect();
+        let mesh = self.mesh.clone().with_positions(positions).ok()?;
+        let surface = LimitSurface::without_normals(&mesh, self.rules.scheme()).ok()?;
+        let blocks = parallel::pieces_of(mesh.face_count(), BLOCK, |block| {
+            block.map(|face| surface.integrated_over(FaceId(face as u32), integrand)).sum::<f64>()
         });
-        Some(blocks.into_iter().sum())
+        let sum: f64 = blocks.into_iter().sum();
+        Some((0..power).fold(sum, |sum, _| sum * size)).filter(|sum| sum.is_finite())
     }
 
     fn integrated_over(&self, face: FaceId, integrand: &impl Integrand) -> f64 {
