@@ -8,8 +8,11 @@
 //!   is, over many models; `quality` runs all of these;
 //! * `throughput`: its triangles per second and bytes per triangle;
 //! * `through`: limit surfaces through the vertices of thinned meshes, against the meshes before;
+//! * `replay`: frames of an animation beside OpenSubdiv's limit stencils;
+//! * `points`: the limit surface evaluated, and closest points of it beside those of a fine mesh;
 //! * `channels`: what texture coordinates add to a refinement;
 //! * `gaps`: how long observers of long functions wait at most;
+//! * `front`: updates of a front against fresh ones, and a camera's way around a model;
 //! * `scaling`: exact refinement of ever larger meshes, larger in one way each; needs no models;
 //! * `tolerances GOALS`: triangles and time of exact refinement, each of the GOALS a model, built in or a file, and what is
 //!   asked of it: `cup@0.01` is within 0.01 % of the diagonal, `cup@n:5000` has 5,000 triangles; options `--balance`, `--runs K`;
@@ -22,11 +25,14 @@ mod channels;
 mod clock;
 mod distance;
 mod figures;
+mod front;
 mod gaps;
 mod load;
 mod peers;
+mod points;
 mod quality;
 mod refinement;
+mod replay;
 mod scaling;
 mod thinning;
 mod through;
@@ -92,10 +98,13 @@ fn measure(work: &str, folder: &Path) -> Result<()> {
         "certificate" => quality::certificate(folder),
         "throughput" => quality::throughput(folder),
         "through" => through::through(folder),
+        "replay" => replay::replay(&bunny),
+        "points" => points::points(&bunny),
         "channels" => channels::channels(folder),
         "gaps" => gaps::gaps(folder),
+        "front" => front::front(folder),
         other => bail!(
-            "no benchmark is called {other}: {}, speed, {}, quality, throughput, through, channels, gaps, scaling, tolerances, figures, all",
+            "no benchmark is called {other}: {}, speed, {}, quality, throughput, through, replay, points, channels, gaps, front, scaling, tolerances, figures, all",
             SPEED.join(", "),
             QUALITY.join(", ")
         ),

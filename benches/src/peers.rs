@@ -17,6 +17,8 @@ pub(crate) enum OpenSubdiv {
     Far,
     /// `Bfr`: limit positions and normals of all vertices, and the triangles.
     Bfr,
+    /// `Far`: limit stencils, for frame after frame.
+    Stencils,
 }
 
 /// Least CPU seconds of OpenSubdiv's uniform refinement; `None` where `libosd-dev` (3.5 or later for `Bfr`) or a C++
@@ -27,11 +29,23 @@ pub(crate) fn opensubdiv(
     level: usize,
     repeats: usize,
 ) -> Result<Option<f64>> {
+    let Some(program) = program(what)? else { return Ok(None) };
+    let output =
+        Command::new(&program).arg(model).arg(level.to_string()).arg(repeats.to_string()).output()?;
+    ensure!(output.status.success(), "OpenSubdiv's program failed on {}", model.display());
+    let text = String::from_utf8(output.stdout)?;
+    let seconds = text.lines().filter_map(|line| line.split_whitespace().nth(1)?.parse().ok());
+    Ok(seconds.reduce(f64::min))
+}
+
+/// The program that does it, built unless it is there; `None` where that is not possible.
+pub(crate) fn program(what: OpenSubdiv) -> Result<Option<PathBuf>> {
     let build = folder().join("build");
     std::fs::create_dir_all(&build)?;
     let name = match what {
         OpenSubdiv::Far => "opensubdiv_far",
         OpenSubdiv::Bfr => "opensubdiv_bfr",
+        OpenSubdiv::Stencils => "opensubdiv_stencils",
     };
     let program = build.join(name);
     if !program.exists() {
@@ -45,12 +59,7 @@ pub(crate) fn opensubdiv(
             return Ok(None);
         }
     }
-    let output =
-        Command::new(&program).arg(model).arg(level.to_string()).arg(repeats.to_string()).output()?;
-    ensure!(output.status.success(), "OpenSubdiv's program failed on {}", model.display());
-    let text = String::from_utf8(output.stdout)?;
-    let seconds = text.lines().filter_map(|line| line.split_whitespace().nth(1)?.parse().ok());
-    Ok(seconds.reduce(f64::min))
+    Ok(Some(program))
 }
 
 /// MeshLab's one-sided distances and the seconds that both took together.

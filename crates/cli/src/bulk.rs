@@ -1,9 +1,11 @@
 //! Area and volume of a surface, and closed parts of it that are inside out.
 //!
 //! The volume is the sum of those of the tetrahedra over the triangles, V = Σ a·(b × c)/6: above 0 where normals point
-//! outwards. Open surfaces have none.
+//! outwards. Open surfaces have none. Limit surfaces are integrated themselves.
 
-use limitmesh::{FaceId, HalfEdgeId, Mesh};
+use anyhow::bail;
+use limitmesh::scheme::Scheme;
+use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
 use serde::Serialize;
 
 use crate::vector::{cross, dot, length, minus};
@@ -26,6 +28,22 @@ impl Bulk {
         Self {
             area: sum(faces().map(area)),
             volume: is_closed.then(|| sum(faces().map(|corners| volume(corners, corner)))),
+        }
+    }
+
+    /// Of the limit surface of a control mesh; `None` for schemes outside the Loop family.
+    ///
+    /// # Errors
+    /// The scheme has no limit at some ring, or area or volume is beyond what numbers hold.
+    pub(crate) fn of_limit(control: &Mesh, scheme: &dyn Scheme) -> anyhow::Result<Option<Self>> {
+        if scheme.loop_family().is_none() {
+            return Ok(None);
+        }
+        let surface = LimitSurface::new(control, scheme)?;
+        let is_closed = control.topology().boundary_edge_count() == 0;
+        match (surface.area(), surface.volume()) {
+            (Some(area), volume) if volume.is_some() || !is_closed => Ok(Some(Self { area, volume })),
+            _ => bail!("area or volume of the limit surface is beyond what numbers hold"),
         }
     }
 }

@@ -19,6 +19,7 @@ mod input;
 mod interrupt;
 mod mesh_info;
 mod output;
+mod points;
 mod progress;
 mod reference;
 mod report;
@@ -89,6 +90,8 @@ fn run(arguments: &Arguments, again: &[OsString], progress: &Progress) -> anyhow
         Command::Reproduce(arguments) => commands::reproduce::run(arguments, progress),
         Command::Info(arguments) => commands::info::run(arguments, progress),
         Command::Evaluate(arguments) => commands::evaluate::run(arguments, progress),
+        Command::Project(arguments) => commands::project::run(arguments, progress),
+        Command::Lod(arguments) => commands::lod::run(arguments, progress),
         Command::Models(arguments) => commands::models::run(arguments),
         Command::Batch(own) => commands::batch::run(own, again, arguments.global.threads, progress),
         Command::BatchJob(arguments) => commands::batch_job::run(arguments, progress),

@@ -40,8 +40,10 @@
 //! | [`mod@interpolate`] | control meshes whose limit surface passes through the vertices of a mesh |
 //! | [`criterion`] | which faces are to be divided |
 //! | [`mod@closure`] | Figure 5's patterns: triangles whose edges are split, covered without cracks |
+//! | [`front`] | triangles that are refined and coarsened from one demand to the next |
 //! | [`refine`] | exact refinement to a goal, uniform and the paper's stepwise refinement |
 //! | [`mod@simplify`] | edge collapse within a proven distance |
+//! | [`sqrt3`] | √3-subdivision: uniform and adaptive, with exact limits |
 //! | [`progress`] | what long functions tell while they work, and how they are cancelled |
 //! | [`measure`] | distances, sampled and certified, watertightness, triangle quality |
 
@@ -49,6 +51,8 @@ pub mod carry;
 mod certificate;
 pub mod closure;
 pub mod criterion;
+mod facing;
+pub mod front;
 mod geometry;
 pub mod index;
 pub mod interpolate;
@@ -59,19 +63,26 @@ pub mod measure;
 pub mod mesh;
 #[cfg(test)]
 mod models;
+mod node;
 mod options;
 mod parallel;
 mod patch;
 pub mod progress;
+mod proximity;
+mod rays;
 pub mod refine;
 pub mod ring;
 pub mod scheme;
 pub mod simplify;
+pub mod sqrt3;
 mod vector;
 
+pub use facing::{Facing, NormalCone};
 pub use index::{FaceId, HalfEdgeId, VertexId};
 pub use limit_surface::{Curvature, Derivatives, LimitSurface, SurfacePoint};
 pub use mesh::{Mesh, PolygonSoup, Triangles};
+pub use proximity::{Closest, Membership, Proximity, ProximityError};
+pub use rays::{Crossing, Hit, Ray, RayCaster, RayError, RayOptions};
 
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]

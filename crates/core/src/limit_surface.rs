@@ -1,12 +1,15 @@
-//! The limit surface as an object: points, normals, derivatives and curvature at any place of its control faces, area and volume.
+//! The limit surface as an object: points, normals, derivatives, curvature and weights of control points at any place of its control
+//! faces, area and volume.
 //!
 //! A piece is refined towards the place until its part there is a polynomial (Stam, "Evaluation of Loop Subdivision Surfaces",
 //! 1998: around an irregular vertex the regular parts shrink by half with each level), which is evaluated; at corners the scheme's
 //! limit stencils are. Places that share a piece share its refinement.
 
 mod derivatives;
+mod looks;
 mod places;
 mod size;
+mod weights;
 
 pub use derivatives::{Curvature, Derivatives};
 
@@ -20,7 +23,7 @@ use crate::patch::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use crate::patch::large_rings::LargeRings;
 use crate::patch::{self, LimitPoint, Patch, Quartic, RefinedPatch, Rules, child_corners, root_patch};
 use crate::scheme::Scheme;
-use crate::vector::vector;
+use crate::vector::{DVec3, vector};
 use places::{Answers, Coordinates, Place, Points, parted, take_corners, take_nearest};
 
 /// Levels after which a place counts as the nearest corner of its part, which is 2⁻⁴⁰ as large as the face.
@@ -156,9 +159,39 @@ impl<'a> LimitSurface<'a> {
 
     /// The surface over a face, and the rules by which it is refined.
     pub(crate) fn sheet(&self, face: FaceId) -> (Sheet, &Rules<'a>) {
-        let corners = self.mesh.triangles()[face.index()].map(|v| vector(self.positions[v as usize]));
+        let corners = self.corner_positions(face);
         let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
         (Sheet { patch, corners }, &self.rules)
+    }
+
+    /// The rules by which its pieces are refined.
+    pub(crate) fn rules(&self) -> &Rules<'a> {
+        &self.rules
+    }
+
+    /// The control mesh.
+    pub(crate) fn control(&self) -> &'a Mesh {
+        self.mesh
+    }
+
+    /// The scheme.
+    pub(crate) fn scheme(&self) -> &'a dyn Scheme {
+        self.rules.scheme()
+    }
+
+    /// Whether bounds are known for it: it is of the Loop family.
+    pub(crate) fn is_certified(&self) -> bool {
+        self.rules.is_certified()
+    }
+
+    /// The limits of the control vertices.
+    pub(crate) fn corner_limits(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// The limit positions of a control face's corners.
+    pub(crate) fn corner_positions(&self, face: FaceId) -> [DVec3; 3] {
+        self.mesh.triangles()[face.index()].map(|v| vector(self.positions[v as usize]))
     }
 
     /// Why what was computed means nothing, if a stencil failed on the way.

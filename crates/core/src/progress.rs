@@ -70,6 +70,8 @@ pub enum Stage {
     Bounding,
     /// Edges are being matched and counted; the units are triangles.
     Matching,
+    /// Rays are being followed to a surface; the units are rays.
+    Casting,
 }
 
 impl fmt::Display for Stage {
@@ -84,6 +86,7 @@ impl fmt::Display for Stage {
             Self::Sampling => "measuring at samples",
             Self::Bounding => "bounding the distance",
             Self::Matching => "matching edges",
+            Self::Casting => "following rays",
         })
     }
 }

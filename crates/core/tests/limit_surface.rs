@@ -2,7 +2,7 @@
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use limitmesh::scheme::{Loop, ModifiedButterfly};
+use limitmesh::scheme::{Loop, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, LimitSurface, Mesh};
 
 #[track_caller]
@@ -418,4 +418,42 @@ fn places_that_are_none_have_no_derivatives() {
     let all = [(FaceId(0), [1.0 / 3.0; 3]), (FaceId(8), [1.0 / 3.0; 3]), (FaceId(3), [0.2, 0.3, 0.5])];
     let found = surface.derivatives_at(&all);
     assert_eq!(found, all.map(|(face, at)| surface.derivatives(face, at)));
+}
+
+/// The point is the weighted sum of control points, by another mesh's points as well: weights do not know positions.
+#[test]
+fn weights_give_the_points() {
+    let spread = [FaceId(0), FaceId(3), FaceId(6)];
+    for name in ["cup", "sheet", "spike", "tetrahedron"] {
+        let soup = limitmesh_models::find(name).unwrap().soup();
+        let mesh = Mesh::from_soup(&soup, &Default::default()).unwrap().0;
+        let [a, b, _] = mesh.triangles()[0];
+        let creases = vec![limitmesh::mesh::CreaseTag { vertices: [a, b], sharpness: 1.5 }];
+        let tagged = mesh.clone().with_tags(limitmesh::mesh::Tags { creases, corners: vec![] }).unwrap();
+        for mesh in [mesh, tagged] {
+            let faces = spread.into_iter().filter(|face| face.index() < mesh.face_count());
+            let at: Vec<(FaceId, [f64; 3])> =
+                faces.flat_map(|face| places().into_iter().take(9).map(move |at| (face, at))).collect();
+            for scheme in [&Loop as &dyn Scheme, &ModifiedButterfly] {
+                let surface = LimitSurface::new(&mesh, scheme).unwrap();
+                let all = surface.weights_at(&at).unwrap();
+                assert_eq!(all.len(), at.len());
+                for (&(face, place), weights) in at.iter().zip(&all) {
+                    assert!(weights.windows(2).all(|pair| pair[0].0 < pair[1].0));
+                    near(weights.iter().map(|&(_, weight)| weight).sum(), 1.0, 1e-12);
+                    let point = surface.at(face, place).position;
+                    for (axis, &expected) in point.iter().enumerate() {
+                        let sum = weights
+                            .iter()
+                            .map(|&(v, weight)| weight * mesh.positions()[v.index()][axis])
+                            .sum();
+                        near(sum, expected, 1e-12);
+                    }
+                    if scheme.name() == Loop.name() {
+                        assert!(weights.iter().all(|&(_, weight)| weight > -1e-15), "{name}: {weights:?}");
+                    }
+                }
+            }
+        }
+    }
 }

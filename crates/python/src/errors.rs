@@ -1,5 +1,6 @@
 //! What can go wrong, as Python's exceptions.
 
+use limitmesh::ProximityError;
 use limitmesh::criterion::CriterionError;
 use limitmesh::interpolate::InterpolateError;
 use limitmesh::limit::LimitError;
@@ -70,6 +71,19 @@ impl From<CriterionError> for Failure {
 impl From<LimitError> for Failure {
     fn from(error: LimitError) -> Self {
         Self::Mesh(error.to_string())
+    }
+}
+
+impl From<ProximityError> for Failure {
+    fn from(error: ProximityError) -> Self {
+        match error {
+            ProximityError::Cancelled(_) => Self::Cancelled,
+            ProximityError::Limit(error) => error.into(),
+            ProximityError::Scheme { .. } | ProximityError::Tolerance { .. } => {
+                Self::Option(error.to_string())
+            }
+            error => Self::Mesh(error.to_string()),
+        }
     }
 }
 

@@ -15,6 +15,7 @@ mod origins;
 mod picture;
 mod pool;
 mod program;
+mod project;
 mod refine;
 mod run;
 mod simplify;
@@ -43,6 +44,8 @@ mod _limitmesh {
     use super::pool::end_threads;
     #[pymodule_export]
     use super::program::{program, refine_file};
+    #[pymodule_export]
+    use super::project::project;
     #[pymodule_export]
     use super::refine::{estimate, refine};
     #[pymodule_export]

@@ -3,7 +3,7 @@
 //! Takes a surface to frame or an eye and a target, gives homogeneous picture coordinates in pixels.
 
 use glam::DVec3;
-use limitmesh::Triangles;
+use limitmesh::{Ray, Triangles};
 
 use crate::RenderError;
 use crate::picture::check_size;
@@ -216,6 +216,27 @@ impl Camera {
         match self.projection {
             Projection::Orthographic { .. } => -self.sight,
             Projection::Perspective { .. } => (self.eye - point).normalize_or(-self.sight),
+        }
+    }
+
+    /// The line of sight through a point of the picture, in pixels from its left and upper border; its direction is a unit of depth long.
+    /// In a parallel projection it begins at the depth of the target, and what is in front is at negative places of it.
+    pub(crate) fn ray(&self, [x, y]: [f64; 2], width: u32, height: u32) -> Ray {
+        let (x, y) = (x - 0.5 * f64::from(width), 0.5 * f64::from(height) - y);
+        let scale = |unit: f64| 2.0 * unit / f64::from(height);
+        let aside = |scale: f64| self.right * (x * scale) + self.up * (y * scale);
+        let (origin, direction) = match self.projection {
+            Projection::Orthographic { half_height } => (self.eye + aside(scale(half_height)), self.sight),
+            Projection::Perspective { tangent } => (self.eye, self.sight + aside(scale(tangent))),
+        };
+        Ray { origin: origin.to_array(), direction: direction.to_array() }
+    }
+
+    /// How long a pixel's side is at a depth.
+    pub(crate) fn pixel_at(&self, depth: f64, height: u32) -> f64 {
+        match self.projection {
+            Projection::Orthographic { half_height } => 2.0 * half_height / f64::from(height),
+            Projection::Perspective { tangent } => 2.0 * tangent * depth.abs() / f64::from(height),
         }
     }
 

@@ -18,6 +18,8 @@ pub enum ColourMap {
     EmberReversed,
     /// Dark to light grey.
     Grey,
+    /// Blue through light grey to red, for what has two signs: lightness is greatest in the middle.
+    Diverging,
 }
 
 /// A control point: lightness (0 to 1), chroma and hue in degrees, in Oklab's cylindrical form.
@@ -39,6 +41,9 @@ const EMBER: [Control; 6] = [
     [0.80, 0.145, 424.0],
     [0.96, 0.065, 462.0],
 ];
+/// Each half at once: hues jump in the middle, where there is no chroma.
+const BELOW: [Control; 3] = [[0.42, 0.17, 262.0], [0.68, 0.11, 250.0], [0.95, 0.0, 250.0]];
+const ABOVE: [Control; 3] = [[0.95, 0.0, 29.0], [0.69, 0.13, 33.0], [0.44, 0.17, 27.0]];
 const GREY: [Control; 2] = [[0.25, 0.0, 0.0], [0.93, 0.0, 0.0]];
 
 impl ColourMap {
@@ -57,6 +62,8 @@ impl ColourMap {
             Self::Ember => (&EMBER, value),
             Self::EmberReversed => (&EMBER, 1.0 - value),
             Self::Grey => (&GREY, value),
+            Self::Diverging if value < 0.5 => (&BELOW, 2.0 * value),
+            Self::Diverging => (&ABOVE, 2.0 * value - 1.0),
         };
         displayable(spline(controls, value))
     }

@@ -71,6 +71,9 @@ pub enum RenderError {
         /// The decoder's own words.
         reason: String,
     },
+    /// It was cancelled by whoever was told of its progress.
+    #[error("the picture was cancelled")]
+    Cancelled,
     /// The PNG encoder failed.
     #[error("the picture could not be encoded as PNG: {reason}")]
     Encode {

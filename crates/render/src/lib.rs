@@ -1,7 +1,8 @@
 //! Pictures of triangle meshes without a GPU: a camera, a rasteriser with anti-aliasing, smooth and flat
 //! shading, wireframes, heat maps, text, PNG; and plots and drawings as SVG.
 //!
-//! [`render`], [`render_scalar`] and [`render_textured`] take [`limitmesh::Triangles`] and give an [`Image`]; [`grid`] and
+//! [`render`], [`render_scalar`] and [`render_textured`] take [`limitmesh::Triangles`] and give an [`Image`], [`render_exact`] does so from
+//! rays to a limit surface; [`grid`] and
 //! [`ColourBar`] compose images into figures; [`plot`] and [`svg`] write vector graphics. Everything is computed on the CPU in the same order
 //! whatever the number of threads, so a picture is the same bytes on every run.
 //!
@@ -25,6 +26,7 @@ mod colour_map;
 mod compose;
 mod dice;
 mod error;
+mod exact;
 mod heat_map;
 mod image;
 mod parallel;
@@ -46,6 +48,7 @@ pub use colour_map::ColourMap;
 pub use compose::{GridStyle, Panel, grid};
 pub use dice::dice;
 pub use error::RenderError;
+pub use exact::{render_exact, render_exact_observed};
 pub use heat_map::{ColourBar, Scale, render_scalar};
 pub use image::Image;
 pub use picture::{MAX_SIDE, render};

@@ -10,8 +10,10 @@ mod exact;
 mod features;
 mod info;
 mod interpolation;
+mod lod;
 mod measure;
 mod models;
+mod project;
 mod quantity;
 mod refine;
 mod render;
@@ -30,13 +32,15 @@ pub(crate) use exact::ExactArguments;
 pub(crate) use features::{Boundary, ConcaveCorners, CreasesFrom, FeatureArguments, Featured};
 pub(crate) use info::InfoArguments;
 pub(crate) use interpolation::InterpolationArguments;
+pub(crate) use lod::LodArguments;
 pub(crate) use measure::MeasureArguments;
 pub(crate) use models::ModelsArguments;
+pub(crate) use project::ProjectArguments;
 pub(crate) use quantity::{Length, Unit};
 pub(crate) use refine::{MOST_EXACT, Method, RefineArguments};
 pub(crate) use render::RenderArguments;
 pub(crate) use reproduce::ReproduceArguments;
-pub(crate) use shared::{BuildArguments, FileFormat, SchemeName, Seam};
+pub(crate) use shared::{BuildArguments, FileFormat, RefiningScheme, SchemeName, Seam};
 pub(crate) use tolerances::MorphTolerance;
 pub(crate) use values::{Extent, Size};
 
@@ -52,6 +56,10 @@ Examples:
         how far the refined mesh is from the limit surface
   limitmesh evaluate builtin:head --at 0,0.5,0.25,0.25
         point, normal and curvature of the limit surface over a place of face 0
+  limitmesh project scan.ply --onto control.obj -o deviation.ply
+        how far points of a scan are from the limit surface, as a colour map
+  limitmesh lod builtin:cup -o cup.glb --morph
+        levels of detail with geomorphs, in one file
   limitmesh compare builtin:head --angle 5
         the methods side by side at equal triangle counts
   limitmesh batch jobs.jsonl -o results.jsonl
@@ -100,6 +108,8 @@ pub(crate) enum Command {
     Reproduce(ReproduceArguments),
     Info(InfoArguments),
     Evaluate(EvaluateArguments),
+    Project(ProjectArguments),
+    Lod(Box<LodArguments>),
     Models(ModelsArguments),
     Batch(BatchArguments),
     #[command(hide = true)]
@@ -117,6 +127,8 @@ impl Command {
             Self::Reproduce(_) => "reproduce",
             Self::Info(_) => "info",
             Self::Evaluate(_) => "evaluate",
+            Self::Project(_) => "project",
+            Self::Lod(_) => "lod",
             Self::Models(_) => "models",
             Self::Batch(_) => "batch",
             Self::BatchJob(_) => "batch-job",

@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use limitmesh::scheme::Scheme;
 use limitmesh_io::Format;
 use serde::Serialize;
 
 use super::values;
 use super::{
     AssetArguments, BuildArguments, ChannelArguments, ExactArguments, FeatureArguments, FileFormat,
-    InterpolationArguments, SchemeName, Seam,
+    InterpolationArguments, RefiningScheme, Seam,
 };
 use crate::failure::{UsageError, usage};
 use crate::output::is_standard_output;
@@ -39,9 +40,12 @@ Examples:
   limitmesh refine builtin:sphere -o seen.ply --method limit-normal --view 0,0,-1 --levels 5
   limitmesh refine part.stl -o part.ply --crease-angle 30 --interpolate
   limitmesh refine scan.stl -o smooth.ply --interpolate-within 0.05
+  limitmesh refine builtin:head -o head.ply --scheme sqrt3 --angle 10
+  limitmesh refine builtin:head -o head.ply --scheme sqrt3 --method uniform --levels 5 --limit
   limitmesh refine big.ply -o fine.ply --method uniform --max-triangles 20M
   limitmesh refine part.stl -o part.ply --tolerance 0.05mm --unit mm
   limitmesh refine *.stl -o smooth/ --triangles 20k
+  limitmesh refine walk_*.obj -o smooth/ --shared-topology --tolerance 0.05% --report walk.json
   limitmesh refine - --from stl -o - --to ply < scan.stl > smooth.ply
 
 Exit code 3 means that a cap was reached before what was asked for; the mesh is written, and free of cracks.";
@@ -77,6 +81,15 @@ pub(crate) struct RefineArguments {
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(crate) to: Option<FileFormat>,
 
+    /// The inputs are frames of one mesh: refine them with the same triangles, each within the goals
+    ///
+    /// Frames share faces and tags, and only vertices move. A part is divided if any frame needs it; the files that are written have
+    /// identical triangles, and each frame's vertices on its own limit surface. What is proven is told for every frame in
+    /// --report FILE.json. Sharp edges, texture coordinates and the like are those of the first frame, of whose diagonal
+    /// --tolerance is a part where it is in per cent.
+    #[arg(long)]
+    pub(crate) shared_topology: bool,
+
     /// What decides which faces are divided
     #[arg(long, value_enum, default_value = "exact")]
     pub(crate) method: Method,
@@ -111,8 +124,12 @@ pub(crate) struct RefineArguments {
     pub(crate) dilatation: Option<f64>,
 
     /// Subdivision scheme
+    ///
+    /// sqrt3 divides triangles by their centres and flips edges, so that no closing triangles are needed; --angle, --tolerance
+    /// (estimated from samples, not proven) and --triangles are its goals, and with --method uniform each of --levels steps gives three times
+    /// the triangles. It follows boundaries, corners and edges that are sharp for ever; texture coordinates and the like are left out.
     #[arg(long, value_enum, default_value = "loop")]
-    pub(crate) scheme: SchemeName,
+    pub(crate) scheme: RefiningScheme,
 
     /// Give no more triangles
     ///
@@ -179,6 +196,14 @@ impl RefineArguments {
     pub(crate) fn max_triangles(&self) -> usize {
         let most = if self.method == Method::Exact { MOST_EXACT } else { MOST_STEPWISE };
         self.max_triangles.unwrap_or(most)
+    }
+
+    /// The scheme, where it is one that splits triangles in four.
+    ///
+    /// # Errors
+    /// It is not.
+    pub(crate) fn scheme(&self) -> anyhow::Result<&'static dyn Scheme> {
+        Ok(self.scheme.in_quarters()?.scheme())
     }
 
     /// The one input of a job: the first.

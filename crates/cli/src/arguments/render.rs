@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::values;
-use super::{BuildArguments, Size};
+use super::{BuildArguments, SchemeName, Size};
 
 const EXAMPLES: &str = "\
 Examples:
   limitmesh render refined.ply -o refined.png --wireframe
   limitmesh render duck.glb -o duck.png
   limitmesh render chair.obj -o chair.png --texture wood.jpg
+  limitmesh render builtin:shark -o shark.png --exact
+        its limit surface itself, without triangles
   limitmesh render builtin:cup -o cup.png --flat --view 1,-2,-1 --size 1600x1200";
 
 /// Draw a mesh as a PNG picture; needs no graphics card
@@ -37,9 +39,17 @@ pub(crate) struct RenderArguments {
     #[arg(long)]
     pub(crate) smooth: bool,
 
+    /// Take the mesh for a control mesh and draw its limit surface itself, by rays: outlines have no facets
+    #[arg(long, conflicts_with_all = ["wireframe", "flat", "texture"])]
+    pub(crate) exact: bool,
+
+    /// Scheme of the limit surface (loop, loop-warren)
+    #[arg(long, value_enum, default_value_t, requires = "exact")]
+    pub(crate) scheme: SchemeName,
+
     /// Shade both sides of edges by themselves where the faces meet at more than this angle [degrees, above 0 to 180]
     ///
-    /// Edges that the file tags as sharp for ever are shaded so in any case.
+    /// Edges that the file tags as sharp for ever are shaded so in any case. With --exact they are creases of the surface.
     #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
     pub(crate) crease_angle: Option<f64>,
 

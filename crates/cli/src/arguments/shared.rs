@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::quantity::Unit;
 use super::values::{self, WeldDistance};
+use crate::failure::usage;
 
 /// Which subdivision scheme defines the smooth surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
@@ -30,6 +31,36 @@ impl SchemeName {
             Self::Loop => &Loop,
             Self::LoopWarren => &LoopWarren,
             Self::Butterfly => &ModifiedButterfly,
+        }
+    }
+}
+
+/// Which scheme `refine` follows: those that split triangles in four, and one that does not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum RefiningScheme {
+    /// Loop's scheme with his own weights: smooth, approximating
+    #[default]
+    Loop,
+    /// Loop's scheme with Warren's simpler weights
+    LoopWarren,
+    /// The modified butterfly scheme: the surface passes through all vertices
+    Butterfly,
+    /// √3-subdivision (Kobbelt): each step gives three times the triangles; smooth, approximating
+    Sqrt3,
+}
+
+impl RefiningScheme {
+    /// The scheme, if it splits triangles in four.
+    ///
+    /// # Errors
+    /// It does not: what asks for it knows no other.
+    pub(crate) fn in_quarters(self) -> anyhow::Result<SchemeName> {
+        match self {
+            Self::Loop => Ok(SchemeName::Loop),
+            Self::LoopWarren => Ok(SchemeName::LoopWarren),
+            Self::Butterfly => Ok(SchemeName::Butterfly),
+            Self::Sqrt3 => usage("--scheme sqrt3 does not split triangles in four, as is needed here"),
         }
     }
 }

@@ -147,6 +147,23 @@ pub(super) fn exact_levels(text: &str) -> Result<usize, String> {
     bounded(text, 1, MAX_EXACT_LEVELS, "levels")
 }
 
+/// A count from 1 to [`MAX_LEVELS`].
+pub(super) fn detail_levels(text: &str) -> Result<usize, String> {
+    bounded(text, 1, MAX_LEVELS, "levels")
+}
+
+/// A number above 0 and below 1.
+pub(super) fn ratio(text: &str) -> Result<f64, String> {
+    let value = above_zero(text)?;
+    if value < 1.0 { Ok(value) } else { Err(format!("{value} is out of range: it is above 0 and below 1")) }
+}
+
+/// An angle of view in degrees, above 0 and below 180.
+pub(super) fn field_of_view(text: &str) -> Result<f64, String> {
+    let value = above_zero(text)?;
+    if value < 180.0 { Ok(value) } else { Err(format!("{value}° is out of range: it is below 180 degrees")) }
+}
+
 /// A number above 0.
 pub(super) fn above_zero(text: &str) -> Result<f64, String> {
     let value = finite(text)?;

@@ -79,13 +79,22 @@ fn draw(
     if let Some(percent) = per_length {
         distances.iter_mut().for_each(|distance| *distance *= percent);
     }
+    let unit = per_length.map_or_else(String::new, |_| format!("% of the {}'s diagonal", whole.of));
+    draw_values(path, cut, &distances, (scale(&distances), "distance", &unit))
+}
+
+/// A picture of values at the vertices, with a colour bar that says what they are.
+pub(super) fn draw_values(
+    path: &Path,
+    surface: Triangles<'_>,
+    values: &[f64],
+    (scale, title, unit): (Scale, &str, &str),
+) -> anyhow::Result<()> {
     let Size { width, height } = SIZE;
     let style = Style::default().shading(Shading::Flat).lighting(Lighting::even());
-    let scale = scale(&distances);
-    let camera = Camera::fit_tightly(cut, ViewDirection::default(), width, height)?;
-    let image = render_scalar(cut, None, &distances, &scale, &camera, &style, (width, height))?;
-    let unit = per_length.map_or_else(String::new, |_| format!("% of the {}'s diagonal", whole.of));
-    let bar = ColourBar::new(scale).title("distance").unit(unit);
+    let camera = Camera::fit_tightly(surface, ViewDirection::default(), width, height)?;
+    let image = render_scalar(surface, None, values, &scale, &camera, &style, (width, height))?;
+    let bar = ColourBar::new(scale).title(title).unit(unit);
     output::write_file(path, &bar.beside(&image, style.background)?.encode_png()?)
 }
 

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use anyhow::{Context, bail};
+use anyhow::Context;
+use limitmesh::Mesh;
 use limitmesh::scheme::Loop;
-use limitmesh::{LimitSurface, Mesh};
 
-use crate::arguments::{FeatureArguments, InfoArguments};
+use crate::arguments::InfoArguments;
 use crate::bulk::Bulk;
 use crate::dihedral::Dihedrals;
 use crate::failure::{Outcome, usage};
@@ -54,8 +54,11 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
     }
     drop(soup);
     progress.stage("examining the mesh");
-    let limit = arguments.limit.then(|| limit(&mesh, &arguments.features)).transpose();
-    let limit = limit.with_context(|| name.clone())?;
+    let limit = match arguments.limit {
+        true => Bulk::of_limit(&arguments.features.apply(mesh.clone())?.mesh, &Loop)
+            .with_context(|| name.clone())?,
+        false => None,
+    };
     let report = InformationReport {
         version: VERSION,
         input,
@@ -86,17 +89,6 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         output::print(&text)?;
     }
     Ok(Outcome::Done)
-}
-
-/// The area and volume of the limit surface by Loop's scheme.
-fn limit(mesh: &Mesh, features: &FeatureArguments) -> anyhow::Result<Bulk> {
-    let control = features.apply(mesh.clone())?.mesh;
-    let surface = LimitSurface::new(&control, &Loop)?;
-    let is_closed = control.topology().boundary_edge_count() == 0;
-    match (surface.area(), surface.volume()) {
-        (Some(area), volume) if volume.is_some() || !is_closed => Ok(Bulk { area, volume }),
-        _ => bail!("area or volume of the limit surface is beyond what numbers hold"),
-    }
 }
 
 fn describe_file(report: &InformationReport) -> String {

@@ -8,6 +8,7 @@ use limitmesh::{Mesh, Triangles};
 
 use super::{certified, certified_limit, heatmap, limit_control};
 use crate::arguments::MeasureArguments;
+use crate::bulk::Bulk;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, point, table, thousands, upper_bound};
 use crate::input::{self, Input};
@@ -137,6 +138,7 @@ fn load_reference(
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
     let interpolation = (arguments.interpolation, arguments.build.unit);
     let (mesh, _) = limit_control::prepared(input, &arguments.features, interpolation, scheme, progress)?;
+    let bulk = Bulk::of_limit(&mesh, scheme.scheme())?;
     let (mesh, levels) = if arguments.certified {
         (mesh, 0)
     } else {
@@ -161,16 +163,21 @@ fn load_reference(
         vertices: mesh.vertex_count(),
         triangles: mesh.face_count(),
         limit: Some(limit),
+        area: bulk.map(|bulk| bulk.area),
+        volume: bulk.and_then(|bulk| bulk.volume),
         ..report
     };
     Ok((mesh, report, whole))
 }
 
 fn describe(input: &Input) -> SurfaceReport {
+    let bulk = Bulk::of(&input.mesh);
     SurfaceReport {
         path: input.name.clone(),
         vertices: input.mesh.vertex_count(),
         triangles: input.mesh.face_count(),
+        area: Some(bulk.area),
+        volume: bulk.volume,
         diagnosis: (&input.diagnosis).into(),
         limit: None,
     }
@@ -183,7 +190,22 @@ fn in_words(report: &MeasureReport, measured: &Distance, whole: Whole) -> String
         Distance::Sampled(measured) => sampled_in_words(measured, whole),
         Distance::Certified(measured, _) => certified::in_words(measured, whole),
     });
+    text.push_str(&bulk_in_words(&report.surface, &report.reference));
     text
+}
+
+/// Both areas, and both volumes where both are closed, with their differences.
+fn bulk_in_words(surface: &SurfaceReport, reference: &SurfaceReport) -> String {
+    let line = |what: &str, own: Option<f64>, other: Option<f64>| {
+        let (own, other) = (own?, other?);
+        let percent = 100.0 * (own - other) / other;
+        let more = if percent.is_finite() { format!("  ({percent:+.3} %)") } else { String::new() };
+        Some(format!("{what:<7} {} against {}{more}\n", number(own), number(other)))
+    };
+    let lines =
+        [line("area", surface.area, reference.area), line("volume", surface.volume, reference.volume)];
+    let lines: String = lines.into_iter().flatten().collect();
+    if lines.is_empty() { lines } else { format!("\n{lines}") }
 }
 
 fn sampled_in_words(measured: &Hausdorff, whole: Whole) -> String {

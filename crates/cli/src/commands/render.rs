@@ -1,7 +1,10 @@
 //! `limitmesh render`: a picture of a mesh.
 
+use anyhow::{Context, bail};
 use limitmesh::mesh::SplitSurface;
-use limitmesh_render::{Shading, Style};
+use limitmesh::refine::limit_reference;
+use limitmesh::{LimitSurface, RayCaster};
+use limitmesh_render::{Camera, Shading, Style, render_exact_observed};
 
 use super::covering::Cover;
 use super::picture;
@@ -9,6 +12,7 @@ use crate::arguments::RenderArguments;
 use crate::failure::Outcome;
 use crate::format::counted;
 use crate::input;
+use crate::output;
 use crate::progress::Progress;
 
 /// What pictures do without, or have by other ways.
@@ -17,6 +21,9 @@ const UNSEEN: [&str; 3] = ["normals", "tangents", "materials but for their names
 /// Reads a mesh and draws it.
 pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     picture::check_name(&arguments.output)?;
+    if arguments.exact {
+        return exact(arguments, progress);
+    }
     let input = input::load_keeping(&arguments.input, &arguments.build, &UNSEEN, progress)?;
     let cover = Cover::of(&input, arguments.texture.as_deref())?;
     let mut mesh = input.mesh;
@@ -41,5 +48,33 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
     }
     let drawn = counted(mesh.face_count(), "triangle", "triangles");
     progress.note(format!("{}: {drawn} drawn", arguments.output.display()));
+    Ok(Outcome::Done)
+}
+
+/// Triangles of the mesh by which a limit surface is framed.
+const FRAMED: usize = 100_000;
+
+/// Draws the limit surface of a control mesh by rays.
+fn exact(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Outcome> {
+    let input = input::load(&arguments.input, &arguments.build, progress)?;
+    let (name, mut mesh) = (input.name, input.mesh);
+    if let Some(angle) = arguments.crease_angle {
+        mesh = mesh.with_creases_above(angle.to_radians())?;
+    }
+    let scheme = arguments.scheme.scheme();
+    let surface = LimitSurface::new(&mesh, scheme).with_context(|| name.clone())?;
+    let rays = RayCaster::new(&surface).with_context(|| name.clone())?;
+    if mesh.face_count() == 0 {
+        bail!("{name}: there are no faces to draw");
+    }
+    let levels = (0..4).find(|&levels| mesh.face_count() << (2 * levels + 2) > FRAMED).unwrap_or(4);
+    let outline = limit_reference(&mesh, scheme, levels).with_context(|| name.clone())?;
+    let (view, size) = (picture::view_direction(arguments.view), arguments.size);
+    let camera = Camera::fit_tightly(outline.as_triangles(), view, size.width, size.height)?;
+    let size = (size.width, size.height);
+    let image = render_exact_observed(&rays, &camera, &Style::default(), size, &mut progress.observer())?;
+    output::write_file(&arguments.output, &image.encode_png()?)?;
+    let faces = counted(mesh.face_count(), "control face", "control faces");
+    progress.note(format!("{}: the limit surface of {faces} drawn by rays", arguments.output.display()));
     Ok(Outcome::Done)
 }

@@ -36,6 +36,10 @@ pub(crate) struct SurfaceReport {
     pub(crate) path: String,
     pub(crate) vertices: usize,
     pub(crate) triangles: usize,
+    /// In squares of the mesh's unit; null where it is not known, as for limit surfaces outside the Loop family.
+    pub(crate) area: Option<f64>,
+    /// In cubes of the mesh's unit, above 0 where normals point outwards; null for open surfaces, and where it is not known.
+    pub(crate) volume: Option<f64>,
     pub(crate) diagnosis: DiagnosisReport,
     /// How the surface stands for a limit surface; null where it is measured as it is.
     pub(crate) limit: Option<LimitReport>,

@@ -6,9 +6,12 @@ mod channel;
 mod comparison;
 pub(crate) mod diagnosis;
 mod evaluation;
+mod frames;
 pub(crate) mod information;
 mod interpolation;
+mod lod;
 pub(crate) mod measurement;
+pub(crate) mod projection;
 pub(crate) mod refinement;
 
 pub(crate) use certified::CertifiedReport;
@@ -16,8 +19,10 @@ pub(crate) use channel::ChannelReport;
 pub(crate) use comparison::{CertifiedErrorReport, ComparedMethod};
 pub(crate) use diagnosis::DiagnosisReport;
 pub(crate) use evaluation::EvaluationReport;
+pub(crate) use frames::{FrameReport, FramesReport, FramesSeconds};
 pub(crate) use information::{AssetInformation, InformationReport, MeshInformation, PackageInformation};
 pub(crate) use interpolation::InterpolationReport;
+pub(crate) use lod::{LevelReport, LodReport, MorphReport, PictureReport};
 pub(crate) use measurement::{DistanceReport, LimitReport, MeasureReport, SurfaceReport};
 pub(crate) use refinement::{
     AssetMeshReport, AssetReport, AttributeReport, CameraReport, ErrorReport, EstimateReport,

@@ -9,7 +9,9 @@ use serde::Serialize;
 
 use super::diagnosis::DiagnosisReport;
 use super::{InputReport, InterpolationReport};
-use crate::arguments::{Boundary, ConcaveCorners, CreasesFrom, Method, RefineArguments, SchemeName, Seam};
+use crate::arguments::{
+    Boundary, ConcaveCorners, CreasesFrom, Method, RefineArguments, RefiningScheme, Seam,
+};
 use crate::bulk::Bulk;
 use crate::format::{lower_bound, upper_bound};
 
@@ -152,7 +154,7 @@ pub(crate) struct ParametersReport {
     pub(crate) method: Method,
     pub(crate) angle_degrees: Option<f64>,
     pub(crate) levels: Option<usize>,
-    pub(crate) scheme: SchemeName,
+    pub(crate) scheme: RefiningScheme,
     pub(crate) seam: Option<Seam>,
     pub(crate) view: Option<ViewReport>,
     pub(crate) limit: bool,
@@ -330,6 +332,20 @@ impl ErrorReport {
             diagonal,
             at: bounds.at,
             certified: bounds.certified && upper.is_some(),
+        }
+    }
+
+    /// Of a mesh whose vertices all lie on the limit surface, with a distance that is estimated.
+    pub(crate) fn estimated(distance: f64, diagonal: f64, mesh: &Mesh) -> Self {
+        let percent = 100.0 * distance / diagonal;
+        Self {
+            lower: 0.0,
+            upper: finite(distance),
+            lower_percent: 0.0,
+            upper_percent: finite(percent),
+            diagonal,
+            at: mesh.positions().first().copied().unwrap_or_default(),
+            certified: false,
         }
     }
 

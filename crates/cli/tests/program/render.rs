@@ -73,3 +73,23 @@ fn textures_lie_on_surfaces_with_texture_coordinates() {
     let missing = run("render {} -o {} --texture {}", &[&mesh, &path, &folder.path().join("none.png")]);
     missing.expect(1).saying("none.png");
 }
+
+/// The limit surface of a coarse mesh has no corners: nearly as many pixels as the mesh's own picture has, and others.
+#[test]
+fn limit_surfaces_are_drawn_by_rays() {
+    let folder = folder();
+    let path = folder.path().join("exact.png");
+    let draw = |options: &str| {
+        run(&format!("render builtin:cube -o {{}} --size 120x90 {options}"), &[&path]).expect(0);
+        std::fs::read(&path).expect("a picture")
+    };
+    let exact = draw("--exact");
+    assert_eq!(size(&exact), [120, 90]);
+    assert!(exact != draw(""), "it is not the control mesh that is drawn");
+    assert!(exact == draw("--exact --threads 1"), "the same bytes on one thread");
+    assert!(exact != draw("--exact --scheme loop-warren"));
+    assert!(exact != draw("--exact --crease-angle 30"));
+    run("render builtin:cube -o {} --exact --scheme butterfly", &[&path]).expect(1).saying("Loop family");
+    run("render builtin:cube -o {} --exact --wireframe", &[&path]).expect(2);
+    run("render builtin:cube -o {} --scheme loop", &[&path]).expect(2);
+}

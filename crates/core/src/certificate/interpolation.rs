@@ -54,28 +54,47 @@ impl Sheet {
     /// A bound of how far the function is from the linear one with its values at the corners of a part, anywhere there; tight only
     /// above `target`. Of schemes outside Loop's family an estimate from samples.
     pub(crate) fn off_linear(&self, part: SubTriangle, target: f64, rules: &Rules<'_>) -> f64 {
+        self.off(part, (self.corners_of(part, rules), self.corners), target, rules)
+    }
+
+    /// The same for the linear function with other values at the part's corners. Where the function is not regular over a part that is
+    /// neither all nor a quarter, the bound goes by the linear function with the second values, at the corners of the whole.
+    pub(crate) fn off(
+        &self,
+        part: SubTriangle,
+        (own, whole): ([DVec3; 3], [DVec3; 3]),
+        target: f64,
+        rules: &Rules<'_>,
+    ) -> f64 {
         let mut search = Search { rules, target, found: 0.0 };
         match (&self.patch, part) {
-            (_, SubTriangle::Whole) => search.patch(&self.patch, self.corners, 0),
+            (_, SubTriangle::Whole) => {
+                search.found = greatest_distance(own, self.corners);
+                search.patch(&self.patch, own, 0);
+            }
             (_, SubTriangle::Child(child)) => {
-                let refined = self.patch.refined(rules);
-                search.patch(&refined.part(child), self.corners_of(part, rules), 1);
+                search.found = greatest_distance(own, self.corners_of(part, rules));
+                search.patch(&self.patch.refined(rules).part(child), own, 1);
             }
             (Patch::Regular(points), _) => {
                 let part = NetPart::own(&BezierTriangle::of(points), part);
-                search.net(part.net(), part.net().corners(), HALVINGS);
+                search.net(part.net(), own, HALVINGS);
             }
             // Both linear functions differ by no more than at the corners.
             _ => {
-                search.patch(&self.patch, self.corners, 0);
-                let linear = part.corners(self.corners, middles(self.corners));
-                let own = self.corners_of(part, rules);
-                let apart = (0..3).map(|i| own[i].distance(linear[i])).fold(0.0, greater);
+                let apart = greatest_distance(own, part.corners(whole, middles(whole)));
+                search.target -= apart;
+                search.patch(&self.patch, whole, 0);
                 search.found += apart;
             }
         }
         search.found
     }
+}
+
+/// The greatest distance between points of the same number.
+fn greatest_distance(a: [DVec3; 3], b: [DVec3; 3]) -> f64 {
+    (0..3).map(|i| a[i].distance(b[i])).fold(0.0, greater)
 }
 
 struct Search<'a> {

@@ -11,6 +11,7 @@ mod deviation;
 mod dihedral;
 mod greatest;
 mod interpolation;
+mod parametric;
 mod quartic_cell;
 mod sampled;
 mod sub_triangle;
@@ -21,6 +22,7 @@ pub(crate) use cell_rows::{CellRows, MOST_DIVISIONS, Mark, Marks, RowBlock, RowE
 pub(crate) use deviation::Deviation;
 pub(crate) use dihedral::{STEEP, around};
 pub(crate) use interpolation::Sheet;
+pub(crate) use parametric::SecondDerivatives;
 pub(crate) use quartic_cell::{Cell, Heights, QuarticJet};
 pub(crate) use sub_triangle::SubTriangle;
 pub(crate) use triangle_frame::{TriangleFrame, least_slope};

@@ -14,6 +14,7 @@ mod region;
 mod view;
 
 pub use cone::LimitNormal;
+pub(crate) use cone::ratio as cone_ratio;
 pub(crate) use criteria::{Apart, Criteria};
 pub(crate) use distance::Distance;
 pub use neighbour::NeighbourNormal;

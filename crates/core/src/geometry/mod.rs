@@ -1,6 +1,7 @@
 //! What several rooms need of triangles and sets of numbers, once: edges and their triangles, disjoint sets, the closest
-//! point of a triangle. Knows no mesh.
+//! point of a triangle, a tree of boxes. Knows no mesh.
 
+pub(crate) mod box_tree;
 mod disjoint_sets;
 mod edges;
 mod triangle;

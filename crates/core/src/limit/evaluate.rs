@@ -225,10 +225,10 @@ pub(super) enum Stencil {
 }
 
 /// One side of a vertex's ring: its first slot and number of faces, and the tangents' weights.
-struct Side<'s> {
-    first: usize,
-    faces: usize,
-    tangents: &'s [[f64; 2]],
+pub(super) struct Side<'s> {
+    pub(super) first: usize,
+    pub(super) faces: usize,
+    pub(super) tangents: &'s [[f64; 2]],
 }
 
 impl Stencil {
@@ -258,7 +258,7 @@ impl Stencil {
         }
     }
 
-    fn sides(&self) -> impl Iterator<Item = Side<'_>> {
+    pub(super) fn sides(&self) -> impl Iterator<Item = Side<'_>> {
         (0..self.side_count()).map(|i| self.side(i))
     }
 
@@ -444,19 +444,24 @@ pub(super) fn for_each_of_two_ring<R: Refined>(
 /// The area-weighted average of the normals of a side's faces at `vertex`, of unit length; zero where it vanishes.
 fn face_average(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> DVec3 {
     let (topology, centre) = (mesh.topology(), point(mesh, vertex));
-    let faces = || {
-        let twice = topology.outgoing_ring(vertex).chain(topology.outgoing_ring(vertex));
-        let from = |v: VertexId| point(mesh, v) - centre;
-        let ends = move |h: HalfEdgeId| (from(topology.target(h)), from(topology.opposite(h)));
-        twice.skip(side.first).take(side.faces).map(ends)
-    };
+    let twice = topology.outgoing_ring(vertex).chain(topology.outgoing_ring(vertex));
+    let from = |v: VertexId| point(mesh, v) - centre;
+    let ends = |h: HalfEdgeId| [from(topology.target(h)), from(topology.opposite(h))];
+    let faces: Vec<[DVec3; 2]> = twice.skip(side.first).take(side.faces).map(ends).collect();
+    area_weighted_normal(&faces)
+}
+
+/// The area-weighted average of the normals of faces at a vertex, each given by its edges from there, of unit length; zero where
+/// it vanishes.
+pub(crate) fn area_weighted_normal(faces: &[[DVec3; 2]]) -> DVec3 {
     // Scaled to the ring's size, so that squares neither vanish nor overflow.
-    let size = faces().fold(0.0, |size: f64, (a, b)| size.max(a.abs().max(b.abs()).max_element()));
+    let greatest = |size: f64, edge: &DVec3| size.max(edge.abs().max_element());
+    let size = faces.as_flattened().iter().fold(0.0, greatest);
     if size == 0.0 || !size.is_finite() {
         return DVec3::ZERO;
     }
     let (mut sum, mut areas) = (DVec3::ZERO, 0.0);
-    for (a, b) in faces() {
+    for [a, b] in faces {
         let normal = (a / size).cross(b / size);
         sum += normal;
         areas += normal.length();

@@ -110,14 +110,17 @@ mod sharp;
 mod sides;
 mod stencil;
 mod table;
+mod vertex_stencils;
 
 pub use error::LimitError;
+pub(crate) use evaluate::area_weighted_normal;
 pub use neighbourhood::{difference_matrix, ring_matrix};
 pub(crate) use rows::{LimitRows, summed};
 pub use sharp::{SharpSide, SharpStencil};
 pub use sides::SidedNormals;
 pub use stencil::{LimitStencil, TangentPlane};
 pub use table::LimitTable;
+pub(crate) use vertex_stencils::{VertexStencil, VertexStencils};
 
 #[cfg(test)]
 mod tests;

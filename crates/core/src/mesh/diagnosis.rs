@@ -65,7 +65,8 @@ pub struct Diagnosis {
     pub isolated_vertices: Finding,
     /// Faces turned round to agree with their neighbours.
     pub flipped_faces: Finding,
-    /// Faces along which a one-sided (non-orientable) component was cut.
+    /// Faces that were cut apart since they run against each other: along a one-sided (non-orientable) component, or where none was to be
+    /// turned.
     pub non_orientable_faces: Finding,
     /// Edges with more than two faces, named by their lower vertex.
     pub non_manifold_edges: Finding,
@@ -151,8 +152,8 @@ const WORDINGS: [Wording; 13] = [
         "non_orientable_faces",
         true,
         [
-            "face where a one-sided surface meets itself the wrong way round",
-            "faces where a one-sided surface meets itself the wrong way round",
+            "face that meets its neighbour the wrong way round",
+            "faces that meet their neighbours the wrong way round",
         ],
         "cut open there",
         "face",

@@ -251,6 +251,11 @@ impl Mesh {
         Ok(self)
     }
 
+    /// Moves one vertex, to where coordinates are finite.
+    pub(crate) fn set_position(&mut self, vertex: VertexId, to: [f64; 3]) {
+        self.positions[vertex.index()] = to;
+    }
+
     /// Crease and corner tags.
     pub fn tags(&self) -> &Tags {
         &self.tags

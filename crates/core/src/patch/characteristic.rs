@@ -10,6 +10,7 @@
 
 use super::bezier_triangle::{BezierTriangle, EDGES};
 use super::extraordinary::ExtraordinaryPatch;
+use super::normal_net::{cross_products, tangents};
 use crate::vector::DVec3;
 
 /// The map over one face of a vertex, with points in the plane z = 0.
@@ -19,6 +20,10 @@ pub(crate) struct Characteristic {
     pub(crate) control: ExtraordinaryPatch,
     /// The face's sector, and its halves on either side of the bisector.
     pub(crate) sectors: [MapSector; 3],
+    /// The least coefficient of the Jacobian of its three regular pieces, by differences of their nets.
+    pub(crate) least_jacobian: f64,
+    /// The greatest coordinates of these differences.
+    pub(crate) steepest: [f64; 2],
 }
 
 /// Points that hold the map over a sector.
@@ -56,6 +61,13 @@ impl Characteristic {
         // The vertex stays at 0 whatever its weights are.
         let refined = control.refined(0.0);
         let [first, second, middle] = [1, 2, 3].map(|part| BezierTriangle::of(&refined.regular(part)));
+        let (mut least_jacobian, mut steepest) = (f64::INFINITY, DVec3::ZERO);
+        for net in [&first, &second, &middle] {
+            let tangents = tangents(net);
+            steepest = tangents.as_flattened().iter().fold(steepest, |most, by| most.max(by.abs()));
+            let jacobian = cross_products(&tangents).into_iter().map(|normal| normal.z);
+            least_jacobian = jacobian.fold(least_jacobian, f64::min);
+        }
         let rim = |net: &BezierTriangle| EDGES[1].map(|at| net.0[at]);
         let directions = [power(0.0), power(0.5), power(1.0)];
         let sector = |nets: &[&BezierTriangle], rim: Vec<DVec3>, start: DVec3, end: DVec3| {
@@ -76,7 +88,7 @@ impl Characteristic {
             sector(&[&first, &middle.half(1, true)], rim(&first).to_vec(), directions[0], directions[1]),
             sector(&[&middle.half(1, false), &second], rim(&second).to_vec(), directions[1], directions[2]),
         ];
-        Self { control, sectors }
+        Self { control, sectors, least_jacobian, steepest: [steepest.x, steepest.y] }
     }
 }
 
@@ -162,6 +174,7 @@ mod tests {
             assert!(first.end.distance(second.start) < 1e-12);
             assert!(first.end.length() > 0.1 && first.start.y == 0.0);
             assert!(whole.hull.len() < 16, "{}", whole.hull.len());
+            assert!(map.least_jacobian > 0.0, "valence {valence}: {}", map.least_jacobian);
         }
     }
 }

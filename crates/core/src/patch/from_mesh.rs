@@ -32,7 +32,7 @@ pub(crate) fn root_patch(
 }
 
 /// Whether a tag that fades decides the surface over a face, given its corners.
-fn fades(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> bool {
+pub(super) fn fades(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> bool {
     let vertices = corners.map(|h| mesh.topology().origin(h));
     vertices.into_iter().any(|v| sharpness.is_tagged(v) && sharpness.ring(v).fading() > 0.0)
 }

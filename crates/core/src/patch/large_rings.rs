@@ -7,7 +7,7 @@ use super::Neighbours;
 use super::pole::LARGEST_RING;
 use super::sector::{Centre, Far, VertexSector};
 use crate::index::{HalfEdgeId, VertexId};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Topology};
 use crate::vector::{DVec3, vector};
 
 /// Neighbours that are kept at first: two more than a [`super::pole::PolePatch`] does, since a piece may be refined before it becomes one.
@@ -37,36 +37,64 @@ impl LargeRings {
 
     /// The sector of the origin of `h` on the side of its face, if it is one of them.
     pub(super) fn sector(&self, mesh: &Mesh, h: HalfEdgeId) -> Option<VertexSector> {
-        let (topology, vertex) = (mesh.topology(), mesh.topology().origin(h));
-        let place = self.0.binary_search_by_key(&vertex, |&(vertex, _)| vertex).ok()?;
-        let ring = &self.0[place].1;
+        let near = self.near(mesh.topology(), h)?;
         let at = |v: VertexId| vector(mesh.positions()[v.index()]);
+        let neighbours: Neighbours = near.neighbours.into_iter().map(at).collect();
+        let (centre, slot, far) = (near.centre, near.slot, near.far);
+        Some(VertexSector { at: at(mesh.topology().origin(h)), neighbours, centre, slot, far })
+    }
+
+    /// What [`Self::sector`] is made of.
+    pub(super) fn near(&self, topology: &Topology, h: HalfEdgeId) -> Option<Near> {
+        let vertex = topology.origin(h);
+        let number = self.0.binary_search_by_key(&vertex, |&(vertex, _)| vertex).ok()?;
+        let ring = &self.0[number].1;
         // The neighbour after the face's next corner is there too.
         let after = KEPT / 2;
         let forward = core::iter::successors(Some(h), |h| topology.twin(h.previous()));
-        let on = forward.take(after).map(|h| at(topology.opposite(h)));
+        let on = forward.take(after).map(|h| topology.opposite(h));
         let back = core::iter::successors(Some(h), |&h| topology.twin(h).map(HalfEdgeId::next)).skip(1);
-        let before: Vec<DVec3> = back.take(KEPT - after - 1).map(|h| at(topology.target(h))).collect();
-        let mut neighbours = Neighbours::with_capacity(KEPT + 2);
+        let before: Vec<VertexId> = back.take(KEPT - after - 1).map(|h| topology.target(h)).collect();
+        let mut neighbours = Vec::with_capacity(KEPT + 2);
         let Some([first, last]) = ring.ends else {
-            neighbours.push(at(topology.target(h)));
+            neighbours.push(topology.target(h));
             neighbours.extend(on);
             neighbours.extend(before.into_iter().rev());
             let far = Far::Mean { valence: ring.valence, mean: ring.mean };
             let centre = Centre::Smooth { sharp: None };
-            return Some(VertexSector { at: at(vertex), neighbours, centre, slot: 0, far });
+            return Some(Near { neighbours, centre, slot: 0, far, number });
         };
         let after_first = before.len() + 1 == KEPT - after;
-        neighbours.extend(after_first.then(|| at(first)));
+        neighbours.extend(after_first.then_some(first));
         neighbours.extend(before.into_iter().rev());
         let slot = neighbours.len();
-        neighbours.push(at(topology.target(h)));
+        neighbours.push(topology.target(h));
         neighbours.extend(on);
         let before_last = neighbours.len() - slot == after + 1;
-        neighbours.extend(before_last.then(|| at(last)));
+        neighbours.extend(before_last.then_some(last));
         let far = Far::Ends { after_first, before_last };
-        Some(VertexSector { at: at(vertex), neighbours, centre: Centre::Crease, slot, far })
+        Some(Near { neighbours, centre: Centre::Crease, slot, far, number })
     }
+
+    /// The vertices, in the order of their numbers.
+    pub(crate) fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
+        self.0.iter().map(|&(vertex, _)| vertex)
+    }
+
+    /// Sets what stands for the mean of a ring, by the vertex's number.
+    pub(crate) fn set_mean(&mut self, number: usize, mean: DVec3) {
+        self.0[number].1.mean = mean;
+    }
+}
+
+/// The neighbours of a vertex of very many edges that are near a face, and what they are to the rules.
+pub(super) struct Near {
+    pub(super) neighbours: Vec<VertexId>,
+    pub(super) centre: Centre,
+    pub(super) slot: usize,
+    pub(super) far: Far,
+    /// The vertex's number among those of very many edges.
+    pub(super) number: usize,
 }
 
 impl Ring {

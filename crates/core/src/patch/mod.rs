@@ -12,19 +12,22 @@ pub(crate) mod extraordinary;
 mod from_mesh;
 pub(crate) mod large_rings;
 pub(crate) mod mesh_patch;
+pub(crate) mod normal_net;
 mod pole;
 pub(crate) mod quartic;
 mod rules;
 mod sector;
 mod semi_sharp;
+pub(crate) mod settling;
 pub(crate) mod submesh;
+mod support;
 
 pub(crate) use from_mesh::root_patch;
 pub(crate) use rules::Rules;
+pub(crate) use support::Support;
 
 use crate::vector::{DVec3, unit_or_zero};
-pub(crate) use box_spline::Points;
-use box_spline::Refined;
+pub(crate) use box_spline::{Points, Refined};
 use extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use mesh_patch::{MeshPatch, RefinedMeshPatch};
 use pole::{LARGEST_RING, PolePatch, RefinedPole};

@@ -60,8 +60,9 @@ impl Quartic {
         Self::with_scale(coefficients)
     }
 
+    /// The polynomial with the given coefficients, in the order of p, then of k.
     #[inline]
-    fn with_scale(coefficients: [DVec3; 15]) -> Self {
+    pub(crate) fn with_scale(coefficients: [DVec3; 15]) -> Self {
         let others = coefficients[1..].iter();
         let size = others.fold(DVec3::ZERO, |most, a| most.max(a.abs())).max_element();
         let tangent_scale = if SAFE_SIZES.contains(&size) { 1.0 } else { reciprocal_power(size) };
@@ -69,6 +70,12 @@ impl Quartic {
         // Coordinates far from the origin have fewer digits to spare for differences.
         let least = CROSS_ROUNDING * scaled * (scaled + tangent_scale * coefficients[0].abs().max_element());
         Self { coefficients: by_axis(&coefficients), tangent_scale, least_square: least * least }
+    }
+
+    /// The coefficients, in the order of [`Self::with_scale`].
+    pub(crate) fn coefficients(&self) -> [DVec3; 15] {
+        let [x, y, z] = &self.coefficients;
+        from_fn(|i| DVec3::new(x[i], y[i], z[i]))
     }
 
     /// The coefficients of u², uv, v², of u³ to v³, and of u⁴ to v⁴.
@@ -350,7 +357,11 @@ impl Row for NormalRow {
 
 /// Unit vectors at right angles to pairs of tangents; zero where their cross product's square is too little.
 #[inline]
-fn normals<const N: usize>(s: &[[f64; N]; 3], t: &[[f64; N]; 3], least_square: f64) -> [[f64; N]; 3] {
+pub(crate) fn normals<const N: usize>(
+    s: &[[f64; N]; 3],
+    t: &[[f64; N]; 3],
+    least_square: f64,
+) -> [[f64; N]; 3] {
     let mut normals = [[0.0; N]; 3];
     for l in 0..N {
         let x = s[1][l] * t[2][l] - s[2][l] * t[1][l];

@@ -4,6 +4,7 @@
 use std::sync::OnceLock;
 
 use super::characteristic::Characteristic;
+use super::settling;
 use crate::limit::{LimitError, LimitTable};
 use crate::scheme::{LoopFamily, Scheme};
 
@@ -19,6 +20,7 @@ pub(crate) struct Rules<'s> {
     failure: OnceLock<LimitError>,
     betas: [f64; KEPT],
     characteristics: [OnceLock<Characteristic>; KEPT],
+    settling: [OnceLock<Option<f64>>; KEPT],
 }
 
 impl<'s> Rules<'s> {
@@ -37,6 +39,7 @@ impl<'s> Rules<'s> {
             failure: OnceLock::new(),
             betas: core::array::from_fn(kept),
             characteristics: [const { OnceLock::new() }; KEPT],
+            settling: [const { OnceLock::new() }; KEPT],
         }
     }
 
@@ -84,6 +87,12 @@ impl Rules<'_> {
     pub(crate) fn characteristic(&self, valence: usize) -> Option<&Characteristic> {
         let kept = self.characteristics.get(valence).filter(|_| valence >= 3)?;
         Some(kept.get_or_init(|| Characteristic::of(valence)))
+    }
+
+    /// How much what stands beside the characteristic map of a valence can grow ([`settling::growth`]); `None` where that is not known.
+    pub(crate) fn settling(&self, valence: usize) -> Option<f64> {
+        let map = self.characteristic(valence)?;
+        *self.settling.get(valence)?.get_or_init(|| settling::growth(map, self.beta(valence)))
     }
 }
 

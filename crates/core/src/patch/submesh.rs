@@ -16,6 +16,16 @@ use crate::scheme::Scheme;
 /// The faces of the half-edges in `seeds` and `rings` rings around them. Face `i` of the result is that of seed `i`, its
 /// first half-edge the seed; the others follow.
 pub(crate) fn submesh(mesh: &Mesh, sharpness: &Sharpness<'_>, seeds: &[HalfEdgeId], rings: usize) -> Mesh {
+    submesh_of(mesh, sharpness, seeds, rings).0
+}
+
+/// [`submesh`], and the vertex of the mesh that each of its vertices is: some on the rim may be several.
+pub(crate) fn submesh_of(
+    mesh: &Mesh,
+    sharpness: &Sharpness<'_>,
+    seeds: &[HalfEdgeId],
+    rings: usize,
+) -> (Mesh, Vec<VertexId>) {
     let cut = Cut::around(mesh.topology(), seeds, rings);
     let count = 3 * cut.firsts.len() as u32;
     let twins: Vec<u32> =
@@ -29,7 +39,8 @@ pub(crate) fn submesh(mesh: &Mesh, sharpness: &Sharpness<'_>, seeds: &[HalfEdgeI
     };
     let positions = sources.iter().map(|source| mesh.positions()[source.index()]).collect();
     let outgoing = outgoing_half_edges(&triangles, &twins, sources.len());
-    Mesh::from_parts(Topology::from_parts(triangles, twins, outgoing), positions, tags, Junctions::default())
+    let topology = Topology::from_parts(triangles, twins, outgoing);
+    (Mesh::from_parts(topology, positions, tags, Junctions::default()), sources)
 }
 
 /// A small mesh after one step of uniform refinement: face `i` becomes the faces from `4i` on, those at its corners and

@@ -10,9 +10,12 @@ mod exact;
 mod exact_options;
 mod exact_result;
 mod junctions;
+mod level;
+mod levels_of_detail;
 mod limit_distance;
 mod limit_reference;
 mod lineage;
+mod replay;
 mod simplified;
 mod split;
 mod step;
@@ -21,12 +24,18 @@ mod tags;
 mod uniform;
 
 pub use attribute_goal::AttributeGoal;
-pub use exact::{exact, exact_estimate, exact_estimate_observed, exact_observed, is_certified};
+pub use exact::{
+    Frames, exact, exact_estimate, exact_estimate_observed, exact_frames, exact_frames_observed,
+    exact_observed, is_certified,
+};
 pub use exact_options::ExactOptions;
 pub use exact_result::{ErrorBounds, Estimate, Exact, ExactStop, Origin};
+pub use level::{Geomorph, Level, switching_distance};
+pub use levels_of_detail::{LodOptions, levels_of_detail, levels_of_detail_observed};
 pub use limit_distance::{LimitDistance, LimitDistanceOptions, limit_distance, limit_distance_observed};
 pub use limit_reference::limit_reference;
 pub use lineage::Traced;
+pub use replay::{Frame, Replay, ReplayError};
 pub use stepwise::{SeamRule, StepwiseOptions, stepwise, stepwise_observed};
 pub use uniform::{UniformOptions, uniform, uniform_observed};
 
@@ -37,6 +46,7 @@ use crate::limit::{LimitError, SidedNormals};
 use crate::measure::MeasureError;
 use crate::mesh::{Mesh, MeshError};
 use crate::progress::Cancelled;
+use crate::ring::INFINITELY_SHARP;
 use crate::simplify::SimplifyError;
 
 /// Why a refinement gave no mesh.
@@ -52,12 +62,26 @@ pub enum RefineError {
     /// The result would not be a mesh, or an option is out of range.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// A tag that fades, for a method that knows only what is smooth and what is sharp for ever.
+    #[error(
+        "{tag} has the sharpness {sharpness}, which fades: √3-subdivision knows edges and vertices that are smooth (0) \
+         or sharp for ever ({INFINITELY_SHARP} and more); the schemes that split triangles in four follow such tags"
+    )]
+    FadingTag {
+        /// The edge or vertex that is tagged.
+        tag: String,
+        /// Its sharpness.
+        sharpness: f64,
+    },
     /// A distance could not be measured.
     #[error(transparent)]
     Measure(#[from] MeasureError),
     /// Edges could not be collapsed.
     #[error(transparent)]
     Simplify(SimplifyError),
+    /// A frame cannot be replayed.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
     /// The observer asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

@@ -51,32 +51,40 @@ pub(crate) fn write_fresh(
 }
 
 /// Triangles by material, in the order in which materials are met.
-struct Groups {
+pub(super) struct Groups {
     /// Empty for triangles without one.
-    names: Vec<String>,
-    triangles: Vec<Vec<usize>>,
+    pub(super) names: Vec<String>,
+    /// The numbers of the names in the channel's list.
+    pub(super) labels: Vec<usize>,
+    pub(super) triangles: Vec<Vec<usize>>,
 }
 
 impl Groups {
-    fn of(output: &Output<'_>) -> Self {
+    pub(super) fn of(output: &Output<'_>) -> Self {
         let count = output.surface.triangles.len();
         let is_material = |own: &&Channel| own.name == MATERIAL && own.domain == Domain::Face;
         let Some(channel) = output.channels.iter().find(is_material) else {
             // A mesh needs some triangles.
             let triangles = if count > 0 { vec![(0..count).collect()] } else { Vec::new() };
-            return Self { names: vec![String::new(); triangles.len()], triangles };
+            return Self {
+                names: vec![String::new(); triangles.len()],
+                labels: vec![0; triangles.len()],
+                triangles,
+            };
         };
-        let (mut names, mut triangles, mut numbers) = (Vec::new(), Vec::new(), HashMap::new());
+        let (mut names, mut labels, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+        let mut numbers = HashMap::new();
         for (triangle, &label) in channel.indices.iter().enumerate() {
             let number = *numbers.entry(label).or_insert_with(|| {
                 let value = channel.values.get(label as usize).map_or(0, |&value| value as usize);
                 names.push(channel.labels.get(value).cloned().unwrap_or_default());
+                labels.push(value);
                 triangles.push(Vec::new());
                 names.len() - 1
             });
             triangles[number].push(triangle);
         }
-        Self { names, triangles }
+        Self { names, labels, triangles }
     }
 
     /// What geometry is put into.
@@ -108,7 +116,7 @@ impl Groups {
 }
 
 /// The channels that become attributes, by their names in the document.
-fn attributes<'a>(output: &Output<'a>) -> Vec<(String, &'a Channel)> {
+pub(super) fn attributes<'a>(output: &Output<'a>) -> Vec<(String, &'a Channel)> {
     let options = WriteOptions::default();
     let held = output.channels.iter().filter(|own| own.domain != Domain::Face && own.value_count() > 0);
     let mut named: Vec<(String, &Channel)> = Vec::new();
@@ -140,15 +148,15 @@ fn own_name(name: &str) -> String {
 }
 
 /// The vertices of a primitive, in the order of the file.
-struct Part {
+pub(super) struct Part {
     /// Of the surface.
-    vertices: Vec<u32>,
-    triangles: Vec<[u32; 3]>,
-    attributes: Vec<VertexAttribute>,
+    pub(super) vertices: Vec<u32>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) attributes: Vec<VertexAttribute>,
 }
 
 impl Part {
-    fn of(output: &Output<'_>, channels: &[(String, &Channel)], triangles: &[usize]) -> Self {
+    pub(super) fn of(output: &Output<'_>, channels: &[(String, &Channel)], triangles: &[usize]) -> Self {
         let Triangles { triangles: corners, .. } = output.surface;
         let mut known: HashMap<(u32, Vec<u32>), u32> = HashMap::new();
         let mut vertices = Vec::new();

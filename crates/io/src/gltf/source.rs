@@ -63,6 +63,11 @@ impl Source {
         Ok(Self { json, container, folder: folder.map(Path::to_owned), buffers, views, room })
     }
 
+    /// Where files beside the document are.
+    pub(super) fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
     /// The JSON document.
     pub(super) fn root(&self) -> At<'_> {
         At::root(&self.json)

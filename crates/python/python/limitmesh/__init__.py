@@ -31,6 +31,7 @@ from ._options import Camera, Progress
 from ._refine import Estimate, estimate, refine
 from ._refined import Diagnosis, ErrorBounds, Finding, Refined, Split
 from ._simplify import Repaired, Simplified, repair, simplify
+from ._project import Projected, project
 from ._surface import SurfacePoints, limit_surface
 
 if hasattr(_os, "register_at_fork"):
@@ -52,6 +53,7 @@ __all__ = [
     "OneSided",
     "OptionError",
     "Progress",
+    "Projected",
     "ReadError",
     "Refined",
     "Repaired",
@@ -72,6 +74,7 @@ __all__ = [
     "load",
     "measure",
     "models",
+    "project",
     "refine",
     "refine_file",
     "repair",

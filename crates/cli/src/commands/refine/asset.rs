@@ -166,7 +166,9 @@ impl Job {
         let name = asset.mesh_name(mesh);
         let stretch = asset.stretch(mesh);
         own.soup.positions.iter_mut().flatten().for_each(|x| *x *= stretch);
-        let options = BuildOptions::default().weld(Weld::Never).strict(arguments.build.strict);
+        // By glTF's rules the way round says which side is drawn.
+        let options =
+            BuildOptions::default().weld(Weld::Never).strict(arguments.build.strict).keep_windings(true);
         let built = match Mesh::from_soup_traced(&own.soup, &options) {
             Err(MeshError::NoFaces { reason }) => {
                 progress.note(format!("{name}: kept as it is: {reason}"));
@@ -229,7 +231,7 @@ impl Job {
             refined: &refined,
             carried: &carried,
         };
-        let told = back.put(asset, mesh, (stretch, arguments.scheme))?;
+        let told = back.put(asset, mesh, (stretch, arguments.scheme.in_quarters()?))?;
         for note in told.notes {
             progress.note(format!("{name}: {note}"));
         }

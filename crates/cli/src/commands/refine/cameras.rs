@@ -23,7 +23,7 @@ pub(super) fn check(cameras: &[Camera], control: &Mesh, arguments: &RefineArgume
         return Ok(());
     }
     // Where there is no limit, refinement says so itself.
-    let Ok(limits) = LimitTable::new(arguments.scheme.scheme()).positions(control) else { return Ok(()) };
+    let Ok(limits) = LimitTable::new(arguments.scheme()?).positions(control) else { return Ok(()) };
     let triangles = || control.triangles().iter().copied();
     let inside = |camera: &Camera| winding(camera.eye, &limits, triangles()) > 0.5;
     match cameras.iter().position(inside) {

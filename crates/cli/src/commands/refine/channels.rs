@@ -113,7 +113,7 @@ impl Channels {
         if self.channels.is_empty() {
             return Ok(Self::default());
         }
-        let channels = carried(&self.channels, control, arguments.scheme.scheme(), found)?;
+        let channels = carried(&self.channels, control, arguments.scheme()?, found)?;
         let [material_libraries, texture_files] =
             [&self.material_libraries, &self.texture_files].map(Vec::clone);
         Ok(Self { channels, material_libraries, texture_files })

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use limitmesh_io::Format;
 
-use super::picture;
-use crate::arguments::{Method, MorphTolerance, RefineArguments};
+use super::{picture, sqrt3};
+use crate::arguments::{Method, MorphTolerance, RefineArguments, RefiningScheme};
 use crate::failure::usage;
 use crate::format::thousands;
 use crate::input;
@@ -14,6 +14,9 @@ use crate::output;
 
 /// Checks options; gives the format to write, none for a dry run without a name.
 pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Format>> {
+    if arguments.scheme == RefiningScheme::Sqrt3 {
+        sqrt3::options(arguments)?;
+    }
     match arguments.method {
         Method::Exact => stepwise_options(arguments)?,
         _ => exact_options(arguments)?,

@@ -4,7 +4,7 @@ use limitmesh::Mesh;
 
 use super::exact::{Before, BeforeSurface};
 use super::interpolation;
-use crate::arguments::{Featured, Method, RefineArguments};
+use crate::arguments::{Featured, Method, RefineArguments, RefiningScheme};
 use crate::bulk::Bulk;
 use crate::format::counted;
 use crate::progress::Progress;
@@ -35,7 +35,8 @@ impl Control {
         progress: &Progress,
     ) -> anyhow::Result<Self> {
         let bulk = Bulk::of(&mesh);
-        let is_compared = arguments.method == Method::Exact && !arguments.exact.no_input_distance;
+        let is_exact = arguments.method == Method::Exact && arguments.scheme != RefiningScheme::Sqrt3;
+        let is_compared = is_exact && !arguments.exact.no_input_distance;
         let surface = is_compared.then(|| BeforeSurface {
             positions: mesh.positions().to_vec(),
             triangles: mesh.triangles().to_vec(),
@@ -47,12 +48,13 @@ impl Control {
         diagnosis.concave_corners = featured.concave.corners.clone();
         let Featured { mesh, concave } = featured;
         let diagonal = diagonal.unwrap_or_else(|| mesh.diagonal());
-        let (mesh, interpolation) = interpolation::apply(
-            mesh,
-            (arguments.interpolation, arguments.build.unit),
-            arguments.scheme.scheme(),
-            progress,
-        )?;
+        let (mesh, interpolation) = match arguments.interpolation.are_given() {
+            true => {
+                let asked = (arguments.interpolation, arguments.build.unit);
+                interpolation::apply(mesh, asked, arguments.scheme()?, progress)?
+            }
+            false => (mesh, None),
+        };
         let featured = Featured { mesh, concave };
         let before =
             Before { surface, faces, residual: interpolation.as_ref().map(|report| report.residual) };

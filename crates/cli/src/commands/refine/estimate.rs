@@ -22,8 +22,7 @@ pub(super) fn run(
 ) -> anyhow::Result<()> {
     progress.stage("estimating");
     let options = goals.options(arguments);
-    let found =
-        exact_estimate_observed(control, arguments.scheme.scheme(), &options, &mut progress.observer())?;
+    let found = exact_estimate_observed(control, arguments.scheme()?, &options, &mut progress.observer())?;
     progress.clear();
     // A report on standard output is not mixed with text for people.
     if arguments.report.as_deref().is_none_or(|path| !output::is_standard_output(path)) {

@@ -212,7 +212,7 @@ pub(super) fn run(
     };
     progress.stage(format!("refining {}", counted(control.face_count(), "triangle", "triangles")));
     let options = goals.options(arguments);
-    let mut found = exact_observed(control, arguments.scheme.scheme(), &options, &mut observer)?;
+    let mut found = exact_observed(control, arguments.scheme()?, &options, &mut observer)?;
     let moved = moved((control, before, &concave.parts), &found, goals, arguments, progress)?;
     let rounding = written(arguments)
         .map_or(0.0, |(format, options)| limitmesh_io::rounding(format, &options, found.mesh.positions()));
@@ -346,7 +346,7 @@ fn moved(
     // Triangles that reach over several control faces: the limit surface lies between, with another mesh near it.
     let options =
         ExactOptions::default().tolerance(STAND_IN * goals.diagonal).max_triangles(Some(MOST_EXACT));
-    let between = exact_observed(control, arguments.scheme.scheme(), &options, &mut progress.observer())?;
+    let between = exact_observed(control, arguments.scheme()?, &options, &mut progress.observer())?;
     let apart = between.error.upper + found.error.upper;
     let moved = InputDistance::new(input, (&between, &on_whole(&between)), residual)?;
     Ok(moved.map(|moved| moved.of_other(input, (found, &origins), apart)).transpose()?)
@@ -388,7 +388,7 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, arguments: &Refin
     if error.upper.is_none() {
         lines.push(unproven(goals).to_owned());
     } else if !error.certified {
-        let scheme = arguments.scheme.scheme().name();
+        let scheme = arguments.scheme.in_quarters().map_or("", |name| name.scheme().name());
         lines.push(format!("(nothing is proven for the scheme {scheme}, only for Loop's and Warren's)"));
     }
     lines.extend(found.pixels.map(|pixels| match pixels.is_finite() {

@@ -9,6 +9,7 @@ mod check;
 mod control;
 mod estimate;
 mod exact;
+mod frames;
 mod input_distance;
 mod jobs;
 mod normals;
@@ -16,6 +17,7 @@ mod package;
 mod provenance;
 mod put_back;
 mod selection;
+mod sqrt3;
 mod stepwise;
 mod weights;
 
@@ -30,7 +32,7 @@ use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
 
 use super::{interpolation, picture};
-use crate::arguments::{CreasesFrom, Method, RefineArguments, Unit};
+use crate::arguments::{CreasesFrom, Method, RefineArguments, RefiningScheme, Unit};
 use crate::bulk::Bulk;
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds};
@@ -70,6 +72,9 @@ struct Refined {
 
 /// Refines a mesh, or each of several.
 pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::Result<Outcome> {
+    if arguments.shared_topology {
+        return frames::run(arguments, progress);
+    }
     let jobs = jobs::jobs(arguments)?;
     check::together(&jobs)?;
     let formats = jobs.iter().map(check::options).collect::<anyhow::Result<Vec<_>>>()?;
@@ -90,10 +95,12 @@ fn refine(
     progress: &Progress,
 ) -> anyhow::Result<Outcome> {
     if let Some(asset) = asset::Job::of(arguments, format)? {
+        sqrt3::refuse_scenes(arguments)?;
         arguments.features.check_of_scene()?;
         return asset.run(progress);
     }
     if let Some(package) = package::Job::of(arguments, format)? {
+        sqrt3::refuse_scenes(arguments)?;
         arguments.features.check_of_scene()?;
         return package.run(progress);
     }
@@ -106,6 +113,7 @@ fn refine(
         progress.note(note);
     }
     let input = input.with_creases(arguments.features.creases_from)?;
+    let is_sqrt3 = arguments.scheme == RefiningScheme::Sqrt3;
     let input_report = InputReport {
         path: input.name,
         format: input.format,
@@ -115,7 +123,8 @@ fn refine(
         channels: input.channels.iter().map(|own| ChannelReport::chosen(own, &arguments.channels)).collect(),
     };
     let files = [input.material_libraries, input.texture_files];
-    let mut channels = Channels::of_input(input.channels, files, (format, arguments), progress);
+    let own = if is_sqrt3 { sqrt3::without_channels(input.channels, progress) } else { input.channels };
+    let mut channels = Channels::of_input(own, files, (format, arguments), progress);
     let texture = |own: &Channel| own.semantic == Semantic::TextureCoordinates;
     let names = channels.all().iter().map(|own| (own.name.as_str(), texture(own)));
     arguments.channels.check_tolerances(&input_report.path, names)?;
@@ -125,7 +134,7 @@ fn refine(
         control;
     channels.on_parts(&control.concave.parts, &control.mesh);
     let goals = match arguments.method {
-        Method::Exact => {
+        Method::Exact if !is_sqrt3 => {
             let goals = Goals::new(arguments, &control.mesh, diagonal)?;
             Some(goals.carrying(&channels, &control.mesh, arguments)?)
         }
@@ -135,6 +144,7 @@ fn refine(
         interpolate_within: arguments.interpolation.within(diagonal, arguments.build.unit)?,
         ..match &goals {
             Some(goals) => exact::parameters(arguments, goals),
+            None if is_sqrt3 => sqrt3::parameters(arguments, diagonal)?,
             None => stepwise::parameters(arguments),
         }
     };
@@ -147,6 +157,7 @@ fn refine(
     };
     let start = Instant::now();
     let mut refined = match &goals {
+        _ if is_sqrt3 => sqrt3::run((control, &read, diagonal), arguments, format, progress)?,
         Some(goals) => exact::run((&control, &read, &channels), goals, arguments, progress)?,
         None => stepwise::run((control.mesh, &channels, false), arguments, Some(format), progress)?,
     };

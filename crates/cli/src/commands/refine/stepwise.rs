@@ -26,7 +26,7 @@ const USUAL_ANGLE: f64 = 10.0;
 /// The number of steps where none is given: the paper's in most of its experiments.
 const USUAL_LEVELS: usize = 3;
 
-fn levels(arguments: &RefineArguments) -> usize {
+pub(super) fn levels(arguments: &RefineArguments) -> usize {
     arguments.levels.unwrap_or(USUAL_LEVELS)
 }
 
@@ -56,23 +56,28 @@ pub(super) fn run(
         inverted: None,
         how: counted(steps.len(), "step", "steps") + early,
         outcome: outcome(arguments, &mesh, &steps, stop),
+        report: report(&steps, stop),
         mesh,
-        report: MethodReport {
-            steps: steps.iter().map(StepEntry::from).collect(),
-            rounds: Vec::new(),
-            levels: steps.len(),
-            stop: stop_name(stop),
-            needed_triangles: match stop {
-                Stop::TriangleCap { needed } => Some(needed),
-                _ => None,
-            },
-            error: None,
-            input_distance: None,
-            pixels: None,
-            open_cones: None,
-            attributes: Vec::new(),
-        },
     })
+}
+
+/// What the steps did.
+pub(super) fn report(steps: &[StepReport], stop: Stop) -> MethodReport {
+    MethodReport {
+        steps: steps.iter().map(StepEntry::from).collect(),
+        rounds: Vec::new(),
+        levels: steps.len(),
+        stop: stop_name(stop),
+        needed_triangles: match stop {
+            Stop::TriangleCap { needed } => Some(needed),
+            _ => None,
+        },
+        error: None,
+        input_distance: None,
+        pixels: None,
+        open_cones: None,
+        attributes: Vec::new(),
+    }
 }
 
 /// Runs the method asked for.
@@ -91,7 +96,7 @@ fn refine(
         }
         progress.answer(at)
     };
-    let scheme = arguments.scheme.scheme();
+    let scheme = arguments.scheme()?;
     let cap = Some(arguments.max_triangles());
     let angle = arguments.angle.unwrap_or(USUAL_ANGLE).to_radians();
     let criterion: Box<dyn Criterion> = match (arguments.method, view(arguments)) {
@@ -120,7 +125,7 @@ fn finish(
     format: Option<Format>,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, Option<Normals>)> {
-    let scheme = arguments.scheme.scheme();
+    let scheme = arguments.scheme()?;
     let wanted = format.is_some_and(Normals::are_held) || arguments.picture.is_some();
     let sided = match wanted.then(|| LimitTable::new(scheme).sided_normals(&mesh)) {
         Some(Err(why)) => {
@@ -152,7 +157,7 @@ pub(super) fn parameters(arguments: &RefineArguments) -> ParametersReport {
     }
 }
 
-fn outcome(arguments: &RefineArguments, mesh: &Mesh, steps: &[StepReport], stop: Stop) -> Outcome {
+pub(super) fn outcome(arguments: &RefineArguments, mesh: &Mesh, steps: &[StepReport], stop: Stop) -> Outcome {
     let Stop::TriangleCap { needed } = stop else { return Outcome::Done };
     Outcome::StoppedShort(format!(
         "step {} of {} would have given {}, more than --max-triangles {}; {} was written with {}",

@@ -47,6 +47,9 @@ options! {
         pub weld: Weld = Weld::Exact,
         /// Refuse instead of repairing.
         pub strict: bool = false,
+        /// Leave all faces the way round that they are, where that says which side is seen: neighbours that disagree are cut apart instead of
+        /// turned.
+        pub keep_windings: bool = false,
     }
 }
 
@@ -71,7 +74,7 @@ pub(super) fn build(
     }
     drop(used);
     let faces = repair_faces(soup, &kept, &mut diagnosis)?;
-    let (mesh, trace) = assemble(soup, faces, kept, &mut diagnosis);
+    let (mesh, trace) = assemble(soup, faces, kept, options.keep_windings, &mut diagnosis);
     if options.strict && !diagnosis.is_clean() {
         return Err(MeshError::NeedsRepair { summary: diagnosis.defects() });
     }
@@ -131,13 +134,17 @@ fn assemble(
     soup: &PolygonSoup,
     mut faces: Faces,
     mut kept: Vec<u32>,
+    keeps_windings: bool,
     diagnosis: &mut Diagnosis,
 ) -> (Mesh, Trace) {
     let names = renumber(&mut faces.triangles, &mut kept);
     let name = |v: u32| names[v as usize];
     let vertex_count = names.len();
     let mut neighbours = orient::connect(&faces.triangles, vertex_count, name, diagnosis);
-    orient::orient(&mut faces, &mut neighbours, diagnosis);
+    if !keeps_windings {
+        orient::orient(&mut faces, &mut neighbours, diagnosis);
+    }
+    orient::cut_opposed(&faces, &mut neighbours, diagnosis);
     let Sheets { topology, inputs, copied, middles, junctions, corners } =
         cut::cut(faces, neighbours, vertex_count, name, diagnosis);
     let mut positions = Vec::with_capacity(vertex_count + copied.len());

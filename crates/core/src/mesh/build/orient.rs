@@ -1,7 +1,8 @@
 //! Neighbours across edges, and an orientation that all of them agree on.
 //!
 //! Takes triangles in any orientation; gives twins, and the edges along which faces had to be cut apart: those
-//! with more than two faces, and in a one-sided component those where turning back is unavoidable.
+//! with more than two faces, and those where neighbours run against each other all the same: in a one-sided component, or because none is
+//! to be turned.
 
 use super::triangulate::Faces;
 use crate::geometry::{NONE, every_edge};
@@ -50,7 +51,6 @@ pub(super) fn orient(faces: &mut Faces, neighbours: &mut Neighbours, diagnosis: 
         diagnosis.flipped_faces.add_all(named);
         turn(&mut faces.triangles, neighbours, &turned);
     }
-    cut_one_sided(faces, neighbours, diagnosis);
 }
 
 /// Breadth-first from the lowest face of each component.
@@ -111,7 +111,7 @@ fn turn(triangles: &mut [[u32; 3]], neighbours: &mut Neighbours, turned: &[bool]
 }
 
 /// Cuts apart the neighbours that still run the same way along their edge.
-fn cut_one_sided(faces: &Faces, neighbours: &mut Neighbours, diagnosis: &mut Diagnosis) {
+pub(super) fn cut_opposed(faces: &Faces, neighbours: &mut Neighbours, diagnosis: &mut Diagnosis) {
     let origins = faces.triangles.as_flattened();
     let mut named = Vec::new();
     for h in 0..origins.len() {

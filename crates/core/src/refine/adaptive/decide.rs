@@ -156,6 +156,16 @@ impl Decision {
         &self.found[face as usize].conditions
     }
 
+    /// The same trees, of whose leaves nothing is known.
+    pub(super) fn unjudged(mut self) -> Self {
+        for (found, allowance) in self.found.iter_mut().zip(&mut self.allowances) {
+            *allowance = Allowance::NOTHING;
+            let allowance = Allowance::NOTHING;
+            *found = Found { extent: Extent::NONE, allowance, has_failed: false, conditions: Vec::new() };
+        }
+        self
+    }
+
     /// The greatest bound of a leaf of a face, conditions expected to hold.
     pub(super) fn bound(&self, face: u32) -> f64 {
         let found = &self.found[face as usize];

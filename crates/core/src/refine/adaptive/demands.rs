@@ -8,6 +8,7 @@
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use super::leaves::{Covering, Descent, Leaves};
 use super::quadtree::Place;
 use crate::certificate::{Effort, Pieces, Sheet, SubTriangle, TriangleFrame, exceeds};
 use crate::index::FaceId;
@@ -16,9 +17,9 @@ use crate::mesh::Mesh;
 use crate::parallel::IsStopped;
 use crate::patch::Rules;
 use crate::progress::SharedWatch;
+use crate::refine::RefineError;
 use crate::refine::attribute_goal::{AttributeGoal, GoalKind};
 use crate::refine::exact_result::Exact;
-use crate::refine::{RefineError, Traced};
 use crate::scheme::Scheme;
 
 /// Control faces that one call takes together.
@@ -60,6 +61,9 @@ impl Demands {
     }
 }
 
+/// By goal and function, the surface over a node.
+type Sheets<'r, 'a> = Vec<Vec<(Sheet, &'r Rules<'a>)>>;
+
 /// The functions that goals are about.
 pub(super) struct Functions<'a> {
     goals: Vec<(&'a AttributeGoal, Vec<LimitSurface<'a>>)>,
@@ -71,12 +75,6 @@ pub(super) struct Held {
     pub(super) bounds: Vec<f64>,
     /// Leaves with triangles that fail.
     pub(super) failing: Vec<Place>,
-}
-
-/// A triangle, and the places of its corners in the node at hand.
-#[derive(Clone, Copy)]
-struct Standing {
-    corners: [[f64; 3]; 3],
 }
 
 impl<'a> Functions<'a> {
@@ -127,28 +125,16 @@ impl<'a> Functions<'a> {
         found: &Exact,
         watch: &SharedWatch<'_>,
     ) -> Result<Held, RefineError> {
-        let of_faces: Vec<&[u32]> = found.parents.chunk_by(|a, b| a == b).collect();
-        let mut starts = Vec::with_capacity(of_faces.len());
-        let mut next = 0;
-        for own in &of_faces {
-            starts.push(next);
-            next += own.len();
-        }
-        let blocks = watch.long_pieces(of_faces.len(), BLOCK, |block, is_stopped| {
-            let mut held = Held { bounds: vec![0.0; self.goals.len()], failing: Vec::new() };
-            for at in block {
-                let (face, first) = (of_faces[at][0], starts[at]);
-                let standing = (first..first + of_faces[at].len()).map(|t| standing(control, found, t));
-                let standing: Option<Vec<Standing>> = standing.collect();
-                match standing {
-                    Some(standing) => {
-                        let root = Place::root(face);
-                        self.look(root, &self.sheets(face as usize), standing, (&mut held, is_stopped));
-                    }
-                    None => held.bounds.fill(f64::INFINITY),
+        let leaves = Leaves::of(control, found);
+        let blocks = watch.long_pieces(control.face_count(), BLOCK, |block, is_stopped| {
+            let held = Held { bounds: vec![0.0; self.goals.len()], failing: Vec::new() };
+            let mut looking = Looking { functions: self, held, is_stopped };
+            for face in block {
+                if !leaves.descend(face as u32, self.sheets(face), &mut looking) {
+                    looking.held.bounds.fill(f64::INFINITY);
                 }
             }
-            held
+            looking.held
         })?;
         self.check()?;
         let mut held = Held { bounds: vec![0.0; self.goals.len()], failing: Vec::new() };
@@ -164,7 +150,7 @@ impl<'a> Functions<'a> {
         self.goals.iter().zip(bounds).all(|((goal, _), &bound)| !exceeds(bound, goal.tolerance))
     }
 
-    fn sheets(&self, face: usize) -> Vec<Vec<(Sheet, &Rules<'a>)>> {
+    fn sheets(&self, face: usize) -> Sheets<'_, 'a> {
         let face = FaceId(face as u32);
         let of_goal = |(_, surfaces): &'_ (_, Vec<LimitSurface<'a>>)| surfaces.len();
         debug_assert!(self.goals.iter().map(of_goal).all(|count| count > 0));
@@ -180,48 +166,49 @@ impl<'a> Functions<'a> {
             self.goals.iter().flat_map(|(_, surfaces)| surfaces).filter_map(LimitSurface::failure);
         failures.next().map_or(Ok(()), |failure| Err(failure.clone().into()))
     }
+}
 
-    /// Looks at triangles in a node: those that are it, or close it, and others further down.
-    fn look(
-        &self,
-        place: Place,
-        sheets: &[Vec<(Sheet, &Rules<'a>)>],
-        standing: Vec<Standing>,
-        (held, is_stopped): (&mut Held, &IsStopped<'_>),
-    ) {
-        let mut below: [Vec<Standing>; 4] = Default::default();
-        for own in standing {
-            if let Some(part) = own.part() {
-                let mut fails = false;
-                for (number, (goal, _)) in self.goals.iter().enumerate() {
-                    let bound = bound(goal, &sheets[number], part);
-                    held.bounds[number] = held.bounds[number].max(bound);
-                    fails |= exceeds(bound, goal.tolerance);
-                }
-                if fails && held.failing.last() != Some(&place) {
-                    held.failing.push(place);
-                }
-            } else if let Some(child) = own.child().filter(|_| place.level < super::quadtree::MOST_LEVELS) {
-                below[child].push(own.in_child(child));
-            } else {
-                held.bounds.fill(f64::INFINITY);
+/// Looks at the triangles of leaves.
+struct Looking<'s, 'a> {
+    functions: &'s Functions<'a>,
+    held: Held,
+    is_stopped: &'s IsStopped<'s>,
+}
+
+impl<'s, 'a> Descent for Looking<'s, 'a> {
+    type Node = Sheets<'s, 'a>;
+
+    fn children(&mut self, sheets: Self::Node) -> [Self::Node; 4] {
+        children(&sheets)
+    }
+
+    fn leaf(&mut self, place: Place, sheets: Self::Node, covering: &[Covering]) {
+        for &Covering { part, .. } in covering {
+            let mut fails = false;
+            for (number, (goal, _)) in self.functions.goals.iter().enumerate() {
+                let bound = bound(goal, &sheets[number], part);
+                let known = &mut self.held.bounds[number];
+                *known = known.max(bound);
+                fails |= exceeds(bound, goal.tolerance);
+            }
+            let failing = match part {
+                SubTriangle::Child(child) => place.child(child),
+                _ => place,
+            };
+            if fails && self.held.failing.last() != Some(&failing) {
+                self.held.failing.push(failing);
             }
         }
-        if below.iter().all(Vec::is_empty) || is_stopped() {
-            return;
-        }
-        let children = children(sheets);
-        for (child, (standing, sheets)) in below.into_iter().zip(children).enumerate() {
-            if !standing.is_empty() {
-                self.look(place.child(child), &sheets, standing, (held, is_stopped));
-            }
-        }
+    }
+
+    fn is_over(&self) -> bool {
+        (self.is_stopped)()
     }
 }
 
 /// The functions over the four parts of a node.
-fn children<'r, 'a>(sheets: &[Vec<(Sheet, &'r Rules<'a>)>]) -> [Vec<Vec<(Sheet, &'r Rules<'a>)>>; 4] {
-    let mut parts: [Vec<Vec<(Sheet, &'r Rules<'a>)>>; 4] = Default::default();
+fn children<'r, 'a>(sheets: &[Vec<(Sheet, &'r Rules<'a>)>]) -> [Sheets<'r, 'a>; 4] {
+    let mut parts: [Sheets<'r, 'a>; 4] = Default::default();
     for of_goal in sheets {
         parts.iter_mut().for_each(|part| part.push(Vec::with_capacity(of_goal.len())));
         for (sheet, rules) in of_goal {
@@ -286,43 +273,5 @@ impl Dividing<'_, '_> {
         for (child, sheets) in children(sheets).into_iter().enumerate() {
             self.node(place.child(child), &sheets, found);
         }
-    }
-}
-
-/// An emitted triangle in its control face; `None` if it is not known to be in one.
-fn standing(control: &Mesh, found: &Exact, triangle: usize) -> Option<Standing> {
-    let face = *found.parents.get(triangle)?;
-    let mut corners = [[0.0; 3]; 3];
-    for (corner, &vertex) in corners.iter_mut().zip(&found.mesh().triangles()[triangle]) {
-        *corner = found.origins.get(vertex as usize)?.in_face(control.triangles(), face)?.barycentric;
-    }
-    Some(Standing { corners })
-}
-
-impl Standing {
-    /// The part of the node that the triangle is, if it is none of its children's.
-    fn part(&self) -> Option<SubTriangle> {
-        const CORNERS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        const MIDDLES: [[f64; 3]; 3] = [[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
-        let is_own = |part: &SubTriangle| {
-            let corners = part.corners(CORNERS, MIDDLES);
-            (0..3).any(|turn| (0..3).all(|i| self.corners[i] == corners[(i + turn) % 3]))
-        };
-        SubTriangle::all().filter(|part| !matches!(part, SubTriangle::Child(_))).find(is_own)
-    }
-
-    /// The child that it is in.
-    fn child(&self) -> Option<usize> {
-        let near = (0..3).find(|&child| self.corners.iter().all(|weights| weights[child] >= 0.5));
-        let is_inner = || self.corners.iter().flatten().all(|&weight| weight <= 0.5);
-        near.or_else(|| is_inner().then_some(3))
-    }
-
-    fn in_child(&self, child: usize) -> Self {
-        let own = |weights: [f64; 3]| match child {
-            3 => weights.map(|weight| 1.0 - 2.0 * weight),
-            _ => core::array::from_fn(|i| 2.0 * weights[i] - f64::from(i == child)),
-        };
-        Self { corners: self.corners.map(own) }
     }
 }

@@ -3,9 +3,11 @@
 //! ([`super::simplified`]).
 
 mod estimate;
-mod scale;
+mod frames;
+pub(super) mod scale;
 
 pub use estimate::{exact_estimate, exact_estimate_observed};
+pub use frames::{Frames, exact_frames, exact_frames_observed};
 
 use super::RefineError;
 use super::adaptive::adaptive;

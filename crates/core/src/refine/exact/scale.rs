@@ -20,8 +20,13 @@ pub(super) fn scaled(
     Ok(Some((mesh(control, factor)?, options(goals, factor), factor)))
 }
 
+/// Positions with their coordinates multiplied.
+pub(super) fn positions(positions: &[[f64; 3]], factor: f64) -> Vec<[f64; 3]> {
+    positions.iter().map(|p| p.map(|x| x * factor)).collect()
+}
+
 /// The power of two that brings a mesh's coordinates near 1; `None` where they are middling already.
-fn factor(mesh: &Mesh) -> Option<f64> {
+pub(in crate::refine) fn factor(mesh: &Mesh) -> Option<f64> {
     let greatest = mesh.positions().iter().flatten().fold(0.0f64, |greatest, x| greatest.max(x.abs()));
     if greatest == 0.0 || !greatest.is_finite() {
         return None;
@@ -32,9 +37,13 @@ fn factor(mesh: &Mesh) -> Option<f64> {
 }
 
 /// A mesh with its coordinates multiplied.
-fn mesh(mesh: &Mesh, factor: f64) -> Result<Mesh, RefineError> {
-    let positions = mesh.positions().iter().map(|p| p.map(|x| x * factor)).collect();
-    Ok(mesh.clone().with_positions(positions)?)
+pub(in crate::refine) fn mesh(mesh: &Mesh, factor: f64) -> Result<Mesh, RefineError> {
+    Ok(mesh.clone().with_positions(positions(mesh.positions(), factor))?)
+}
+
+/// A tolerance for the multiplied mesh: one that vanishes or overflows still is one.
+pub(in crate::refine) fn length(length: f64, factor: f64) -> f64 {
+    (length * factor).clamp(f64::MIN_POSITIVE, f64::MAX)
 }
 
 /// Goals for the multiplied mesh.
@@ -46,8 +55,7 @@ fn options(options: &ExactOptions, factor: f64) -> ExactOptions {
         Viewpoint::Direction(_) => view,
     };
     ExactOptions {
-        // A tolerance that vanishes or overflows still is one.
-        tolerance: options.tolerance.map(|length| (length * factor).clamp(f64::MIN_POSITIVE, f64::MAX)),
+        tolerance: options.tolerance.map(|tolerance| length(tolerance, factor)),
         cameras: options.cameras.iter().map(camera).collect(),
         view: options.view.map(view),
         ..options.clone()
@@ -55,10 +63,14 @@ fn options(options: &ExactOptions, factor: f64) -> ExactOptions {
 }
 
 /// The result at the size that was asked for.
-pub(super) fn result(result: Exact, factor: f64) -> Result<Exact, RefineError> {
-    let ErrorBounds { lower, upper, at, certified } = result.error;
-    let error =
-        ErrorBounds { lower: lower / factor, upper: upper / factor, at: at.map(|x| x / factor), certified };
+pub(in crate::refine) fn result(result: Exact, factor: f64) -> Result<Exact, RefineError> {
+    let error = bounds(result.error, factor);
     let off_planes = result.off_planes / factor;
     Ok(Exact { mesh: mesh(&result.mesh, 1.0 / factor)?, error, off_planes, ..result })
+}
+
+/// A distance at the size that was asked for.
+pub(super) fn bounds(error: ErrorBounds, factor: f64) -> ErrorBounds {
+    let ErrorBounds { lower, upper, at, certified } = error;
+    ErrorBounds { lower: lower / factor, upper: upper / factor, at: at.map(|x| x / factor), certified }
 }

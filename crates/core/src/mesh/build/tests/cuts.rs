@@ -149,6 +149,28 @@ fn a_moebius_strip_is_cut_once() {
     assert_eq!(groups(&mesh.junctions().edges).len(), 1);
 }
 
+/// A square of two triangles, one of which shows its other side, beside a third that agrees with the first.
+#[test]
+fn windings_that_count_are_kept_and_cut_apart() {
+    let p = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]];
+    let faces: [&[u32]; 3] = [&[0, 1, 2], &[0, 3, 2], &[0, 4, 1]];
+    let options = BuildOptions::default().keep_windings(true);
+    let (mesh, diagnosis) = Mesh::from_soup(&soup(&p, &faces), &options).unwrap();
+    assert!(diagnosis.flipped_faces.is_empty());
+    assert_eq!(diagnosis.non_orientable_faces, finding(&[0, 1]));
+    let places = |face: usize| mesh.triangles()[face].map(|v| mesh.positions()[v as usize]);
+    for (face, corners) in faces.iter().enumerate() {
+        let mut corners: Vec<[f64; 3]> = corners.iter().map(|&v| p[v as usize]).collect();
+        let first = corners.iter().position(|&at| at == places(face)[0]).unwrap();
+        corners.rotate_left(first);
+        assert_eq!(corners, places(face));
+    }
+    // Both halves of the diagonal stay together when they are refined.
+    assert_eq!(groups(&mesh.junctions().edges).len(), 1);
+    let (turned, diagnosis) = build_soup(&soup(&p, &faces));
+    assert_eq!((diagnosis.flipped_faces.count, turned.junctions().edges.is_empty()), (1, true));
+}
+
 #[test]
 fn tags_go_to_all_copies() {
     let p = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0]];

@@ -1,0 +1,58 @@
+//! `limitmesh project`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::values::{self, Extent};
+use super::{BuildArguments, FeatureArguments, InterpolationArguments, SchemeName};
+
+const EXAMPLES: &str = "\
+Examples:
+  limitmesh project scan.ply --onto control.obj -o deviation.ply
+        how far each vertex of a scan is from the limit surface, as a colour map with distances and places
+  limitmesh project scan.stl --onto control.obj --crease-angle 30 -o deviation.png
+  limitmesh project probes.csv --onto control.obj -o deviation.csv --json
+        points of a coordinate measuring machine: x, y, z in a line";
+
+/// Project points onto a limit surface: distances, closest points, and which are inside
+///
+/// POINTS are the vertices of a mesh, or a text file with three coordinates a line (.xyz, .txt, .csv, .asc). Each is projected onto the
+/// limit surface of CONTROL itself, not onto a mesh that stands for it: no point of the surface is nearer by more than --tolerance.
+/// Distances are below 0 inside of a closed surface; where it is open, behind it, as its normal at the closest point tells.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct ProjectArguments {
+    /// Points: a mesh or text file, - for standard input, or builtin:NAME
+    #[arg(value_name = "POINTS")]
+    pub(crate) points: PathBuf,
+
+    /// Control mesh of the limit surface: a file or builtin:NAME
+    #[arg(long, value_name = "CONTROL")]
+    pub(crate) onto: PathBuf,
+
+    /// How much nearer the surface may be than what was found: a length, or per cent of the control mesh's diagonal
+    #[arg(long, value_name = "T", value_parser = values::tolerance, default_value = "0.0001%", allow_hyphen_values = true)]
+    pub(crate) tolerance: Extent,
+
+    /// Write the points with what was found: .ply (coloured; closest points and places as properties), .csv, or .png (a picture, of meshes)
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Scheme of the limit surface: loop or loop-warren
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) scheme: SchemeName,
+
+    #[command(flatten)]
+    pub(crate) features: FeatureArguments,
+
+    #[command(flatten)]
+    pub(crate) interpolation: InterpolationArguments,
+
+    #[command(flatten)]
+    pub(crate) build: BuildArguments,
+
+    /// Print JSON instead of text
+    #[arg(long)]
+    pub(crate) json: bool,
+}

@@ -1,0 +1,272 @@
+//! `limitmesh lod`: levels of detail with geomorphs, in one glTF file or a file each.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use limitmesh::Mesh;
+use limitmesh::carry::carried;
+use limitmesh::mesh::{Channel, SplitSurface};
+use limitmesh::refine::{ExactStop, Level, LodOptions, levels_of_detail_observed, switching_distance};
+use limitmesh_io::gltf::{DetailLevel, write_levels};
+use limitmesh_io::{Asset, Format, Output, Property, WriteOptions, holds};
+
+use super::interpolation;
+use crate::arguments::{Extent, Featured, LodArguments, MOST_EXACT};
+use crate::failure::{Outcome, usage};
+use crate::format::{counted, number, table, thousands, upper_bound};
+use crate::input::{self, Input};
+use crate::interrupt;
+use crate::output;
+use crate::progress::Progress;
+use crate::report::refinement::exact_stop_name;
+use crate::report::{
+    ChannelReport, InputReport, LevelReport, LodReport, MorphReport, PictureReport, VERSION,
+};
+
+/// What holds where nothing is said.
+const USUAL_LEVELS: usize = 4;
+const USUAL_TOLERANCE: Extent = Extent::Percent(0.1);
+const USUAL_RATIO: f64 = 0.25;
+
+/// A level as it is written: a vertex for each side of sharp edges.
+struct Written {
+    split: SplitSurface,
+    /// By vertex, its place on the coarser level and its normal there.
+    coarser: Option<(Vec<[f64; 3]>, Vec<[f64; 3]>)>,
+    channels: Vec<Channel>,
+}
+
+/// Makes the levels, writes them, and prints when to switch.
+pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Result<Outcome> {
+    let format = Format::from_path(&arguments.output).or_else(|unknown| usage(unknown.to_string()))?;
+    if arguments.morph && !format.is_gltf() && format != Format::Ply {
+        return usage("--morph needs a .glb, .gltf or .ply file: others have no place for it");
+    }
+    output::check_writable(&arguments.output)?;
+    let input = input::load_for(&arguments.input, &arguments.build, (&[], &arguments.channels), progress)?;
+    let input = input.with_creases(arguments.features.creases_from)?;
+    let diagonal = input.mesh.diagonal();
+    let told = input_report(&input, arguments);
+    let Input { mesh, mut channels, asset, .. } = input;
+    let options = WriteOptions::default().ascii(arguments.ascii);
+    let (kept, lost): (Vec<Channel>, Vec<Channel>) = channels
+        .drain(..)
+        .filter(|own| !arguments.channels.drops(&own.name))
+        .partition(|own| holds(format, &options, own));
+    if !lost.is_empty() {
+        let names: Vec<&str> = lost.iter().map(|own| own.name.as_str()).collect();
+        progress.note(format!("left out: {} (the output's format has no place for them)", names.join("; ")));
+    }
+    let asset = asset.filter(|_| format.is_gltf());
+    if asset.is_some() {
+        progress.note("one mesh of all that the scene shows, in its coordinates, with its materials; nodes, skins, animations and cameras are left out");
+    }
+    let Featured { mesh, concave } = arguments.features.apply(mesh)?;
+    let on_parts = |own: &Channel| {
+        if concave.parts.is_empty() { own.clone() } else { own.on_parts(&concave.parts, &mesh) }
+    };
+    let channels: Vec<Channel> = kept.iter().map(on_parts).collect();
+    let scheme = arguments.scheme.scheme();
+    let asked = (arguments.interpolation, arguments.build.unit);
+    let (mesh, _) = interpolation::apply(mesh, asked, scheme, progress)?;
+
+    let tolerances = tolerances(arguments, diagonal)?;
+    let asked = LodOptions::new(tolerances)
+        .geomorphs(arguments.morph)
+        .max_triangles(Some(arguments.max_triangles.unwrap_or(MOST_EXACT)));
+    let wanted = asked.tolerances.len();
+    let levels = levels_of_detail_observed(&mesh, scheme, &asked, &mut progress.observer())?;
+    let written = levels.iter().rev().map(|level| written(level, &mesh, &channels, arguments));
+    let written = written.collect::<anyhow::Result<Vec<_>>>()?;
+    let reports = reports(&levels, &mesh, arguments, format);
+    progress.stage(format!("writing {}", arguments.output.display()));
+    write(arguments, format, &written, &reports, asset.as_ref())?;
+    progress.clear();
+    progress.note(in_words(&reports, arguments));
+    let stop = levels.last().map_or(ExactStop::Met, |level| level.exact.stop);
+    let certified = levels.iter().all(|level| level.exact.error.certified);
+    if let Some(path) = &arguments.report {
+        let picture =
+            PictureReport { pixels: arguments.pixels, height: arguments.height, fov_degrees: arguments.fov };
+        let report =
+            LodReport { version: VERSION, input: told, diagonal, certified, picture, levels: reports };
+        output::write_json(path, &report)?;
+    }
+    Ok(match stop {
+        ExactStop::Met => Outcome::Done,
+        stop => Outcome::StoppedShort(format!(
+            "level {} of {wanted}, counted from the coarsest, could not be reached ({})",
+            levels.len(),
+            exact_stop_name(stop)
+        )),
+    })
+}
+
+/// From the coarsest to the finest, in the mesh's unit.
+fn tolerances(arguments: &LodArguments, diagonal: f64) -> anyhow::Result<Vec<f64>> {
+    let length = |extent: &Extent| extent.length(diagonal, arguments.build.unit);
+    let lengths = if arguments.tolerances.is_empty() {
+        let finest = length(&arguments.tolerance.unwrap_or(USUAL_TOLERANCE))?;
+        let ratio = arguments.ratio.unwrap_or(USUAL_RATIO);
+        let levels = arguments.levels.unwrap_or(USUAL_LEVELS);
+        (0..levels).rev().map(|level| finest / ratio.powi(level as i32)).collect()
+    } else {
+        arguments.tolerances.iter().map(length).collect::<anyhow::Result<Vec<f64>>>()?
+    };
+    if lengths.windows(2).any(|pair| pair[1] >= pair[0]) {
+        return usage("--tolerances are from coarse to fine: each is below the one before");
+    }
+    Ok(lengths)
+}
+
+fn input_report(input: &Input, arguments: &LodArguments) -> InputReport {
+    InputReport {
+        path: input.name.clone(),
+        format: input.format,
+        vertices: input.diagnosis.input_vertices,
+        faces: input.diagnosis.input_faces,
+        left_out: input.left_out.clone(),
+        channels: input.channels.iter().map(|own| ChannelReport::chosen(own, &arguments.channels)).collect(),
+    }
+}
+
+fn written(
+    level: &Level,
+    control: &Mesh,
+    channels: &[Channel],
+    arguments: &LodArguments,
+) -> anyhow::Result<Written> {
+    let channels = match channels {
+        [] => Vec::new(),
+        channels => carried(channels, control, arguments.scheme.scheme(), &level.exact)?,
+    };
+    let (split, normals) = level.split_surface();
+    let coarser = level.geomorph.as_ref().map(|morph| {
+        let positions = split.sources.iter().map(|&v| morph.positions[v as usize]).collect();
+        (positions, normals)
+    });
+    Ok(Written { split, coarser, channels })
+}
+
+/// What is said of the levels, the finest first.
+fn reports(levels: &[Level], control: &Mesh, arguments: &LodArguments, format: Format) -> Vec<LevelReport> {
+    let distance = |deviation| {
+        switching_distance(deviation, arguments.pixels, arguments.height, arguments.fov.to_radians())
+    };
+    // The part of the picture's height that a ball around the control mesh takes where its nearest point is so far away.
+    let coverage = |distance: f64| {
+        let radius = 0.5 * control.diagonal();
+        (radius / ((distance + radius) * (0.5 * arguments.fov.to_radians()).tan())).min(1.0)
+    };
+    // Between morphing levels each place counts; without morphs levels are shown as they are.
+    let shown = |level: &Level| match level.exact.error.upper {
+        upper if upper.is_finite() && !arguments.morph => upper,
+        _ => level.parametric,
+    };
+    let report = |(lod, (i, level)): (usize, (usize, &Level))| {
+        let exact = &level.exact;
+        // Where the coarser level takes over: it is good enough from there on.
+        let coarser = i.checked_sub(1).map(|i| &levels[i]);
+        let start =
+            level.geomorph.as_ref().zip(coarser).map(|(morph, coarser)| morph.start.max(coarser.parametric));
+        let ends = start.or(coarser.map(shown));
+        LevelReport {
+            lod,
+            path: path(&arguments.output, format, lod).display().to_string(),
+            vertices: exact.mesh.vertex_count(),
+            triangles: exact.mesh.face_count(),
+            tolerance: level.tolerance,
+            lower: exact.error.lower,
+            upper: Some(exact.error.upper).filter(|upper| upper.is_finite()),
+            parametric: level.parametric,
+            switching_distance: distance(shown(level)),
+            least_coverage: ends.map_or(0.0, |deviation| coverage(distance(deviation))),
+            morph: start.map(|start| MorphReport {
+                start_parametric: start,
+                from_distance: distance(level.parametric),
+                to_distance: distance(start),
+            }),
+            stop: exact_stop_name(exact.stop),
+        }
+    };
+    levels.iter().enumerate().rev().enumerate().map(report).collect()
+}
+
+/// The file of a level.
+fn path(output: &Path, format: Format, lod: usize) -> PathBuf {
+    if format.is_gltf() {
+        return output.to_owned();
+    }
+    let mut name = output.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("_LOD{lod}."));
+    name.push(output.extension().unwrap_or_default());
+    output.with_file_name(name)
+}
+
+fn output(level: &Written) -> Output<'_> {
+    Output::new(level.split.as_triangles()).normals(&level.split.normals).channels(&level.channels)
+}
+
+fn write(
+    arguments: &LodArguments,
+    format: Format,
+    levels: &[Written],
+    reports: &[LevelReport],
+    asset: Option<&Asset>,
+) -> anyhow::Result<()> {
+    if format.is_gltf() {
+        let levels: Vec<DetailLevel<'_>> = levels
+            .iter()
+            .zip(reports)
+            .map(|(level, report)| {
+                let own = DetailLevel::new(output(level)).least_coverage(report.least_coverage);
+                match &level.coarser {
+                    Some((positions, normals)) => own.coarser(positions, normals),
+                    None => own,
+                }
+            })
+            .collect();
+        let name = arguments.output.file_stem().unwrap_or_default().to_string_lossy();
+        let shown = arguments.output.display().to_string();
+        return interrupt::uninterrupted(shown, || {
+            write_levels(&arguments.output, format, (&name, &levels), asset)
+        })
+        .context("levels of detail");
+    }
+    for (lod, level) in levels.iter().enumerate() {
+        let axis = |axis: usize| -> Vec<f64> {
+            level.coarser.iter().flat_map(|(positions, _)| positions).map(|position| position[axis]).collect()
+        };
+        let coarse = [axis(0), axis(1), axis(2)];
+        let names = ["coarse_x", "coarse_y", "coarse_z"];
+        let properties: Vec<Property<'_>> = match level.coarser {
+            Some(_) => names.iter().zip(&coarse).map(|(name, own)| Property::numbers(name, own)).collect(),
+            None => Vec::new(),
+        };
+        let options = WriteOptions::default().ascii(arguments.ascii);
+        let written = output(level).vertex_properties(&properties);
+        output::write_mesh(&path(&arguments.output, format, lod), format, &written, &options)?;
+    }
+    Ok(())
+}
+
+fn in_words(reports: &[LevelReport], arguments: &LodArguments) -> String {
+    let head = ["level", "triangles", "distance to the surface", "place by place", "from a distance of"];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    rows.extend(reports.iter().map(|report| {
+        let interval = match report.upper {
+            Some(upper) => format!("{} to {}", number(report.lower), upper_bound(upper)),
+            None => format!("{} at least", number(report.lower)),
+        };
+        let name = format!("LOD{}", report.lod);
+        let distance = number(report.switching_distance);
+        vec![name, thousands(report.triangles), interval, upper_bound(report.parametric), distance]
+    }));
+    let levels = counted(reports.len(), "level", "levels");
+    let of = arguments.output.display();
+    format!(
+        "{of}: {levels}, each off by {} px at most from its distance on\n{}",
+        arguments.pixels,
+        table(&rows)
+    )
+}

@@ -1,0 +1,333 @@
+//! `limitmesh refine --shared-topology`: the frames of an animation, refined with the same triangles.
+//!
+//! Takes files that share faces and tags; writes a file for each, and a report with what is proven of every frame.
+
+use std::time::Instant;
+
+use anyhow::Context;
+use limitmesh::mesh::{Tags, Trace};
+use limitmesh::refine::{Exact, ExactStop, Frame, Frames, exact_frames_observed};
+use limitmesh::{Mesh, PolygonSoup};
+use limitmesh_io::{Format, WriteOptions};
+
+use super::carried::Trail;
+use super::channels::Channels;
+use super::control::Control;
+use super::exact::{self, Goals};
+use super::normals::Normals;
+use super::{Refined, check, jobs, write};
+use crate::arguments::{Method, RefineArguments};
+use crate::failure::{Outcome, usage};
+use crate::format::{counted, number, seconds, upper_bound};
+use crate::input::{self, Input};
+use crate::output;
+use crate::progress::Progress;
+use crate::report::refinement::exact_stop_name;
+use crate::report::{ErrorReport, FrameReport, FramesReport, FramesSeconds, MethodReport, VERSION};
+
+/// Refines all inputs as frames of one mesh.
+pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::Result<Outcome> {
+    refuse(arguments)?;
+    // The report is about all of them.
+    let each = RefineArguments { report: None, ..arguments.clone() };
+    let jobs = jobs::jobs(&each)?;
+    check::together(&jobs)?;
+    let formats = jobs.iter().map(check::options).collect::<anyhow::Result<Vec<_>>>()?;
+    if let Some(Some(format)) = formats.iter().find(|format| format.is_none_or(is_scene)) {
+        return usage(format!("--shared-topology is for OBJ, PLY, OFF and STL files, not {format:?}"));
+    }
+    jobs::make_folders(&each)?;
+    jobs.iter().try_for_each(check::files)?;
+    if let Some(report) = &arguments.report {
+        output::check_writable(report)?;
+    }
+    let (first, frames) = read(&jobs, formats[0], progress)?;
+    let Input { mesh, diagnosis, face_inputs, name, channels, material_libraries, texture_files, .. } = first;
+    let files = [material_libraries, texture_files];
+    let channels = Channels::of_input(channels, files, (formats[0], &jobs[0]), progress);
+    let arguments_of_one = RefineArguments { exact: without_input_distance(arguments), ..jobs[0].clone() };
+    let count = mesh.vertex_count();
+    let control = Control::new((mesh, diagnosis, face_inputs), None, &arguments_of_one, progress)?;
+    let (control, diagonal) = (control.featured.mesh, control.diagonal);
+    if control.vertex_count() != count {
+        return usage(format!(
+            "{name}: corners of 180° or more are divided by where they are, which frames do not share; \
+             --concave-corners as-tagged leaves them"
+        ));
+    }
+    let goals = Goals::new(&arguments_of_one, &control, diagonal)?;
+    let start = Instant::now();
+    progress.stage(format!(
+        "refining {} for {}",
+        counted(control.face_count(), "triangle", "triangles"),
+        counted(frames.len(), "frame", "frames")
+    ));
+    let options = goals.options(&arguments_of_one).flat_regions(false).origins(true);
+    let scheme = arguments.scheme()?;
+    let found = exact_frames_observed(&control, scheme, &frames, &options, &mut progress.observer())?;
+    let refining = start.elapsed();
+    let start = Instant::now();
+    let carried = channels.refined(&control, &found.refined, &jobs[0])?;
+    let errors = write_all(&found, &frames, (&jobs, &formats), carried, progress)?;
+    let writing = start.elapsed();
+    let worst = errors.iter().map(|error| error.upper).fold(0.0, f64::max);
+    let mesh = &found.refined.mesh;
+    progress.note(format!(
+        "{}: {}, {} each ({}, {} for all frames; {})\n  within {} of the limit surface of every frame ({:.4} % of the diagonal of {name})",
+        counted(frames.len(), "frame", "frames"),
+        counted(mesh.face_count(), "triangle", "triangles"),
+        counted(mesh.vertex_count(), "vertex", "vertices"),
+        counted(found.refined.levels, "level", "levels"),
+        crate::format::bytes(found.replay.table_bytes()),
+        seconds(refining.as_secs_f64()),
+        upper_bound(worst),
+        100.0 * worst / diagonal,
+    ));
+    let is_beyond = goals.length().filter(|&length| worst > length);
+    let stop = match is_beyond {
+        Some(_) if found.refined.stop == ExactStop::Met => ExactStop::Rounding,
+        _ => found.refined.stop,
+    };
+    if let Some(path) = &arguments.report {
+        let frames = jobs.iter().zip(&errors).zip(&frames).map(|((job, error), positions)| FrameReport {
+            input: input::display_name(job.input()),
+            output: job.output_name(),
+            error: ErrorReport::new(error, diagonal_of(&control, positions)),
+        });
+        let report = FramesReport {
+            version: VERSION,
+            frames: frames.collect(),
+            parameters: exact::parameters(&arguments_of_one, &goals),
+            triangles: mesh.face_count(),
+            vertices: mesh.vertex_count(),
+            levels: found.refined.levels,
+            stop: exact_stop_name(stop),
+            table_bytes: found.replay.table_bytes(),
+            seconds: FramesSeconds { refine: refining.as_secs_f64(), write: writing.as_secs_f64() },
+        };
+        progress.clear();
+        output::write_json(path, &report)?;
+    }
+    Ok(match stop {
+        ExactStop::Met => Outcome::Done,
+        ExactStop::Rounding => Outcome::StoppedShort(format!(
+            "the tolerance of {} is finer than rounding leaves certain",
+            number(goals.length().unwrap_or_default())
+        )),
+        _ => Outcome::StoppedShort(format!(
+            "--max-levels {} was reached before the goals were met for every frame",
+            options.max_levels
+        )),
+    })
+}
+
+fn is_scene(format: Format) -> bool {
+    format.is_gltf() || format == Format::ThreeMf
+}
+
+/// Refuses what has no meaning for frames, or is not done for them.
+fn refuse(arguments: &RefineArguments) -> anyhow::Result<()> {
+    let given = [
+        ("--method other than exact", arguments.method != Method::Exact),
+        ("--triangles", arguments.exact.triangles.is_some()),
+        ("--balance", arguments.exact.balance),
+        ("--optimize", arguments.exact.optimize),
+        ("--dry-run", arguments.exact.dry_run),
+        ("--provenance", arguments.exact.provenance),
+        ("--split-normals", arguments.split_normals),
+        ("--picture", arguments.picture.is_some()),
+        ("--interpolate", arguments.interpolation.are_given()),
+    ];
+    if let Some((option, _)) = given.into_iter().find(|&(_, given)| given) {
+        return usage(format!("{option} does not go with --shared-topology"));
+    }
+    if let Some(option) = arguments.channels.given_tolerance() {
+        return usage(format!("{option} does not go with --shared-topology"));
+    }
+    Ok(())
+}
+
+/// How far results are from the inputs is not looked at.
+fn without_input_distance(arguments: &RefineArguments) -> crate::arguments::ExactArguments {
+    crate::arguments::ExactArguments { no_input_distance: true, ..arguments.exact.clone() }
+}
+
+/// The first frame, and the positions of all.
+///
+/// # Errors
+/// A file cannot be read, or has other faces or tags than the first.
+fn read(
+    jobs: &[RefineArguments],
+    format: Option<Format>,
+    progress: &Progress,
+) -> anyhow::Result<(Input, Vec<Vec<[f64; 3]>>)> {
+    let kept: &[&str] = if format.is_some_and(Normals::are_held) { &["normals"] } else { &[] };
+    let load =
+        |job: &RefineArguments| input::load_for(job.input(), &job.build, (kept, &job.channels), progress);
+    let first = load(&jobs[0])?;
+    // Polygons are cut into triangles by where their corners are: as in the first frame, in all.
+    let soup = input::read(jobs[0].input(), &jobs[0].build, progress)?.soup;
+    let (mesh, _, trace) = Mesh::from_soup_traced(&soup, &jobs[0].build.options()?)?;
+    let own = Own { name: &first.name, mesh: &mesh, vertices: vertices(&soup, &trace), soup: &soup };
+    if mesh.triangles() != first.mesh.triangles() || own.positions(&soup)? != first.mesh.positions() {
+        anyhow::bail!("{}: sheets are cut apart within edges there, which frames do not share", first.name);
+    }
+    let mut frames = vec![first.mesh.positions().to_vec()];
+    for job in &jobs[1..] {
+        let frame = input::read(job.input(), &job.build, progress)?;
+        if let Some(what) = own.difference(&frame.soup) {
+            anyhow::bail!("{}: {what}; frames must share faces and tags", frame.name);
+        }
+        frames.push(own.positions(&frame.soup).with_context(|| frame.name.clone())?);
+    }
+    let first = first.with_creases(jobs[0].features.creases_from)?;
+    Ok((first, frames))
+}
+
+/// The vertex of a soup that each corner of the mesh that was built of it is.
+fn vertices(soup: &PolygonSoup, trace: &Trace) -> Vec<u32> {
+    let of_corners: Vec<u32> = soup.faces.iter().flatten().copied().collect();
+    trace.corners.iter().map(|&corner| of_corners[corner as usize]).collect()
+}
+
+/// What all frames must share with the first.
+struct Own<'a> {
+    name: &'a str,
+    soup: &'a PolygonSoup,
+    mesh: &'a Mesh,
+    /// By corner of the mesh, the vertex in the file.
+    vertices: Vec<u32>,
+}
+
+impl Own<'_> {
+    /// The positions of the mesh's vertices in a frame.
+    fn positions(&self, frame: &PolygonSoup) -> anyhow::Result<Vec<[f64; 3]>> {
+        let mut found: Vec<Option<u32>> = vec![None; self.mesh.vertex_count()];
+        for (&corner, &vertex) in self.mesh.triangles().as_flattened().iter().zip(&self.vertices) {
+            let first = *found[corner as usize].get_or_insert(vertex);
+            let [a, b] = [first, vertex].map(|vertex| frame.positions[vertex as usize]);
+            if a != b {
+                anyhow::bail!("vertices {first} and {vertex} are apart, which are one in {}", self.name);
+            }
+        }
+        let place = |vertex: Option<u32>| vertex.map_or([0.0; 3], |vertex| frame.positions[vertex as usize]);
+        Ok(found.into_iter().map(place).collect())
+    }
+
+    /// The first thing in which what a frame's file holds differs from what the first one's does.
+    fn difference(&self, frame: &PolygonSoup) -> Option<String> {
+        let (name, first) = (self.name, self.soup);
+        let counts = [
+            ("vertex", "vertices", frame.positions.len(), first.positions.len()),
+            ("face", "faces", frame.faces.len(), first.faces.len()),
+        ];
+        for (one, many, own, theirs) in counts {
+            if own != theirs {
+                return Some(format!("{}, where {name} has {theirs}", counted(own, one, many)));
+            }
+        }
+        let differs = |(_, (own, theirs)): &(usize, (&[u32], &[u32]))| own != theirs;
+        if let Some((face, (own, theirs))) =
+            frame.faces.iter().zip(first.faces.iter()).enumerate().find(differs)
+        {
+            return Some(format!("face {face} is {own:?}, where that of {name} is {theirs:?}"));
+        }
+        let tags = |soup: &PolygonSoup| Tags { creases: soup.creases.clone(), corners: soup.corners.clone() };
+        tag_difference(name, &tags(first), &tags(frame))
+    }
+}
+
+fn tag_difference(name: &str, first: &Tags, frame: &Tags) -> Option<String> {
+    let counts = [
+        ("crease tag", "crease tags", frame.creases.len(), first.creases.len()),
+        ("corner tag", "corner tags", frame.corners.len(), first.corners.len()),
+    ];
+    for (one, many, own, theirs) in counts {
+        if own != theirs {
+            return Some(format!("{}, where {name} has {theirs}", counted(own, one, many)));
+        }
+    }
+    let crease = frame.creases.iter().zip(&first.creases).find(|(own, theirs)| own != theirs);
+    if let Some((own, theirs)) = crease {
+        let [a, b] = own.vertices;
+        return Some(format!(
+            "a crease of sharpness {} from vertex {a} to {b}, where {name} has one of {} from {} to {}",
+            own.sharpness, theirs.sharpness, theirs.vertices[0], theirs.vertices[1]
+        ));
+    }
+    let corner = frame.corners.iter().zip(&first.corners).find(|(own, theirs)| own != theirs);
+    corner.map(|(own, theirs)| {
+        format!(
+            "a corner of sharpness {} at vertex {}, where {name} has one of {} at {}",
+            own.sharpness, own.vertex, theirs.sharpness, theirs.vertex
+        )
+    })
+}
+
+/// Writes all frames; gives what is proven of them as they were written.
+fn write_all(
+    found: &Frames,
+    frames: &[Vec<[f64; 3]>],
+    (jobs, formats): (&[RefineArguments], &[Option<Format>]),
+    channels: Channels,
+    progress: &Progress,
+) -> anyhow::Result<Vec<limitmesh::refine::ErrorBounds>> {
+    let mut frame = Frame::default();
+    let mut refined = refined(&found.refined, channels);
+    let mut errors = Vec::with_capacity(frames.len());
+    for (number, (job, format)) in jobs.iter().zip(formats).enumerate() {
+        let (Some(path), &Some(format)) = (&job.output, format) else { continue };
+        progress.stage(format!("writing {}", job.output_name()));
+        found.replay.frame(&frames[number], &mut frame)?;
+        let mut moved = found.refined.moved_to(&frame)?;
+        let options = WriteOptions::default().ascii(job.ascii);
+        let rounding = limitmesh_io::rounding(format, &options, moved.mesh.positions());
+        let mut error = found.errors[number];
+        error.upper += rounding;
+        error.lower = (error.lower - rounding).max(0.0);
+        errors.push(error);
+        refined.normals = Normals::are_held(format).then(|| Normals::of_exact(&mut moved));
+        if number == 0 {
+            let notes = [
+                refined.normals.as_ref().and_then(|all| all.note(format, false)).map(str::to_owned),
+                refined.channels.note(format, &moved.mesh),
+            ];
+            notes.into_iter().flatten().for_each(|note| progress.note(note));
+        }
+        refined.mesh = moved.mesh;
+        write(path, format, job, &refined)?;
+    }
+    Ok(errors)
+}
+
+/// What is written, but for positions and normals.
+fn refined(found: &Exact, channels: Channels) -> Refined {
+    Refined {
+        mesh: found.mesh.clone(),
+        normals: None,
+        channels,
+        provenance: None,
+        trail: Trail::default(),
+        achieved: Vec::new(),
+        inverted: None,
+        how: String::new(),
+        report: MethodReport {
+            steps: Vec::new(),
+            rounds: Vec::new(),
+            levels: found.levels,
+            stop: exact_stop_name(found.stop),
+            needed_triangles: None,
+            error: None,
+            input_distance: None,
+            pixels: None,
+            open_cones: None,
+            attributes: Vec::new(),
+        },
+        outcome: Outcome::Done,
+    }
+}
+
+/// The diagonal of a frame's control mesh.
+fn diagonal_of(control: &Mesh, positions: &[[f64; 3]]) -> f64 {
+    limitmesh::Triangles { positions, triangles: control.triangles() }.diagonal()
+}

@@ -1,0 +1,223 @@
+//! Which way whole pieces of the limit surface look, for certain.
+//!
+//! Takes a piece and where somebody looks from; says that all of the piece shows its front, or its back, or that this is not known. A
+//! regular piece is decided by a cone of its normals ([`cone`]), else by signs of coefficients ([`normal_net`]); an irregular one by
+//! those of its parts, down to the part at an irregular vertex, whose normals are those of its characteristic map but for what dies away
+//! ([`tip`]). At vertices of other kinds nothing is known.
+
+mod cone;
+mod normal_net;
+mod tip;
+
+pub(crate) use cone::Cone;
+pub use cone::NormalCone;
+pub(crate) use normal_net::NormalNet;
+
+use crate::criterion::Viewpoint;
+use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::{Patch, Rules};
+use crate::vector::{DVec3, unit_or_zero, vector};
+
+/// Levels after which parts at irregular vertices are given up. What fades there dies away more slowly the more edges a vertex has.
+pub(crate) const DEEPEST: u32 = 24;
+
+/// Divisions into four of regular parts that may look one way, though their coefficients have both signs.
+const DIVISIONS: u32 = 2;
+
+/// Which side of a piece of the surface somebody sees. The front is where a face's corners run counter-clockwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Facing {
+    /// Every point shows its front.
+    Front,
+    /// Every point shows its back.
+    Back,
+    /// There are both, or it is not known.
+    Undecided,
+}
+
+/// What is known of a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Look {
+    /// All of it is seen from this side.
+    All(Side),
+    /// There are points of both.
+    Both,
+    Unknown,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Front,
+    Back,
+}
+
+impl Look {
+    /// By coefficients that are above 0 where the front is seen, each off by no more than `rounding`; those at `corners` are values.
+    fn by_signs(sides: &[f64], corners: [usize; 3], rounding: f64) -> Self {
+        let is_front = |&side: &f64| side > rounding && side < f64::INFINITY;
+        let is_back = |&side: &f64| side < -rounding && side > f64::NEG_INFINITY;
+        let at_corners = corners.map(|corner| sides[corner]);
+        match () {
+            () if sides.iter().all(is_front) => Self::All(Side::Front),
+            () if sides.iter().all(is_back) => Self::All(Side::Back),
+            () if at_corners.iter().any(is_front) && at_corners.iter().any(is_back) => Self::Both,
+            () => Self::Unknown,
+        }
+    }
+
+    /// That of two pieces together.
+    fn and(self, other: Self) -> Self {
+        match (self, other) {
+            _ if self == other => self,
+            (Self::All(_), Self::All(_)) | (Self::Both, _) | (_, Self::Both) => Self::Both,
+            _ => Self::Unknown,
+        }
+    }
+
+    fn is_known(self) -> bool {
+        self != Self::Unknown
+    }
+}
+
+impl From<Look> for Facing {
+    fn from(look: Look) -> Self {
+        match look {
+            Look::All(Side::Front) => Self::Front,
+            Look::All(Side::Back) => Self::Back,
+            Look::Both | Look::Unknown => Self::Undecided,
+        }
+    }
+}
+
+/// How a regular piece looks from there, by its own coefficients.
+fn of_net(net: &BezierTriangle, viewpoint: &Viewpoint) -> Look {
+    let Some(normals) = NormalNet::of(net) else { return Look::Unknown };
+    let eye = match *viewpoint {
+        Viewpoint::Direction(sight) => return normals.along(unit_or_zero(vector(sight))),
+        Viewpoint::Eye(eye) => vector(eye),
+    };
+    let by_cone = Cone::of(&normals).map(|cone| cone.look(net.0.into_iter(), viewpoint));
+    by_cone.filter(|look| look.is_known()).unwrap_or_else(|| normals.from(eye))
+}
+
+/// How a piece looks from there, of which parts at irregular vertices are looked at so many levels down.
+pub(crate) fn of_patch(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) -> Facing {
+    look(patch, rules, viewpoint, levels).into()
+}
+
+fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) -> Look {
+    let (at_once, levels) = match patch {
+        Patch::Regular(points) => (of_net(&BezierTriangle::of(points), viewpoint), levels.min(DIVISIONS)),
+        Patch::Extraordinary(patch) => {
+            let cone = tip::cone(patch, rules);
+            (cone.map_or(Look::Unknown, |cone| cone.look(patch.points(), viewpoint)), levels)
+        }
+        Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) => (Look::Unknown, levels),
+        Patch::Mesh(_) => (Look::Unknown, 0),
+    };
+    if at_once.is_known() || levels == 0 {
+        return at_once;
+    }
+    let refined = patch.refined(rules);
+    let mut all: Option<Look> = None;
+    // Where the middle part is not known, nothing is.
+    for part in [3, 0, 1, 2] {
+        let own = look(&refined.part(part), rules, viewpoint, levels - 1);
+        let together = all.map_or(own, |all| all.and(own));
+        if !matches!(together, Look::All(_)) {
+            return together;
+        }
+        all = Some(together);
+    }
+    all.unwrap_or(Look::Unknown)
+}
+
+/// A cone of the normals of a piece, and points whose hull holds it, added to those that there are.
+pub(crate) fn cone_of_patch(
+    patch: &Patch,
+    rules: &Rules<'_>,
+    points: &mut Vec<DVec3>,
+    levels: u32,
+) -> Option<Cone> {
+    match patch {
+        Patch::Regular(own) => {
+            let net = BezierTriangle::of(own);
+            points.extend(net.0);
+            return Cone::of(&NormalNet::of(&net)?);
+        }
+        Patch::Mesh(_) => return None,
+        Patch::Extraordinary(patch) => {
+            if let Some(cone) = tip::cone(patch, rules).filter(|cone| cone.sine < tip::NARROW) {
+                points.extend(patch.points());
+                return Some(cone);
+            }
+        }
+        Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) => {}
+    }
+    if levels == 0 {
+        return None;
+    }
+    let refined = patch.refined(rules);
+    let mut all: Option<Cone> = None;
+    for part in [3, 0, 1, 2] {
+        let cone = cone_of_patch(&refined.part(part), rules, points, levels - 1)?;
+        all = Some(all.map_or(Some(cone), |all| all.with(cone))?);
+    }
+    all
+}
+
+#[cfg(test)]
+mod test_nets {
+    use crate::patch::bezier_triangle::BezierTriangle;
+    use crate::vector::DVec3;
+
+    /// Numbers that are the same on every run.
+    pub(super) struct Numbers(u64);
+
+    impl Numbers {
+        pub(super) fn new(seed: u64) -> Self {
+            Self(seed)
+        }
+
+        /// From −1 to 1.
+        pub(super) fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+
+        pub(super) fn below_one(&mut self) -> f64 {
+            self.next().abs()
+        }
+
+        pub(super) fn vector(&mut self) -> DVec3 {
+            DVec3::new(self.next(), self.next(), self.next())
+        }
+
+        pub(super) fn in_triangle(&mut self) -> (f64, f64) {
+            let (u, v) = (self.below_one(), self.below_one());
+            if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) }
+        }
+    }
+
+    /// The net of a lattice whose points were moved by up to so much, turned somehow.
+    pub(super) fn piece(numbers: &mut Numbers, moved: f64) -> BezierTriangle {
+        // In the order of `Points`.
+        const LATTICE: [[f64; 2]; 12] = [
+            [0.0, -1.0],
+            [1.0, -1.0],
+            [2.0, -1.0],
+            [-1.0, 0.0],
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [2.0, 0.0],
+            [-1.0, 1.0],
+            [0.0, 1.0],
+            [1.0, 1.0],
+            [-1.0, 2.0],
+            [0.0, 2.0],
+        ];
+        let [a, b] = [numbers.vector(), numbers.vector()];
+        let points = LATTICE.map(|[x, y]| x * a + y * b + moved * numbers.vector());
+        BezierTriangle::of(&points)
+    }
+}

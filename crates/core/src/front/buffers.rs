@@ -1,0 +1,171 @@
+//! The triangles of a forest in slots, without gaps, and the same numbered by control face and path.
+
+use super::forest::{Forest, NONE};
+use crate::closure::{Diagonal, closure};
+use crate::vector::DVec3;
+
+/// Marks a slot whose triangle is gone.
+const NOBODY: u32 = u32::MAX;
+
+/// What an update changed in a front's buffers: what is not named is as it was.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Changes {
+    /// Vertices whose positions are new, by their numbers in [`positions`](super::Front::positions); ascending.
+    pub vertices: Vec<u32>,
+    /// Triangles that are new or have moved, by their numbers in [`triangles`](super::Front::triangles); ascending. Those beyond the end are gone.
+    pub triangles: Vec<u32>,
+    /// Nodes that were divided.
+    pub divided: usize,
+    /// Nodes that were merged.
+    pub merged: usize,
+}
+
+/// Triangles in slots.
+#[derive(Debug, Default)]
+pub(super) struct Buffers {
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// By slot, the node that the triangle is of, and which of its triangles it is.
+    owners: Vec<(u32, u8)>,
+    written: Vec<u32>,
+}
+
+impl Buffers {
+    /// Brings the triangles up to date, and tells which slots were written.
+    pub(super) fn update(&mut self, forest: &mut Forest<'_>) -> Vec<u32> {
+        let mut holes = core::mem::take(&mut forest.released);
+        holes.iter().for_each(|&slot| self.owners[slot as usize].0 = NOBODY);
+        for node in forest.take_touched() {
+            if forest.exists(node) && !forest.is_divided(node) {
+                self.leaf(forest, node, &mut holes);
+            }
+        }
+        // From the end, so that what fills a hole is none.
+        holes.sort_unstable_by(|a, b| b.cmp(a));
+        for hole in holes {
+            let last = self.triangles.len() - 1;
+            let (owner, number) = self.owners[last];
+            if hole as usize != last {
+                self.triangles[hole as usize] = self.triangles[last];
+                self.owners[hole as usize] = (owner, number);
+                forest.node_mut(owner).own[usize::from(number)] = hole;
+                self.written.push(hole);
+            }
+            self.triangles.pop();
+            self.owners.pop();
+        }
+        let mut written = core::mem::take(&mut self.written);
+        written.retain(|&slot| (slot as usize) < self.triangles.len());
+        written.sort_unstable();
+        written.dedup();
+        written
+    }
+
+    fn leaf(&mut self, forest: &mut Forest<'_>, node: u32, holes: &mut Vec<u32>) {
+        let (found, count) = covering(forest, node);
+        let own = forest.node_mut(node);
+        let before = usize::from(own.triangles);
+        for number in count..before {
+            let slot = own.own[number];
+            self.owners[slot as usize].0 = NOBODY;
+            holes.push(slot);
+        }
+        own.triangles = count as u8;
+        for (number, &triangle) in found[..count].iter().enumerate() {
+            if number < before {
+                let slot = own.own[number];
+                if self.triangles[slot as usize] != triangle {
+                    self.triangles[slot as usize] = triangle;
+                    self.written.push(slot);
+                }
+                continue;
+            }
+            let slot = holes.pop().unwrap_or_else(|| {
+                self.triangles.push([0; 3]);
+                self.owners.push((NOBODY, 0));
+                (self.triangles.len() - 1) as u32
+            });
+            self.triangles[slot as usize] = triangle;
+            self.owners[slot as usize] = (node, number as u8);
+            own.own[number] = slot;
+            self.written.push(slot);
+        }
+    }
+}
+
+/// The triangles that cover a leaf, four at most, and how many they are.
+fn covering(forest: &Forest<'_>, node: u32) -> ([[u32; 3]; 4], usize) {
+    let corners = forest.node(node).corners;
+    let splits = [0, 1, 2].map(|edge| forest.split_of(node, edge));
+    let split = (0..3).filter(|&edge| splits[edge].is_some()).fold(0, |bits, edge| bits | 1 << edge);
+    let label = |label: u8| match usize::from(label) {
+        corner @ 0..3 => corners[corner],
+        middle => splits[middle - 3].unwrap_or(NONE),
+    };
+    let diagonal = if u32::from(split).count_ones() == 2 {
+        let whole = (0..3).find(|&edge| splits[edge].is_none()).unwrap_or(0);
+        let at = |edge: usize| splits[edge].map_or(DVec3::ZERO, |vertex| forest.vertices.at(vertex));
+        let (start, end) = (forest.vertices.at(corners[whole]), forest.vertices.at(corners[(whole + 1) % 3]));
+        let (after, before) = (at((whole + 1) % 3), at((whole + 2) % 3));
+        if start.distance_squared(after) <= end.distance_squared(before) {
+            Diagonal::FromStart
+        } else {
+            Diagonal::FromEnd
+        }
+    } else {
+        Diagonal::FromStart
+    };
+    let mut found = [[0; 3]; 4];
+    let pattern = closure(split, diagonal).triangles();
+    found.iter_mut().zip(pattern).for_each(|(triangle, labels)| *triangle = labels.map(label));
+    (found, pattern.len())
+}
+
+/// Positions and triangles in an order that the forest alone decides: vertices of the control mesh first, the others as a walk over the
+/// control faces comes to them.
+pub(super) fn numbered(
+    forest: &Forest<'_>,
+    control_vertices: usize,
+    faces: usize,
+) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    let mut walk = Walk {
+        forest,
+        numbers: vec![NONE; forest.vertices.positions.len()],
+        positions: forest.vertices.positions[..control_vertices].to_vec(),
+        triangles: Vec::with_capacity(forest.triangles),
+    };
+    (0..control_vertices).for_each(|vertex| walk.numbers[vertex] = vertex as u32);
+    (0..faces as u32).for_each(|face| walk.node(face));
+    (walk.positions, walk.triangles)
+}
+
+struct Walk<'f, 'a> {
+    forest: &'f Forest<'a>,
+    numbers: Vec<u32>,
+    positions: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Walk<'_, '_> {
+    fn node(&mut self, node: u32) {
+        let children = self.forest.node(node).children;
+        if children == NONE {
+            let (found, count) = covering(self.forest, node);
+            for triangle in &found[..count] {
+                let numbered = triangle.map(|vertex| self.number(vertex));
+                self.triangles.push(numbered);
+            }
+            return;
+        }
+        (children..children + 4).for_each(|child| self.node(child));
+    }
+
+    fn number(&mut self, vertex: u32) -> u32 {
+        let number = &mut self.numbers[vertex as usize];
+        if *number == NONE {
+            *number = self.positions.len() as u32;
+            self.positions.push(self.forest.vertices.positions[vertex as usize]);
+        }
+        *number
+    }
+}

@@ -1,0 +1,420 @@
+//! A front: triangles that stand for a limit surface, refined and coarsened from one demand to the next.
+//!
+//! Müller and Jaeschke ("Adaptive subdivision curves and surfaces", 1998) refine and coarsen by local operations, so that every other
+//! adaptive mesh is reached from any given one. Here the result does not depend on where one comes from: the mesh for a demand is a
+//! function of the demand, to the byte, and an update looks only at what differs.
+//!
+//! Takes a control mesh and a scheme, and [`Demand`]s one after another: a distance, pixels in the pictures of cameras, a number of
+//! triangles. Gives a conforming mesh ([`Front::mesh`]), the same in buffers of which an update tells what it changed
+//! ([`Front::positions`], [`Front::triangles`], [`Changes`]), and a proven bound of its distance from the limit surface ([`Front::bound`]).
+//!
+//! Data flows from `pieces` (the surface over a node, its *value*: how far it is from the node's triangle, whatever the neighbours
+//! are) to `forest` (nodes, neighbours, vertices), which `least` brings from one least set of divided nodes to the next, where the proof
+//! is; `demand` says which nodes want to be divided and for how long that is certain while cameras move, `agenda` keeps nodes by
+//! when they are to be asked again; `buffers` has the triangles.
+//!
+//! ```
+//! use limitmesh::front::{Demand, Front};
+//! use limitmesh::{Mesh, scheme::Loop};
+//!
+//! let soup = limitmesh_models::find("torus").ok_or("no such model")?.soup();
+//! let (control, _) = Mesh::from_soup(&soup, &Default::default())?;
+//! let mut front = Front::new(&control, &Loop)?;
+//! let tolerance = 0.002 * control.diagonal();
+//! front.update(&Demand::tolerance(tolerance))?;
+//! assert!(front.bound() <= tolerance);
+//!
+//! // Coarser, and back again: the same bytes.
+//! let before = front.mesh()?;
+//! front.update(&Demand::tolerance(3.0 * tolerance))?;
+//! assert!(front.triangles().len() < before.face_count());
+//! let changes = front.update(&Demand::tolerance(tolerance))?;
+//! assert!(changes.divided > 0);
+//! assert_eq!(front.mesh()?, before);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod agenda;
+mod buffers;
+mod demand;
+mod forest;
+mod least;
+mod pieces;
+
+use agenda::Agenda;
+use buffers::Buffers;
+pub use buffers::Changes;
+pub use demand::Demand;
+use demand::Question;
+use forest::Forest;
+use least::{Watch, extend, loosen};
+
+use crate::criterion::CriterionError;
+use crate::limit::LimitError;
+use crate::limit_surface::LimitSurface;
+use crate::mesh::{Mesh, MeshError};
+use crate::scheme::Scheme;
+
+/// Why there is no front.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FrontError {
+    /// The scheme has no limit at the shape of some ring.
+    #[error(transparent)]
+    Limit(#[from] LimitError),
+    /// What is asked is out of range.
+    #[error(transparent)]
+    Demand(#[from] CriterionError),
+    /// The result is no mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}
+
+/// Triangles that stand for the limit surface of a control mesh, kept up to date with what is asked of them.
+pub struct Front<'a> {
+    forest: Forest<'a>,
+    buffers: Buffers,
+    changes: Changes,
+    /// What was asked for last.
+    demand: Option<Demand>,
+    question: Question,
+    /// Nodes by what they are measured, or by when cameras have moved so far that they are to be asked again.
+    agenda: Agenda,
+    /// Nodes by when cameras have moved and turned so far.
+    turning: Agenda,
+    /// Clocks of cameras that move, without turns and with them, and the length in which turns count.
+    clocks: [f64; 2],
+    length: f64,
+    /// Nodes that want, and were not divided since there would be too many triangles.
+    waiting: Vec<u32>,
+}
+
+/// Steps towards a limit that fits: the first, and the greatest.
+const FIRST_STEP: f64 = 1.05;
+const GREATEST_STEP: f64 = 2.0;
+
+/// Entries of nodes that are gone may be as many as others, and so many more, before they are swept away.
+const STALE: usize = 1 << 16;
+
+/// A ring's buckets are this part of the scene's length.
+const RING_PART: f64 = 1.0 / 1024.0;
+
+/// The clock starts anew at this many lengths: its digits are needed.
+const LAST_HOUR: f64 = 1e4;
+
+impl<'a> Front<'a> {
+    /// The control mesh's own triangles, with their corners on the limit surface.
+    ///
+    /// # Errors
+    /// The scheme has no limit at the shape of some ring.
+    pub fn new(control: &'a Mesh, scheme: &'a dyn Scheme) -> Result<Self, FrontError> {
+        let surface = LimitSurface::without_normals(control, scheme)?;
+        let length = control.diagonal();
+        let forest = Forest::of(surface);
+        if let Some(why) = forest.surface().failure() {
+            return Err(why.clone().into());
+        }
+        let question = Question { eyes: None, limit: f64::INFINITY, max_levels: demand::MOST_LEVELS };
+        let agenda = Agenda::ladder(length);
+        let (changes, waiting) = (Changes::default(), Vec::new());
+        let buffers = Buffers::default();
+        let mut front = Self {
+            forest,
+            buffers,
+            changes,
+            demand: None,
+            question,
+            agenda,
+            turning: Agenda::ring(length),
+            clocks: [0.0; 2],
+            length,
+            waiting,
+        };
+        front.ask_all(front.question.clone());
+        front.finish((0, 0));
+        Ok(front)
+    }
+
+    /// Brings the front to another demand. What it is then depends on the demand alone; only what differs is looked at, and is told.
+    ///
+    /// Everything is looked at once where a demand is of another kind than the one before: cameras after a tolerance, other
+    /// pictures or another limit in pixels, other levels, and a number of triangles that cameras' limit does not fit.
+    ///
+    /// # Errors
+    /// The demand is out of range, or a stencil failed.
+    pub fn update(&mut self, demand: &Demand) -> Result<&Changes, FrontError> {
+        demand.check()?;
+        if self.demand.as_ref() == Some(demand) {
+            self.changes = Changes::default();
+            return Ok(&self.changes);
+        }
+        self.demand = Some(demand.clone());
+        let question = Question::of(demand);
+        let mut counts = (0, 0);
+        let most = demand.most.unwrap_or(demand::MOST_TRIANGLES);
+        // What is asked for is mostly near what there is; what nobody asked for begins with the coarsest mesh.
+        if demand.most.is_some() || !self.ask(question.clone(), most, &mut counts) {
+            let greatest = self.forest.greatest(&question);
+            let is_near = demand.most.is_some() && self.question.eyes.is_some() == question.eyes.is_some();
+            let start = if is_near { self.question.limit.min(greatest) } else { greatest };
+            self.fit(question, start, most, &mut counts);
+        }
+        self.finish(counts);
+        match self.forest.surface().failure() {
+            Some(why) => Err(why.clone().into()),
+            None => Ok(&self.changes),
+        }
+    }
+
+    /// The least limit from the question's on whose triangles are no more than `most`, in growing steps from `start` and then by
+    /// halving the numbers between one that does not fit and one that does: a greater limit never takes more.
+    fn fit(&mut self, question: Question, start: f64, most: usize, counts: &mut (usize, usize)) {
+        let mut fits = |limit: f64| self.ask_kept(Question { limit, ..question.clone() }, most, counts);
+        let least = question.limit;
+        let (mut next, mut factor) = (start.min(f64::MAX).max(least), FIRST_STEP);
+        let (low, high);
+        if fits(next) {
+            loop {
+                let fitting = next;
+                if fitting <= least {
+                    return;
+                }
+                next = (next / factor).max(least);
+                if !fits(next) {
+                    (low, high) = (next, fitting);
+                    break;
+                }
+                factor = (factor * factor).min(GREATEST_STEP);
+            }
+        } else {
+            loop {
+                let unfit = next;
+                next = if next > 0.0 { next * factor } else { f64::INFINITY };
+                // Nothing is divided where any distance will do.
+                if fits(next) || next.is_infinite() {
+                    (low, high) = (unfit, next);
+                    break;
+                }
+                factor = (factor * factor).min(GREATEST_STEP);
+            }
+        }
+        let [mut low, mut high] = [low, high].map(f64::to_bits);
+        while high - low > 1 {
+            let middle = low + (high - low) / 2;
+            if fits(f64::from_bits(middle)) { high = middle } else { low = middle }
+        }
+        fits(f64::from_bits(high));
+    }
+
+    /// Answers a question: `false` if that would take more triangles than `most`, whose front is then one of some greater limit.
+    fn ask(&mut self, question: Question, most: usize, counts: &mut (usize, usize)) -> bool {
+        if question == self.question && self.waiting.is_empty() {
+            return self.forest.triangles <= most;
+        }
+        if question.eyes.is_none() {
+            return self.ask_kept(question, most, counts);
+        }
+        let moved = question.moved(&self.question, self.length);
+        let is_known = self.agenda.is_ring() && question.max_levels == self.question.max_levels;
+        if !(is_known && self.clocks[1] + moved[1] < LAST_HOUR * self.length) {
+            self.agenda = Agenda::ring(RING_PART * self.length);
+            self.turning = Agenda::ring(RING_PART * self.length);
+            self.clocks = [0.0; 2];
+            let (lost, gained) = self.ask_all(question);
+            return self.settle(lost, gained, most, counts);
+        }
+        self.question = question;
+        let mut due = Vec::new();
+        let extents = &self.forest.extents;
+        let is_current = |node: u32, stamp| extents[node as usize].stamp == stamp;
+        for (clock, moved) in self.clocks.iter_mut().zip(moved) {
+            *clock += moved;
+        }
+        self.agenda.turn_to(self.clocks[0], is_current, &mut due);
+        self.turning.turn_to(self.clocks[1], is_current, &mut due);
+        let (mut lost, mut gained) = (Vec::new(), Vec::new());
+        for node in due {
+            let wants = self.asked(node);
+            self.note(node, wants, &mut lost, &mut gained);
+        }
+        self.settle(lost, gained, most, counts)
+    }
+
+    /// The same by measures that are kept for all nodes: for distances, and while a limit is searched for.
+    fn ask_kept(&mut self, question: Question, most: usize, counts: &mut (usize, usize)) -> bool {
+        let is_known = !self.agenda.is_ring()
+            && question.max_levels == self.question.max_levels
+            && question.eyes == self.question.eyes;
+        if !is_known {
+            self.agenda = Agenda::ladder(self.forest.greatest(&question).min(f64::MAX));
+            self.turning = Agenda::ring(self.length);
+            let (lost, gained) = self.ask_all(question);
+            return self.settle(lost, gained, most, counts);
+        }
+        let (low, high) = (question.limit.min(self.question.limit), question.limit.max(self.question.limit));
+        self.question = question;
+        let mut asked = Vec::new();
+        let extents = &self.forest.extents;
+        let is_current = |node: u32, stamp| extents[node as usize].stamp == stamp;
+        self.agenda.visit_between(low, high, is_current, |node| asked.push(node));
+        let (mut lost, mut gained) = (Vec::new(), Vec::new());
+        for node in asked {
+            let wants = self.question.measure(&self.forest.extents[node as usize]) > self.question.limit;
+            self.note(node, wants, &mut lost, &mut gained);
+        }
+        self.settle(lost, gained, most, counts)
+    }
+
+    fn note(&mut self, node: u32, wants: bool, lost: &mut Vec<u32>, gained: &mut Vec<u32>) {
+        let before = core::mem::replace(&mut self.forest.extents[node as usize].wants, wants);
+        if before != wants {
+            if wants { gained.push(node) } else { lost.push(node) }
+        }
+    }
+
+    /// Asks all nodes another question.
+    fn ask_all(&mut self, question: Question) -> (Vec<u32>, Vec<u32>) {
+        self.question = question;
+        let (mut lost, mut gained) = (Vec::new(), Vec::new());
+        for node in 0..self.forest.nodes.len() as u32 {
+            if self.forest.exists(node) {
+                let wants = self.asked(node);
+                self.note(node, wants, &mut lost, &mut gained);
+            }
+        }
+        (lost, gained)
+    }
+
+    /// Whether a node wants; it is put down for when it is to be asked again.
+    fn asked(&mut self, node: u32) -> bool {
+        let mut asking = Asking {
+            question: &self.question,
+            agendas: [&mut self.agenda, &mut self.turning],
+            clocks: self.clocks,
+            length: self.length,
+            most: usize::MAX,
+        };
+        asking.arrived(&self.forest, node)
+    }
+
+    fn settle(
+        &mut self,
+        lost: Vec<u32>,
+        mut gained: Vec<u32>,
+        most: usize,
+        counts: &mut (usize, usize),
+    ) -> bool {
+        // First what goes, so that triangles are not counted that are about to.
+        let mut loosened = loosen(&mut self.forest, lost);
+        gained.append(&mut self.waiting);
+        gained.append(&mut loosened.waiting);
+        gained.retain(|&node| self.forest.exists(node) && self.forest.wants(node));
+        let mut asking = Asking {
+            question: &self.question,
+            agendas: [&mut self.agenda, &mut self.turning],
+            clocks: self.clocks,
+            length: self.length,
+            most,
+        };
+        let mut extended = extend(&mut self.forest, &gained, &mut asking);
+        counts.0 += extended.divided;
+        counts.1 += loosened.merged;
+        self.waiting.append(&mut extended.waiting);
+        let extents = &self.forest.extents;
+        if self.agenda.len() + self.turning.len() > 2 * extents.len() + STALE {
+            let is_current = |node: u32, stamp| extents[node as usize].stamp == stamp;
+            self.agenda.sweep(is_current);
+            self.turning.sweep(is_current);
+        }
+        self.waiting.is_empty() && self.forest.triangles <= most
+    }
+
+    fn finish(&mut self, (divided, merged): (usize, usize)) {
+        let triangles = self.buffers.update(&mut self.forest);
+        let mut vertices = core::mem::take(&mut self.forest.vertices.written);
+        vertices.sort_unstable();
+        vertices.dedup();
+        self.changes = Changes { vertices, triangles, divided, merged };
+    }
+
+    /// The vertices' positions, on the limit surface: those of the control mesh, then others in places that stay theirs as long as they
+    /// are needed. Some may be of no triangle.
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.forest.vertices.positions
+    }
+
+    /// The triangles' corners, in no order.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.buffers.triangles
+    }
+
+    /// What the last update changed.
+    pub fn changes(&self) -> &Changes {
+        &self.changes
+    }
+
+    /// The mesh, in an order of its own: the control mesh's vertices, then others as one comes to them on a way over the control faces.
+    ///
+    /// # Errors
+    /// A coordinate is not finite.
+    pub fn mesh(&self) -> Result<Mesh, FrontError> {
+        let control = self.forest.surface().control();
+        let (positions, triangles) =
+            buffers::numbered(&self.forest, control.vertex_count(), control.face_count());
+        Ok(Mesh::from_triangles(positions, triangles)?)
+    }
+
+    /// How far mesh and limit surface are from each other at most, both ways and place by place, in the control mesh's units: proven for schemes of the Loop family,
+    /// an estimate from samples for others.
+    pub fn bound(&self) -> f64 {
+        self.forest.worst(|extent| extent.value)
+    }
+
+    /// How many pixels that is at most in the pictures of the cameras that were asked for; `None` where there are none.
+    pub fn pixels(&self) -> Option<f64> {
+        self.question.eyes.as_ref()?;
+        Some(self.forest.worst(|extent| self.question.measure(extent)))
+    }
+
+    /// The distance, or number of pixels, that all triangles keep as far as levels allow: what was asked, or what so many triangles
+    /// allow.
+    pub fn limit(&self) -> f64 {
+        self.question.limit
+    }
+
+    /// Whether the distance is proven.
+    pub fn is_certified(&self) -> bool {
+        self.forest.surface().rules().is_certified()
+    }
+}
+
+/// Asks nodes, and keeps them for later.
+struct Asking<'q> {
+    question: &'q Question,
+    agendas: [&'q mut Agenda; 2],
+    clocks: [f64; 2],
+    length: f64,
+    most: usize,
+}
+
+impl Watch for Asking<'_> {
+    fn arrived(&mut self, forest: &Forest<'_>, node: u32) -> bool {
+        let extent = &forest.extents[node as usize];
+        if u32::from(extent.level) >= self.question.max_levels {
+            return false;
+        }
+        if self.agendas[0].is_ring() {
+            let answer = self.question.answer(extent, self.length);
+            let clock = usize::from(answer.turns);
+            self.agendas[clock].put(self.clocks[clock] + answer.margin, node, extent.stamp);
+            return answer.wants;
+        }
+        let measure = self.question.measure(extent);
+        self.agendas[0].put(measure, node, extent.stamp);
+        measure > self.question.limit
+    }
+
+    fn goes_on(&mut self, forest: &Forest<'_>) -> bool {
+        forest.triangles <= self.most
+    }
+}

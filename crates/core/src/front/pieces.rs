@@ -1,0 +1,240 @@
+//! The limit surface over nodes: points in the middles of edges, and how far it is from a node's triangle.
+//!
+//! A node over part of a regular piece keeps the piece's number and its place there; any other its own piece. Values belong to nodes
+//! alone: of parts of regular pieces by second derivatives ([`SecondDerivatives`]); of others what [`Sheet::off_linear`] finds for the
+//! node's triangle, and for closing triangles how far the middles of edges are from those of the triangle, since linear interpolation
+//! of these differences is no greater than they are.
+
+use core::array::from_fn;
+
+use crate::certificate::{SecondDerivatives, Sheet, SubTriangle};
+use crate::index::FaceId;
+use crate::limit_surface::LimitSurface;
+use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::{Patch, Points, Quartic};
+use crate::vector::DVec3;
+
+/// Values of irregular pieces are tight down to this part of their size.
+const TIGHT: f64 = 1e-6;
+
+/// A node's place in the domain of a regular piece: its first corner, and its edges' length there, negative for nodes that stand on
+/// their heads.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Spot {
+    u: f64,
+    v: f64,
+    size: f64,
+}
+
+impl Spot {
+    const WHOLE: Self = Self { u: 0.0, v: 0.0, size: 1.0 };
+
+    fn child(self, child: usize) -> Self {
+        let Self { u, v, size } = self;
+        let half = 0.5 * size;
+        match child {
+            0 => Self { u, v, size: half },
+            1 => Self { u: u + half, v, size: half },
+            2 => Self { u, v: v + half, size: half },
+            _ => Self { u: u + half, v: v + half, size: -half },
+        }
+    }
+
+    fn corners(self) -> [[f64; 2]; 3] {
+        let Self { u, v, size } = self;
+        [[u, v], [u + size, v], [u, v + size]]
+    }
+
+    fn middle(self, edge: usize) -> [f64; 2] {
+        let Self { u, v, size } = self;
+        let half = 0.5 * size;
+        [[u + half, v], [u + half, v + half], [u, v + half]][edge]
+    }
+}
+
+/// Where the surface over a node is kept.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Ground {
+    /// Nowhere: a control face that is not divided.
+    Control,
+    /// Part of a regular piece.
+    Regular(u32, Spot),
+    /// A piece of its own.
+    General(u32),
+}
+
+/// A piece that is not regular, and the points in the middles of its edges.
+#[derive(Debug)]
+struct General {
+    sheet: Sheet,
+    middles: [DVec3; 3],
+}
+
+/// What stands in places that are numbered, freed and taken again.
+#[derive(Debug)]
+struct Shelf<T> {
+    all: Vec<Option<T>>,
+    free: Vec<u32>,
+}
+
+impl<T> Default for Shelf<T> {
+    fn default() -> Self {
+        Self { all: Vec::new(), free: Vec::new() }
+    }
+}
+
+impl<T> Shelf<T> {
+    fn put(&mut self, item: T) -> u32 {
+        if let Some(place) = self.free.pop() {
+            self.all[place as usize] = Some(item);
+            return place;
+        }
+        self.all.push(Some(item));
+        (self.all.len() - 1) as u32
+    }
+
+    fn take(&mut self, place: u32) {
+        self.all[place as usize] = None;
+        self.free.push(place);
+    }
+
+    fn get(&self, place: u32) -> Option<&T> {
+        self.all.get(place as usize)?.as_ref()
+    }
+}
+
+/// The pieces of a limit surface over the nodes that there are.
+pub(super) struct Pieces<'a> {
+    surface: LimitSurface<'a>,
+    regular: Shelf<Box<Quartic>>,
+    general: Shelf<Box<General>>,
+}
+
+/// A part of a node's surface, and its value.
+pub(super) type Part = (Ground, f64);
+
+impl<'a> Pieces<'a> {
+    pub(super) fn of(surface: LimitSurface<'a>) -> Self {
+        Self { surface, regular: Shelf::default(), general: Shelf::default() }
+    }
+
+    pub(super) fn surface(&self) -> &LimitSurface<'a> {
+        &self.surface
+    }
+
+    /// The value of a control face.
+    pub(super) fn control_value(&self, face: u32) -> f64 {
+        let (sheet, rules) = self.surface.sheet(FaceId(face));
+        match &sheet.patch {
+            Patch::Regular(points) => {
+                SecondDerivatives::of(&quartic(points)).off_triangles(Spot::WHOLE.corners(), 1.0)
+            }
+            _ => {
+                let refined = sheet.patch.refined(rules);
+                self.general_value(&sheet, from_fn(|edge| refined.middle(edge).position))
+            }
+        }
+    }
+
+    fn general_value(&self, sheet: &Sheet, middles: [DVec3; 3]) -> f64 {
+        let [a, b, c] = sheet.corners;
+        let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        let off = sheet.off_linear(SubTriangle::Whole, TIGHT * size, self.surface.rules());
+        let straight = [a + b, b + c, c + a].map(|sum| 0.5 * sum);
+        let apart = (0..3).map(|edge| middles[edge].distance(straight[edge]));
+        let value = apart
+            .fold(0.0, |most: f64, apart| if apart > most || apart.is_nan() { apart } else { most })
+            + off;
+        if value.is_nan() { f64::INFINITY } else { value }
+    }
+
+    /// The surface over a control face that is to be divided.
+    pub(super) fn control(&mut self, face: u32) -> Ground {
+        let (sheet, rules) = self.surface.sheet(FaceId(face));
+        match &sheet.patch {
+            Patch::Regular(points) => {
+                Ground::Regular(self.regular.put(Box::new(quartic(points))), Spot::WHOLE)
+            }
+            _ => {
+                let refined = sheet.patch.refined(rules);
+                let middles = from_fn(|edge| refined.middle(edge).position);
+                Ground::General(self.general.put(Box::new(General { sheet, middles })))
+            }
+        }
+    }
+
+    /// The four parts of a node's surface.
+    pub(super) fn parts(&mut self, ground: Ground) -> [Part; 4] {
+        match ground {
+            Ground::Control => [(Ground::Control, f64::INFINITY); 4],
+            Ground::Regular(piece, spot) => {
+                let derivatives = self.regular.get(piece).map(|piece| SecondDerivatives::of(piece));
+                from_fn(|child| {
+                    let own = spot.child(child);
+                    let value = derivatives.as_ref().map(|all| all.off_triangles(own.corners(), own.size));
+                    (Ground::Regular(piece, own), value.unwrap_or(f64::INFINITY))
+                })
+            }
+            Ground::General(piece) => {
+                let Some(piece) = self.general.get(piece) else {
+                    return [(Ground::Control, f64::INFINITY); 4];
+                };
+                piece.sheet.children(self.surface.rules()).map(|sheet| self.part(sheet))
+            }
+        }
+    }
+
+    fn part(&mut self, sheet: Sheet) -> Part {
+        if let Patch::Regular(points) = &sheet.patch {
+            let piece = quartic(points);
+            let value = SecondDerivatives::of(&piece).off_triangles(Spot::WHOLE.corners(), 1.0);
+            return (Ground::Regular(self.regular.put(Box::new(piece)), Spot::WHOLE), value);
+        }
+        let refined = sheet.patch.refined(self.surface.rules());
+        let middles = from_fn(|edge| refined.middle(edge).position);
+        let value = self.general_value(&sheet, middles);
+        drop(refined);
+        (Ground::General(self.general.put(Box::new(General { sheet, middles }))), value)
+    }
+
+    /// Gives back the piece of a node that is its own.
+    pub(super) fn give_back(&mut self, ground: Ground) {
+        match ground {
+            Ground::Control => {}
+            Ground::Regular(piece, _) => self.regular.take(piece),
+            Ground::General(piece) => self.general.take(piece),
+        }
+    }
+
+    /// The limit positions of a control face's corners.
+    pub(super) fn control_corners(&self, face: u32) -> [DVec3; 3] {
+        self.surface.corner_positions(FaceId(face))
+    }
+
+    /// The point in the middle of a node's edge, as the piece over the node has it.
+    pub(super) fn middle(&self, ground: Ground, face: u32, edge: usize) -> DVec3 {
+        match ground {
+            Ground::Control => {
+                let (sheet, rules) = self.surface.sheet(FaceId(face));
+                match &sheet.patch {
+                    Patch::Regular(points) => at(&quartic(points), Spot::WHOLE.middle(edge)),
+                    _ => sheet.patch.refined(rules).middle(edge).position,
+                }
+            }
+            Ground::Regular(piece, spot) => {
+                self.regular.get(piece).map_or(DVec3::NAN, |piece| at(piece, spot.middle(edge)))
+            }
+            Ground::General(piece) => self.general.get(piece).map_or(DVec3::NAN, |piece| piece.middles[edge]),
+        }
+    }
+}
+
+fn quartic(points: &Points) -> Quartic {
+    Quartic::of(&BezierTriangle::of(points), 0)
+}
+
+/// A point of a piece: the same to the bit for whoever asks.
+fn at(piece: &Quartic, [u, v]: [f64; 2]) -> DVec3 {
+    let [[x], [y], [z]] = piece.points_at(&[u], &[v], 3);
+    DVec3::new(x, y, z)
+}

@@ -1,0 +1,47 @@
+//! Which way the surface over whole control faces looks, and cones of its normals.
+
+use super::LimitSurface;
+use crate::criterion::Viewpoint;
+use crate::facing::{self, Facing, NormalCone};
+use crate::index::FaceId;
+use crate::patch::root_patch;
+
+impl LimitSurface<'_> {
+    /// Whether all of the surface over a control face shows its front to a viewer, or its back: never wrong, and
+    /// [undecided](Facing::Undecided) where both are seen, where it is a close thing, where the surface has no tangent plane, for schemes
+    /// outside the Loop family and on faces that there are not.
+    ///
+    /// ```
+    /// use limitmesh::criterion::Viewpoint;
+    /// use limitmesh::{FaceId, Facing, LimitSurface, Mesh, scheme::Loop};
+    ///
+    /// let mesh = Mesh::from_triangles(
+    ///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],
+    ///     vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]],
+    /// )?;
+    /// let surface = LimitSurface::new(&mesh, &Loop)?;
+    /// // The first face looks along (1, 1, −1).
+    /// assert_eq!(surface.facing(FaceId(0), &Viewpoint::Eye([9.0, 9.0, -9.0])), Facing::Front);
+    /// assert_eq!(surface.facing(FaceId(0), &Viewpoint::Direction([1.0, 1.0, -1.0])), Facing::Back);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn facing(&self, face: FaceId, viewpoint: &Viewpoint) -> Facing {
+        if face.index() >= self.mesh.face_count() {
+            return Facing::Undecided;
+        }
+        let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
+        facing::of_patch(&patch, &self.rules, viewpoint, facing::DEEPEST)
+    }
+
+    /// A cone that holds all normals of the surface over a control face, with the apexes by which one product tells how it looks from
+    /// anywhere; `None` where the normals take up more than a half space, or are not known to take up less.
+    pub fn normal_cone(&self, face: FaceId) -> Option<NormalCone> {
+        if face.index() >= self.mesh.face_count() {
+            return None;
+        }
+        let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
+        let mut points = Vec::new();
+        let cone = facing::cone_of_patch(&patch, &self.rules, &mut points, facing::DEEPEST)?;
+        Some(NormalCone::of(&cone, points.into_iter()))
+    }
+}

@@ -1,0 +1,273 @@
+//! Where rays meet a limit surface (Kobbelt, Daubert, Seidel, "Ray Tracing of Subdivision Surfaces", 1998).
+//!
+//! Their envelopes of the control mesh become hulls of pieces: a ray that passes beside the hull of a piece's control points misses it.
+//! A regular piece whose projection along the ray is injective ([`planar`]) is met once at most, and Newton's method finds where; any
+//! other is divided, until it is missed, or met for certain, or so small that it counts as grazed. Nothing is passed over in any other
+//! way, so no hit is missed. Boxes of pieces stand in a tree.
+
+mod merge;
+mod pieces;
+mod planar;
+mod search;
+
+use crate::geometry::box_tree::{Bounds, BoxTree, NO_BOUNDS, grown};
+use crate::index::FaceId;
+use crate::limit_surface::LimitSurface;
+use crate::parallel::{self, Cancelled};
+use crate::progress::{Observer, SharedWatch, Stage, uncancelled};
+use crate::vector::vector;
+use pieces::{Piece, Scale};
+use search::{Found, RayFrame, RaySearch};
+
+/// Control faces whose pieces are made together.
+const BLOCK: usize = 64;
+
+/// The least part of the surface's size that a tolerance can be: rounding may hide what is less.
+const LEAST_TOLERANCE: f64 = 1e-12;
+
+/// The tolerance where none is asked for, as a part of the surface's size.
+const TOLERANCE: f64 = 1e-10;
+
+/// A half line: all `origin + t · direction` with t from 0 on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it begins, in the control mesh's units.
+    pub origin: [f64; 3],
+    /// Where it goes, of any length but 0.
+    pub direction: [f64; 3],
+}
+
+/// What of a ray counts, and how exactly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct RayOptions {
+    /// The least t that counts; may be below 0. Default: 0.
+    pub from: f64,
+    /// The greatest t that counts. Default: infinite.
+    pub to: f64,
+    /// A length in the control mesh's units: a ray that touches the surface without being told to cross it within so little of it grazes
+    /// it. Default: 1e-10 of the control mesh's diagonal.
+    pub tolerance: Option<f64>,
+}
+
+impl Default for RayOptions {
+    fn default() -> Self {
+        Self { from: 0.0, to: f64::INFINITY, tolerance: None }
+    }
+}
+
+impl RayOptions {
+    /// The range of t that counts.
+    pub fn between(self, from: f64, to: f64) -> Self {
+        Self { from, to, ..self }
+    }
+
+    /// Sets [`Self::tolerance`].
+    pub fn tolerance(self, tolerance: f64) -> Self {
+        Self { tolerance: Some(tolerance), ..self }
+    }
+}
+
+/// How a ray meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Crossing {
+    /// Through the front, where a face's corners run counter-clockwise.
+    Entering,
+    /// Through the back.
+    Leaving,
+    /// It touches the surface, or comes within a few tolerances of it, or crosses it and back within so little; or it meets a vertex at
+    /// which the surface has no tangent plane.
+    Grazing,
+}
+
+/// A point where a ray meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Hit {
+    /// How far along the ray, in lengths of its direction.
+    pub t: f64,
+    /// The control face, one of those that share the point.
+    pub face: FaceId,
+    /// Where on it, as weights of its corners.
+    pub barycentric: [f64; 3],
+    /// The point of the surface, in the control mesh's units.
+    pub position: [f64; 3],
+    /// The surface's unit normal there, on the side of the face; zero where there is none.
+    pub normal: [f64; 3],
+    /// How it is met.
+    pub crossing: Crossing,
+}
+
+/// Why rays cannot be followed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RayError {
+    /// Hulls are known for schemes of Loop's family alone.
+    #[error("rays are followed to surfaces of the Loop family, not of the scheme '{name}'")]
+    Scheme {
+        /// The scheme's name.
+        name: String,
+    },
+    /// A limit stencil failed.
+    #[error(transparent)]
+    Limit(#[from] crate::limit::LimitError),
+}
+
+/// A limit surface, ready for many rays.
+///
+/// ```
+/// use limitmesh::{Crossing, LimitSurface, Mesh, Ray, RayCaster, scheme::Loop};
+///
+/// let mesh = Mesh::from_triangles(
+///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],
+///     vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]],
+/// )?;
+/// let surface = LimitSurface::new(&mesh, &Loop)?;
+/// let rays = RayCaster::new(&surface)?;
+/// let hits = rays.intersections(&Ray { origin: [0.0, 0.0, 5.0], direction: [0.0, 0.0, -1.0] }, &Default::default());
+/// // Through the middles of two opposite edges, which are 7/24 from the tetrahedron's centre.
+/// assert_eq!(hits.len(), 2);
+/// assert!((hits[0].t - (5.0 - 7.0 / 24.0)).abs() < 1e-9 && hits[0].crossing == Crossing::Entering);
+/// assert!((hits[1].t - (5.0 + 7.0 / 24.0)).abs() < 1e-9 && hits[1].crossing == Crossing::Leaving);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct RayCaster<'a> {
+    surface: &'a LimitSurface<'a>,
+    scale: Scale,
+    pieces: Vec<Piece>,
+    tree: BoxTree,
+}
+
+impl<'a> RayCaster<'a> {
+    /// Prepares the search: some kilobytes a control face.
+    ///
+    /// # Errors
+    /// A scheme outside the Loop family; a stencil that failed.
+    pub fn new(surface: &'a LimitSurface<'a>) -> Result<Self, RayError> {
+        if !surface.rules().is_certified() {
+            return Err(RayError::Scheme { name: surface.rules().scheme().name().to_owned() });
+        }
+        let mesh = surface.control();
+        let scale = Scale::of(mesh.positions().iter().map(|&p| vector(p)).fold(NO_BOUNDS, grown));
+        let faces = mesh.face_count();
+        let of_faces = |face: usize| pieces::pieces(surface, &scale, FaceId(face as u32), faces);
+        let blocks = parallel::pieces_of(faces, BLOCK, |block| block.flat_map(of_faces).collect::<Vec<_>>());
+        let (boxes, pieces): (Vec<Bounds>, Vec<Piece>) = blocks.into_iter().flatten().unzip();
+        if let Some(why) = surface.failure() {
+            return Err(why.clone().into());
+        }
+        Ok(Self { surface, scale, tree: BoxTree::of(&boxes), pieces })
+    }
+
+    /// All points where a ray meets the surface, in their order along it. None is missed; what lies on an edge or a vertex is told once.
+    /// Rays without a direction, or that are not finite, meet nothing.
+    pub fn intersections(&self, ray: &Ray, options: &RayOptions) -> Vec<Hit> {
+        let Some((search, tolerance)) = self.searched(ray, options, false) else { return Vec::new() };
+        let frame = search.frame;
+        let found = merge::merged(search.found, self.surface.control().triangles(), tolerance);
+        found.iter().map(|found| self.hit(found, &frame)).collect()
+    }
+
+    /// The first of the [`Self::intersections`], found without the others.
+    pub fn first(&self, ray: &Ray, options: &RayOptions) -> Option<Hit> {
+        let (search, _) = self.searched(ray, options, true)?;
+        let least = |a: &&Found, b: &&Found| a.depth.total_cmp(&b.depth).then(a.face.cmp(&b.face));
+        search.found.iter().min_by(least).map(|found| self.hit(found, &search.frame))
+    }
+
+    /// [`Self::first`] of many rays, in order, on all threads.
+    pub fn first_of_all(&self, rays: &[Ray], options: &RayOptions) -> Vec<Option<Hit>> {
+        uncancelled(|observer| self.first_of_all_observed(rays, options, observer))
+    }
+
+    /// [`Self::first_of_all`], telling how it goes on.
+    ///
+    /// # Errors
+    /// It was cancelled.
+    pub fn first_of_all_observed(
+        &self,
+        rays: &[Ray],
+        options: &RayOptions,
+        observer: &mut Observer<'_>,
+    ) -> Result<Vec<Option<Hit>>, Cancelled> {
+        let watch = SharedWatch::new(observer, Stage::Casting);
+        watch.triangles(self.surface.control().face_count());
+        watch.stage(Stage::Casting, Some(rays.len()))?;
+        let blocks = watch.pieces(rays.len(), BLOCK, |block| {
+            rays[block].iter().map(|ray| self.first(ray, options)).collect::<Vec<_>>()
+        })?;
+        watch.done(rays.len())?;
+        Ok(blocks.concat())
+    }
+
+    fn searched(
+        &self,
+        ray: &Ray,
+        options: &RayOptions,
+        is_first_enough: bool,
+    ) -> Option<(RaySearch<'_>, f64)> {
+        let frame = RayFrame::of(ray, &self.scale)?;
+        let asked = options.tolerance.map_or(TOLERANCE, |tolerance| tolerance / self.scale.size);
+        let tolerance = if asked > LEAST_TOLERANCE { asked } else { LEAST_TOLERANCE };
+        let of = (self.surface, &self.scale, &self.pieces[..]);
+        let mut search = RaySearch::new(of, frame, options, tolerance, is_first_enough);
+        self.tree.search(&mut search);
+        Some((search, tolerance))
+    }
+
+    fn hit(&self, found: &Found, frame: &RayFrame) -> Hit {
+        let face = FaceId(found.face);
+        let point = self.surface.at(face, found.weights);
+        Hit {
+            t: frame.parameter(found.depth),
+            face,
+            barycentric: found.weights,
+            position: point.position,
+            normal: point.normal,
+            crossing: found.crossing,
+        }
+    }
+}
+
+impl LimitSurface<'_> {
+    /// All points where a ray meets the surface, as [`RayCaster::intersections`] gives them: for a few rays, since all is prepared for
+    /// each anew.
+    ///
+    /// # Errors
+    /// As for [`RayCaster::new`].
+    pub fn intersections(&self, ray: &Ray, options: &RayOptions) -> Result<Vec<Hit>, RayError> {
+        Ok(RayCaster::new(self)?.intersections(ray, options))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+    use crate::scheme::Loop;
+
+    /// How many pieces rays look at; what is printed stands in docs/paper.md.
+    #[test]
+    fn rays_look_at_few_pieces() {
+        let soup = crate::models::find("head").map(|model| model.soup()).unwrap_or_default();
+        let (mesh, _) = Mesh::from_soup(&soup, &Default::default()).unwrap();
+        let surface = LimitSurface::new(&mesh, &Loop).unwrap();
+        let rays = RayCaster::new(&surface).unwrap();
+        let (mut pieces, mut hits, mut state) = (0, 0, 7u64);
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        };
+        let count = 500;
+        for _ in 0..count {
+            let origin = [next(), next(), next()].map(|x| rays.scale.size * x);
+            let origin = (vector(origin) + rays.scale.middle).to_array();
+            let ray = Ray { origin, direction: [next(), next(), next()] };
+            let all = RayOptions::default().between(f64::NEG_INFINITY, f64::INFINITY);
+            let (search, _) = rays.searched(&ray, &all, false).unwrap();
+            (pieces, hits) = (pieces + search.looked_at, hits + search.found.len());
+        }
+        println!("{:.1} pieces a line, {:.2} hits", pieces as f64 / count as f64, hits as f64 / count as f64);
+        assert!(hits > count / 4 && pieces < 40 * count, "{pieces} {hits}");
+    }
+}

@@ -1,0 +1,142 @@
+//! One refinement for several positions of a control mesh: the frames of an animation.
+//!
+//! A node is divided if it has to be for any frame: the plan that the first frame takes is handed from frame to frame, its triangles
+//! are looked at among their neighbours on each frame's own surface, and what fails is divided, until a whole round changes
+//! nothing. Then each frame is replayed with that plan, and measured as it came out.
+
+use super::demands::Demands;
+use super::judge::Goal;
+use super::measure::measure;
+use super::result::Outcome;
+use super::{Engine, Plan, with_engine};
+use crate::mesh::Mesh;
+use crate::progress::{Observer, Stage};
+use crate::refine::exact_options::ExactOptions;
+use crate::refine::exact_result::{ErrorBounds, Exact, ExactStop};
+use crate::refine::replay::{Frame, Replay, ReplayError};
+use crate::refine::{RefineError, adaptive::probe};
+use crate::scheme::Scheme;
+
+/// Rounds over all frames: in each, nothing is left to do but what dividing for other frames brought about.
+const MOST_ROUNDS: usize = 12;
+
+/// What several frames come to.
+pub(in crate::refine) struct Found {
+    /// With the vertices of the first frame.
+    pub(in crate::refine) refined: Exact,
+    pub(in crate::refine) replay: Replay,
+    /// By frame.
+    pub(in crate::refine) errors: Vec<ErrorBounds>,
+}
+
+/// Refines for all frames; options have origins and neither flat regions, balance, optimisation, goals for attributes nor a number
+/// of triangles.
+pub(in crate::refine) fn frames(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    frames: &[Vec<[f64; 3]>],
+    options: &ExactOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Found, RefineError> {
+    let meshes = frames.iter().enumerate().map(|(frame, positions)| {
+        let mesh = control.clone().with_positions(positions.clone());
+        mesh.map_err(|why| ReplayError::Frame { frame, why })
+    });
+    let meshes = meshes.collect::<Result<Vec<_>, _>>()?;
+    let demands = Demands::default();
+    let settings = (options, &demands);
+    let plan = with_engine(&meshes[0], scheme, settings, observer, |engine| first(engine, options))?;
+    let plan = united(&meshes, scheme, (settings, plan), observer)?;
+    let mut has_failed = plan.has_failed;
+    let (refined, replay) = with_engine(&meshes[0], scheme, settings, observer, |engine| {
+        let mut plan = plan.with_goal(plan.goal.clone());
+        let emission = engine.emit_all(&mut plan)?;
+        let refined = Outcome { plan, emission, measured: None }.finish(engine, ExactStop::Met, options)?;
+        let replay = Replay::new(control, scheme, &refined)?;
+        Ok((refined, replay))
+    })?;
+    let (mut frame, mut errors) = (Frame::default(), Vec::with_capacity(frames.len()));
+    let mut worst = Vec::with_capacity(frames.len());
+    for mesh in &meshes {
+        replay.frame(mesh.positions(), &mut frame)?;
+        let (error, value) = with_engine(mesh, scheme, settings, observer, |engine| {
+            proven(engine, plan.with_goal(plan.goal.clone()), &frame, options)
+        })?;
+        errors.push(error);
+        worst.push(value);
+    }
+    replay.frame(meshes[0].positions(), &mut frame)?;
+    let mut refined = Exact { error: errors[0], ..refined.moved_to(&frame)? };
+    refined.worst = worst.iter().copied().fold(0.0, f64::max);
+    has_failed |= refined.worst > 1.0 + f64::EPSILON;
+    refined.stop = if has_failed { ExactStop::LevelCap } else { ExactStop::Met };
+    Ok(Found { refined, replay, errors })
+}
+
+/// The plan of the first frame, of which nothing is taken for granted.
+fn first(engine: &Engine<'_>, options: &ExactOptions) -> Result<Plan, RefineError> {
+    let (most, _) = options.budget();
+    let floor = engine.floor(options.tolerance);
+    let plan = engine.plan(Goal::Within(floor), most)?.ok_or(ReplayError::TooMany { frame: 0, most })?;
+    let faces = plan.closed.len();
+    let Plan { decision, has_failed, .. } = plan;
+    let mut plan = Plan::of(Goal::Within(f64::INFINITY), decision.unjudged(), faces);
+    plan.has_failed = has_failed;
+    match engine.carry_out(&mut plan, vec![true; faces], most)? {
+        true => Ok(plan),
+        false => Err(ReplayError::TooMany { frame: 0, most }.into()),
+    }
+}
+
+/// The plan with all that the frames need.
+fn united(
+    meshes: &[Mesh],
+    scheme: &dyn Scheme,
+    (settings, plan): ((&ExactOptions, &Demands), Plan),
+    observer: &mut Observer<'_>,
+) -> Result<Plan, RefineError> {
+    let (options, _) = settings;
+    let (most, _) = options.budget();
+    let mut plan = plan;
+    // Frames in a row for which nothing had to be divided.
+    let mut settled = 0;
+    for frame in (0..meshes.len()).cycle().take(MOST_ROUNDS * meshes.len()) {
+        if settled == meshes.len() {
+            break;
+        }
+        let triangles = plan.triangles;
+        plan = with_engine(&meshes[frame], scheme, settings, observer, |engine| {
+            plan.is_touched.fill(true);
+            let goal = Goal::Within(engine.floor(options.tolerance));
+            let outcome = engine.emit_among(plan, &goal, (most, false))?;
+            Ok(outcome.ok_or(ReplayError::TooMany { frame, most })?.plan)
+        })?;
+        settled = if plan.triangles == triangles { settled + 1 } else { 1 };
+    }
+    Ok(plan)
+}
+
+/// What is proven of a frame, and how many times over its worst triangle fails.
+fn proven(
+    engine: &Engine<'_>,
+    mut plan: Plan,
+    frame: &Frame,
+    options: &ExactOptions,
+) -> Result<(ErrorBounds, f64), RefineError> {
+    let mut emission = engine.emit_all(&mut plan)?;
+    emission.positions.copy_from_slice(&frame.positions);
+    engine.watch.stage(Stage::Bounding, None)?;
+    let floor = engine.floor(options.tolerance);
+    let all: Vec<u32> = (0..plan.closed.len() as u32).collect();
+    let sources = engine.sources(&plan, &emission);
+    let measured = measure(&sources, engine.watch, (&Goal::Within(floor), f64::INFINITY), (&all, None))?;
+    let value = measured.iter().map(|face| face.value).fold(0.0, f64::max);
+    let is_met = options.tolerance.is_some() && value <= floor;
+    let error = probe::probe(engine, &plan, &emission, (Some(&measured), is_met))?;
+    if let Some(why) = engine.control.rules.failure() {
+        return Err(why.clone().into());
+    }
+    let beyond = options.tolerance.map_or(0.0, |tolerance| error.upper / tolerance);
+    let value = if engine.control.criteria.is_some() { value } else { 0.0 };
+    Ok((error, value.max(beyond)))
+}

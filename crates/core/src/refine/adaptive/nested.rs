@@ -1,0 +1,237 @@
+//! One level of detail: what divides the coarser level divides it as well, so that the coarser is nested in it.
+//!
+//! Takes what an exact refinement takes and the coarser level; gives the level, its place-by-place distance from the limit surface,
+//! and its vertices' places on the coarser level. Where places count as well, what is too far off is divided until nothing is.
+
+use super::coarser::on_coarser;
+use super::demands::{Demands, Functions};
+use super::leaves::{Covering, Descent, Leaves};
+use super::quadtree::Place;
+use super::{ADDED, once, probe};
+use crate::certificate::{Sheet, exceeds};
+use crate::index::FaceId;
+use crate::limit_surface::LimitSurface;
+use crate::mesh::Mesh;
+use crate::parallel::IsStopped;
+use crate::patch::Rules;
+use crate::progress::{Observer, SharedWatch, Stage};
+use crate::refine::RefineError;
+use crate::refine::attribute_goal::AttributeGoal;
+use crate::refine::exact_options::ExactOptions;
+use crate::refine::exact_result::{Exact, ExactStop};
+use crate::refine::level::Level;
+use crate::scheme::Scheme;
+use crate::vector::{DVec3, vector};
+
+/// Control faces that one call takes together.
+const BLOCK: usize = 64;
+
+/// Place-by-place distances below this part of the tolerance need not be known better.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// The level within `options`' tolerance in which `coarser` is nested; with geomorphs the tolerances hold place by place, the coarser
+/// level's from the start.
+pub(in crate::refine) fn nested(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    (options, tolerance): (&ExactOptions, f64),
+    (coarser, with_geomorph): (Option<&Level>, bool),
+    observer: &mut Observer<'_>,
+) -> Result<Level, RefineError> {
+    let (most, cap) = options.budget();
+    let room = most.saturating_sub(mesh.face_count()) / ADDED;
+    let mut demands = Demands::default();
+    let mut fits = true;
+    if with_geomorph {
+        let goals = [AttributeGoal::values(vec![mesh.clone()], tolerance)];
+        let watched = (mesh.face_count(), options.max_levels as u32, room);
+        let functions = Functions::of(&goals, scheme)?;
+        let found = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
+        fits = found.is_some();
+        demands = found.unwrap_or_default();
+    }
+    if let Some(coarser) = coarser {
+        divide_as(mesh, &coarser.exact, &mut demands, &SharedWatch::new(observer, Stage::Refining))?;
+    }
+    let surface = LimitSurface::without_normals(mesh, scheme)?;
+    loop {
+        let exact = once(mesh, scheme, (options, &demands), observer)?;
+        let watch = SharedWatch::new(observer, Stage::Bounding);
+        watch.triangles(exact.mesh.face_count());
+        let rounding = probe::rounding(mesh, options.max_levels, &watch)?;
+        let morph = coarser.filter(|_| with_geomorph).map(|coarser| {
+            on_coarser(mesh, &coarser.exact, &exact, &watch).map(|morph| (morph, coarser.tolerance))
+        });
+        let mut morph = morph.transpose()?;
+        let start = morph.as_ref().map(|(morph, tolerance)| (&morph.positions[..], tolerance - rounding));
+        let end = (exact.mesh.positions(), tolerance - rounding);
+        let apart = Apart { surface: &surface, ends: [Some(end), start] };
+        let off = apart.off(mesh, &exact, &watch)?;
+        if let Some(failure) = surface.failure() {
+            return Err(failure.clone().into());
+        }
+        if let Some((morph, _)) = &mut morph {
+            morph.start = off.greatest[1] + rounding;
+        }
+        let parametric = off.greatest[0] + rounding;
+        let mut level = Level { exact, tolerance, parametric, geomorph: morph.map(|(morph, _)| morph) };
+        if !with_geomorph || off.failing.is_empty() || level.exact.stop != ExactStop::Met {
+            return Ok(level);
+        }
+        let deepest = |place: &Place| place.level as usize >= options.max_levels;
+        let mut is_new = false;
+        for place in off.failing.into_iter().filter(|place| !deepest(place)) {
+            is_new |= demands.add(place);
+        }
+        // Without room for them, or where nothing may be divided any further, that is how far it comes.
+        if !fits || !is_new || demands.len() > room {
+            level.exact.stop = if fits && !is_new { ExactStop::LevelCap } else { cap };
+            return Ok(level);
+        }
+    }
+}
+
+/// Demands that what has leaves below it on a level is divided.
+fn divide_as(
+    mesh: &Mesh,
+    level: &Exact,
+    demands: &mut Demands,
+    watch: &SharedWatch<'_>,
+) -> Result<(), RefineError> {
+    let leaves = Leaves::of(mesh, level);
+    let blocks = watch.long_pieces(mesh.face_count(), BLOCK, |block, is_stopped| {
+        let mut parents = Parents { found: Vec::new(), is_stopped };
+        block.for_each(|face| {
+            leaves.descend(face as u32, (), &mut parents);
+        });
+        parents.found
+    })?;
+    watch.each(blocks.into_iter().flatten(), |place| {
+        demands.add(place);
+    })?;
+    Ok(())
+}
+
+/// Collects the nodes that leaves are children of.
+struct Parents<'a> {
+    found: Vec<Place>,
+    is_stopped: &'a IsStopped<'a>,
+}
+
+impl Descent for Parents<'_> {
+    type Node = ();
+
+    fn children(&mut self, (): ()) -> [(); 4] {
+        [(); 4]
+    }
+
+    fn leaf(&mut self, place: Place, (): (), _: &[Covering]) {
+        if let Some(parent) = place.parent()
+            && self.found.last() != Some(&parent)
+        {
+            self.found.push(parent);
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        (self.is_stopped)()
+    }
+}
+
+/// Where the vertices of a mesh are, and how far it may be from the surface.
+type End<'a> = (&'a [[f64; 3]], f64);
+
+/// Triangles with their vertices in one place and another, beside the surface.
+struct Apart<'a> {
+    surface: &'a LimitSurface<'a>,
+    /// After a geomorph, and before.
+    ends: [Option<End<'a>>; 2],
+}
+
+/// How far triangles are from the surface, place by place.
+struct Off {
+    /// The greatest bounds, by end.
+    greatest: [f64; 2],
+    /// Leaves with triangles that are too far off.
+    failing: Vec<Place>,
+}
+
+impl Apart<'_> {
+    /// How far the triangles of a mesh are from the surface at the ends.
+    fn off(&self, mesh: &Mesh, exact: &Exact, watch: &SharedWatch<'_>) -> Result<Off, RefineError> {
+        let leaves = Leaves::of(mesh, exact);
+        let triangles = exact.mesh.triangles();
+        let blocks = watch.long_pieces(mesh.face_count(), BLOCK, |block, is_stopped| {
+            let mut off = Off { greatest: [0.0; 2], failing: Vec::new() };
+            for face in block {
+                let (sheet, rules) = self.surface.sheet(FaceId(face as u32));
+                let mut looking = Looking { rules, triangles, ends: &self.ends, off: &mut off, is_stopped };
+                if !leaves.descend(face as u32, sheet, &mut looking) {
+                    off.greatest = [f64::INFINITY; 2];
+                }
+            }
+            off
+        })?;
+        let mut off = Off { greatest: [0.0; 2], failing: Vec::new() };
+        for block in blocks {
+            off.greatest = [0, 1].map(|end| off.greatest[end].max(block.greatest[end]));
+            off.failing.extend(block.failing);
+        }
+        Ok(off)
+    }
+}
+
+/// Looks at the triangles of leaves.
+struct Looking<'a> {
+    rules: &'a Rules<'a>,
+    triangles: &'a [[u32; 3]],
+    ends: &'a [Option<End<'a>>; 2],
+    off: &'a mut Off,
+    is_stopped: &'a IsStopped<'a>,
+}
+
+impl Looking<'_> {
+    /// By number, the vertices at a leaf's corners and in the middles of its edges.
+    fn vertices(&self, covering: &[Covering]) -> [u32; 6] {
+        let mut vertices = [0; 6];
+        for own in covering {
+            for (of_part, at) in own.part.corners([0, 1, 2], [3, 4, 5]).into_iter().enumerate() {
+                vertices[at] = self.triangles[own.triangle as usize][own.corner(of_part)];
+            }
+        }
+        vertices
+    }
+}
+
+impl Descent for Looking<'_> {
+    type Node = Sheet;
+
+    fn children(&mut self, sheet: Sheet) -> [Sheet; 4] {
+        sheet.children(self.rules)
+    }
+
+    fn leaf(&mut self, place: Place, sheet: Sheet, covering: &[Covering]) {
+        let [a, b, c, d, e, f] = self.vertices(covering);
+        let mut fails = false;
+        for (end, &(positions, enough)) in
+            self.ends.iter().enumerate().filter_map(|(i, end)| Some((i, end.as_ref()?)))
+        {
+            let at = |vertices: [u32; 3]| vertices.map(|v| vector(positions[v as usize]));
+            let (corners, middles): ([DVec3; 3], [DVec3; 3]) = (at([a, b, c]), at([d, e, f]));
+            let greatest = &mut self.off.greatest[end];
+            for &Covering { part, .. } in covering {
+                let target = greatest.max(NEGLIGIBLE * enough).min(enough);
+                let bound = sheet.off(part, (part.corners(corners, middles), corners), target, self.rules);
+                *greatest = if exceeds(bound, *greatest) { bound } else { *greatest };
+                fails |= exceeds(bound, enough);
+            }
+        }
+        if fails {
+            self.off.failing.push(place);
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        (self.is_stopped)()
+    }
+}

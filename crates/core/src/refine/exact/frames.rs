@@ -1,0 +1,118 @@
+//! Exact refinement of an animation: the same triangles for all frames, each frame within the goals.
+
+use super::scale;
+use crate::mesh::{Mesh, MeshError};
+use crate::progress::{Observer, unobserved};
+use crate::refine::RefineError;
+use crate::refine::adaptive::frames;
+use crate::refine::exact_options::ExactOptions;
+use crate::refine::exact_result::{ErrorBounds, Exact};
+use crate::refine::replay::Replay;
+use crate::scheme::Scheme;
+
+/// A refinement that serves several frames.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Frames {
+    /// The refined mesh, with the vertices of the first frame as [`Self::replay`] gives them. [`Exact::worst`] and
+    /// [`Exact::stop`] are about all frames.
+    pub refined: Exact,
+    /// Gives the vertices of all frames.
+    pub replay: Replay,
+    /// By frame, how far the triangles, with the vertices that the replay gives, can be from the frame's limit surface.
+    pub errors: Vec<ErrorBounds>,
+}
+
+/// Refines `control` so that the goals are met for all frames, with the same triangles: a part is divided if it has to be in any
+/// frame. A frame is the positions of the control vertices; those of `control` itself mean nothing, its tags hold for all. What
+/// the mesh carries beside positions does not change with frames, nor do the places of vertices: channels are carried once, from the control mesh to
+/// [`Frames::refined`].
+///
+/// Of the goals a tolerance, an angle and pixels are followed. Flat regions are divided like others.
+///
+/// ```
+/// use limitmesh::refine::{ExactOptions, Frame, exact_frames};
+/// use limitmesh::{Mesh, scheme::Loop};
+///
+/// let mesh = Mesh::from_triangles(
+///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],
+///     vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]],
+/// )?;
+/// let stretched: Vec<[f64; 3]> = mesh.positions().iter().map(|&[x, y, z]| [x, y, 2.0 * z]).collect();
+/// let frames = [mesh.positions().to_vec(), stretched];
+/// let found = exact_frames(&mesh, &Loop, &frames, &ExactOptions::default().tolerance(0.01))?;
+/// assert!(found.errors.iter().all(|error| error.certified && error.upper <= 0.01));
+///
+/// // A third frame, of which nothing was proven.
+/// let mut frame = Frame::default();
+/// let bent: Vec<[f64; 3]> = frames[1].iter().map(|&[x, y, z]| [x + 0.1 * z * z, y, z]).collect();
+/// found.replay.frame(&bent, &mut frame)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Goals that are none, other goals and options than those, a frame that is none of the mesh's, a scheme outside the Loop family, a cap
+/// that any frame passes, or what [`exact`](super::exact) refuses.
+pub fn exact_frames(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    frames: &[Vec<[f64; 3]>],
+    options: &ExactOptions,
+) -> Result<Frames, RefineError> {
+    exact_frames_observed(control, scheme, frames, options, &mut unobserved)
+}
+
+/// [`exact_frames`], telling an observer how it goes on.
+///
+/// # Errors
+/// The same, or the observer asked to stop.
+pub fn exact_frames_observed(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    all: &[Vec<[f64; 3]>],
+    options: &ExactOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Frames, RefineError> {
+    options.check(control)?;
+    check(all, options)?;
+    let options = ExactOptions { flat_regions: false, origins: true, ..options.clone() };
+    let control = match all[0].len() == control.vertex_count() {
+        true => control.clone().with_positions(all[0].clone())?,
+        false => control.clone(),
+    };
+    let Some((scaled, options, factor)) = scale::scaled(&control, &options)? else {
+        let found = frames(&control, scheme, all, &options, observer)?;
+        return Ok(Frames { refined: found.refined, replay: found.replay, errors: found.errors });
+    };
+    let all: Vec<_> = all.iter().map(|frame| scale::positions(frame, factor)).collect();
+    let found = frames(&scaled, scheme, &all, &options, observer)?;
+    let errors = found.errors.into_iter().map(|error| scale::bounds(error, factor)).collect();
+    Ok(Frames { refined: scale::result(found.refined, factor)?, replay: found.replay, errors })
+}
+
+/// Refuses what has no meaning for frames.
+fn check(frames: &[Vec<[f64; 3]>], options: &ExactOptions) -> Result<(), RefineError> {
+    let refused = [
+        ("number of frames", frames.len(), frames.is_empty(), "at least one"),
+        (
+            "number of triangles",
+            options.triangles.unwrap_or(0),
+            options.triangles.is_some(),
+            "none, for frames",
+        ),
+        ("balance", 1, options.balance, "none, for frames"),
+        ("optimisation", 1, options.optimize, "none, for frames"),
+        (
+            "number of goals for attributes",
+            options.attributes.len(),
+            !options.attributes.is_empty(),
+            "none, for frames",
+        ),
+    ];
+    for (name, value, is_refused, expected) in refused {
+        if is_refused {
+            return Err(MeshError::BadOption { name, value: value as f64, expected }.into());
+        }
+    }
+    Ok(())
+}

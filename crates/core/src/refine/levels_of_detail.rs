@@ -1,0 +1,182 @@
+//! Levels of detail: meshes of one limit surface, each nested in the next, and the geomorphs between them.
+//!
+//! Takes a control mesh, a scheme and tolerances from coarse to fine; gives a [`Level`] for each. Everything is exact refinement, so
+//! each level has the certified distance that a refinement to its tolerance has; what the coarser level divides is divided here as
+//! well, so that its triangles are unions of the finer ones but for those that close gaps.
+//!
+//! **Geomorphs** (Hoppe, "Progressive Meshes", 1996; "View-Dependent Refinement of Progressive Meshes", 1997). Each vertex of a level
+//! M knows its place u on the control mesh, so also its point c on the coarser mesh C: on C's triangle that holds u, by u's barycentric
+//! coordinates there. At the moment t it is at (1 − t) c + t S(u), with S(u) its own position, on the limit surface S. At t = 1 that is
+//! M. At t = 0 all vertices are on C, and the surface is C itself, but where triangles of M lie across the edges of C's closing triangles: C is
+//! folded there by no more than the height of a split edge's middle over the straight edge, and M cuts across.
+//!
+//! **Certified at every moment.** On a triangle T of M, of which u runs over the places, let `M₀` be linear with the values c at T's
+//! corners and `M₁` with the values S. The mesh at t is `M_t(u) = (1 − t) M₀(u) + t M₁(u)`, for it is linear on T and agrees at the corners. So
+//!
+//! ```text
+//! |M_t(u) − S(u)| = |(1 − t) (M₀(u) − S(u)) + t (M₁(u) − S(u))| ≤ (1 − t) P₀ + t P₁,    Pᵢ = max |Mᵢ(u) − S(u)|,
+//! ```
+//!
+//! over all u of all triangles. As u runs over the whole control mesh, M_t over the whole mesh and S over the whole limit surface, that is a
+//! bound for both directed distances. Distances from set to set are no such thing: they are not convex in t. Both P₀ and P₁ are
+//! bounded over the pieces of S (`certificate/interpolation.rs`), on the triangles of M: nothing is lost to closing triangles but
+//! where one ends at an irregular vertex, where the bound of the leaf and the height of its split edges add up.
+//!
+//! With geomorphs tolerances are for P: a level's P₁ is within its own tolerance and its P₀ within the coarser's, so that the mesh
+//! is within the coarser level's tolerance at every moment.
+
+use super::RefineError;
+use super::adaptive::nested;
+use super::exact::scale;
+use super::exact_options::ExactOptions;
+use super::level::{Geomorph, Level};
+use crate::mesh::{Mesh, MeshError};
+use crate::progress::{Observer, unobserved};
+use crate::scheme::Scheme;
+
+/// What levels of detail are to be, and what they must not exceed.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LodOptions {
+    /// By level, from the coarsest to the finest, the greatest distance between mesh and limit surface, either way, as a length; each below the one
+    /// before. With [`Self::geomorphs`] it holds place by place ([`Level::parametric`]).
+    pub tolerances: Vec<f64>,
+    /// Finds how each level grows out of the coarser one ([`Level::geomorph`]), within the coarser one's tolerance at every moment.
+    /// Default: yes.
+    pub geomorphs: bool,
+    /// Levels of the hierarchy at most, as [`ExactOptions::max_levels`].
+    pub max_levels: usize,
+    /// Triangles of a level at most, as [`ExactOptions::max_triangles`].
+    pub max_triangles: Option<usize>,
+    /// Bytes that a level may take, about, as [`ExactOptions::max_memory`].
+    pub max_memory: Option<usize>,
+}
+
+impl LodOptions {
+    /// Levels within these distances, coarse to fine.
+    pub fn new(tolerances: Vec<f64>) -> Self {
+        let ExactOptions { max_levels, max_triangles, max_memory, .. } = ExactOptions::default();
+        Self { tolerances, geomorphs: true, max_levels, max_triangles, max_memory }
+    }
+
+    /// Sets [`Self::geomorphs`].
+    pub fn geomorphs(mut self, geomorphs: bool) -> Self {
+        self.geomorphs = geomorphs;
+        self
+    }
+
+    /// Sets [`Self::max_triangles`].
+    pub fn max_triangles(mut self, cap: Option<usize>) -> Self {
+        self.max_triangles = cap;
+        self
+    }
+
+    /// Sets [`Self::max_memory`].
+    pub fn max_memory(mut self, bytes: Option<usize>) -> Self {
+        self.max_memory = bytes;
+        self
+    }
+
+    fn check(&self) -> Result<(), RefineError> {
+        let bad = |name, value, expected| Err(MeshError::BadOption { name, value, expected }.into());
+        if self.tolerances.is_empty() {
+            return bad("number of levels", 0.0, "at least one");
+        }
+        if let Some(pair) = self.tolerances.windows(2).find(|pair| pair[1] >= pair[0]) {
+            return bad("tolerance", pair[1], "one below that of the coarser level");
+        }
+        Ok(())
+    }
+
+    /// What the engine is asked for.
+    fn exact(&self, tolerance: f64) -> ExactOptions {
+        ExactOptions {
+            max_levels: self.max_levels,
+            max_triangles: self.max_triangles,
+            max_memory: self.max_memory,
+            ..ExactOptions::default().tolerance(tolerance).flat_regions(false)
+        }
+    }
+}
+
+/// Levels of detail, from the coarsest to the finest, each nested in the next: a level for each tolerance, or up to the first that could
+/// not be reached, as the last one's [`stop`](super::Exact::stop) tells. None has fewer triangles than the control mesh.
+///
+/// ```
+/// use limitmesh::refine::{LodOptions, levels_of_detail};
+/// use limitmesh::{Mesh, scheme::Loop};
+///
+/// let mesh = Mesh::from_triangles(
+///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],
+///     vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]],
+/// )?;
+/// let levels = levels_of_detail(&mesh, &Loop, &LodOptions::new(vec![0.1, 0.01]))?;
+/// let [coarse, fine] = &levels[..] else { panic!("two levels") };
+/// assert!(fine.exact.mesh.face_count() > coarse.exact.mesh.face_count());
+/// // Halfway between them:
+/// let (positions, bound) = (fine.positions_at(0.5), fine.deviation_at(0.5));
+/// assert!(positions.len() == fine.exact.mesh.vertex_count() && bound < 0.1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Tolerances that are no positive numbers or do not fall, a vertex without a limit, or more elements than can be numbered.
+pub fn levels_of_detail(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    options: &LodOptions,
+) -> Result<Vec<Level>, RefineError> {
+    levels_of_detail_observed(control, scheme, options, &mut unobserved)
+}
+
+/// [`levels_of_detail`], telling an observer how it goes on, level by level.
+///
+/// # Errors
+/// The same, or the observer asked to stop; nothing comes with that.
+pub fn levels_of_detail_observed(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    options: &LodOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Vec<Level>, RefineError> {
+    options.check()?;
+    for &tolerance in &options.tolerances {
+        options.exact(tolerance).check(control)?;
+    }
+    let Some(factor) = scale::factor(control) else { return all(control, scheme, options, observer) };
+    let tolerances = options.tolerances.iter().map(|&length| scale::length(length, factor)).collect();
+    let scaled = LodOptions { tolerances, ..options.clone() };
+    let levels = all(&scale::mesh(control, factor)?, scheme, &scaled, observer)?;
+    levels.into_iter().map(|level| rescaled(level, factor)).collect()
+}
+
+fn all(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    options: &LodOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Vec<Level>, RefineError> {
+    let mut levels: Vec<Level> = Vec::with_capacity(options.tolerances.len());
+    for &tolerance in &options.tolerances {
+        let asked = (&options.exact(tolerance), tolerance);
+        let level = nested(control, scheme, asked, (levels.last(), options.geomorphs), observer)?;
+        let is_met = level.exact.stop == super::ExactStop::Met;
+        levels.push(level);
+        if !is_met {
+            break;
+        }
+    }
+    Ok(levels)
+}
+
+/// A level at the size that was asked for.
+fn rescaled(level: Level, factor: f64) -> Result<Level, RefineError> {
+    let Level { exact, tolerance, parametric, geomorph } = level;
+    let geomorph = geomorph.map(|morph| Geomorph {
+        positions: morph.positions.iter().map(|p| p.map(|x| x / factor)).collect(),
+        start: morph.start / factor,
+        ..morph
+    });
+    let exact = scale::result(exact, factor)?;
+    Ok(Level { exact, tolerance: tolerance / factor, parametric: parametric / factor, geomorph })
+}

@@ -1,0 +1,323 @@
+//! Makes the table of a replay.
+//!
+//! Takes what stands on the surface; gives the jobs in the order of their faces' shapes, so that weights that are shared are at hand,
+//! and the slots of what was asked for.
+
+use std::collections::HashMap;
+
+use super::ReplayError;
+use super::table::{COEFFICIENTS, Job, LANES, Piece, SUMS, Table, WHOLE};
+use super::wanted::{Spot, Wants};
+use super::weights::{Place, Probe, Standing, Wanted, groups};
+use crate::index::{FaceId, VertexId};
+use crate::limit::{VertexStencil, VertexStencils};
+use crate::mesh::{Mesh, Sharpness};
+use crate::parallel;
+use crate::patch::large_rings::LargeRings;
+use crate::patch::{Rules, Support};
+
+/// Places on one polynomial from which its coefficients are worth while: they take as long as those of five places, and each place on
+/// it half as long then.
+const MANY: usize = 10;
+
+/// Faces whose supports are found together, and shapes whose weights are.
+const FACES: usize = 256;
+const SHAPES: usize = 16;
+
+/// The control mesh, and all that is known of it.
+pub(super) struct Control<'a> {
+    pub(super) mesh: &'a Mesh,
+    pub(super) sharpness: &'a Sharpness<'a>,
+    pub(super) large: &'a LargeRings,
+    pub(super) rules: &'a Rules<'a>,
+    pub(super) stencils: &'a VertexStencils,
+}
+
+/// A face with places, or a corner with sides.
+struct Group {
+    /// The face or the vertex.
+    of: u32,
+    /// Each with the number of its spot.
+    spots: Vec<u32>,
+}
+
+/// A face of a shape.
+struct Member {
+    group: usize,
+    support: Support,
+    /// Its places, by their numbers among those of the shape, in the order of its spots.
+    places: Vec<u32>,
+}
+
+/// The faces whose surfaces are the same function of their control points.
+struct Shape {
+    members: Vec<Member>,
+    /// The places of all, each once.
+    places: Vec<Place>,
+}
+
+/// Weights of a shape, and what its members take of them.
+struct Weighed {
+    weights: Vec<[f64; LANES]>,
+    members: Vec<MemberRows>,
+}
+
+/// What a face takes of the weights of its shape.
+#[derive(Default)]
+struct MemberRows {
+    /// Where rows start, with their spots.
+    rows: Vec<(u32, u32)>,
+    pieces: Vec<MemberPiece>,
+}
+
+/// A polynomial of a face.
+struct MemberPiece {
+    /// Where the weights of its coefficients start.
+    weights: u32,
+    /// With their spots.
+    places: Vec<([u16; 2], u32)>,
+}
+
+/// The table, but for vertices' slots, and the slots of all spots.
+pub(super) fn build(control: &Control<'_>, wants: &Wants) -> Result<(Table, Vec<u32>), ReplayError> {
+    let (corners, faces) = groups_of(&wants.spots);
+    let mut building = Building { table: Table::default(), slots: vec![0; wants.spots.len()], next: 0 };
+    building.corners(control, &corners, &wants.spots)?;
+    let shapes = shapes(control, &faces, &wants.spots);
+    let weighed = parallel::pieces_of(shapes.len(), SHAPES, |block| {
+        let mut probe = Probe::new(control.mesh, control.sharpness, control.large, control.rules);
+        block.map(|shape| weigh(&mut probe, &shapes[shape], &faces)).collect::<Vec<_>>()
+    });
+    for (shape, weighed) in shapes.iter().zip(weighed.into_iter().flatten()) {
+        let face = || shape.members.first().map_or(0, |member| faces[member.group].of);
+        building.shape(shape, weighed.ok_or_else(|| ReplayError::NoPolynomial { face: face() })?)?;
+    }
+    if let Some(why) = control.rules.failure() {
+        return Err(why.clone().into());
+    }
+    building.table.finish();
+    Ok((building.table, building.slots))
+}
+
+/// The spots at control vertices and those over faces, by vertex and face.
+fn groups_of(spots: &[Spot]) -> (Vec<Group>, Vec<Group>) {
+    let (mut corners, mut faces) = (Vec::new(), Vec::new());
+    for (number, spot) in (0u32..).zip(spots) {
+        match *spot {
+            Spot::Corner(vertex, _) => corners.push((vertex, number)),
+            Spot::Over(face, _) => faces.push((face, number)),
+        }
+    }
+    let grouped = |mut all: Vec<(u32, u32)>| {
+        all.sort_unstable();
+        let own = all.chunk_by(|a, b| a.0 == b.0);
+        own.map(|own| Group { of: own[0].0, spots: own.iter().map(|&(_, spot)| spot).collect() }).collect()
+    };
+    (grouped(corners), grouped(faces))
+}
+
+/// The faces by the shape of what their surface depends on, shapes in the order in which they come first.
+fn shapes(control: &Control<'_>, faces: &[Group], spots: &[Spot]) -> Vec<Shape> {
+    let supports = parallel::pieces_of(faces.len(), FACES, |block| {
+        let of =
+            |face: usize| Support::of(control.mesh, control.sharpness, control.large, FaceId(faces[face].of));
+        block.map(of).collect::<Vec<_>>()
+    });
+    let mut shapes: Vec<Shape> = Vec::new();
+    let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
+    let mut numbers: Vec<HashMap<[u64; 2], u32>> = Vec::new();
+    for (group, mut support) in supports.into_iter().flatten().enumerate() {
+        let at = *known.entry(core::mem::take(&mut support.key)).or_insert_with(|| {
+            shapes.push(Shape { members: Vec::new(), places: Vec::new() });
+            numbers.push(HashMap::new());
+            shapes.len() - 1
+        });
+        let shape = &mut shapes[at];
+        let places = faces[group].spots.iter().map(|&spot| {
+            let Spot::Over(_, bits) = spots[spot as usize] else { return 0 };
+            let [u, v] = Spot::place(bits);
+            let weights = [1.0 - u - v, u, v];
+            let place = [weights[(support.turn + 1) % 3], weights[(support.turn + 2) % 3]];
+            *numbers[at].entry(place.map(f64::to_bits)).or_insert_with(|| {
+                shape.places.push(place);
+                shape.places.len() as u32 - 1
+            })
+        });
+        let places = places.collect();
+        shape.members.push(Member { group, support, places });
+    }
+    shapes
+}
+
+/// The weights of a shape; `None` where a place comes to no polynomial.
+fn weigh(probe: &mut Probe<'_>, shape: &Shape, faces: &[Group]) -> Option<Weighed> {
+    let first = shape.members.first()?;
+    let face = FaceId(faces[first.group].of);
+    let (standing, pieces) = probe.standing((&first.support, face), &shape.places)?;
+    let mut rows = vec![None; shape.places.len()];
+    let mut blocks = vec![None; pieces as usize];
+    let (mut row_count, mut block_count) = (0u32, 0u32);
+    let mut members = Vec::with_capacity(shape.members.len());
+    for member in &shape.members {
+        let mut own: Vec<(Standing, u32, u32)> = member
+            .places
+            .iter()
+            .zip(&faces[member.group].spots)
+            .map(|(&place, &spot)| (standing[place as usize], place, spot))
+            .collect();
+        own.sort_by_key(|(standing, ..)| standing.piece);
+        let mut taken = MemberRows::default();
+        for on_piece in own.chunk_by(|a, b| a.0.piece == b.0.piece) {
+            let coded = on_piece.iter().map(|(standing, _, spot)| Some((coded(standing.at)?, *spot)));
+            let coded = if on_piece.len() < MANY { None } else { coded.collect::<Option<Vec<_>>>() };
+            match coded {
+                Some(places) => {
+                    let block = &mut blocks[on_piece[0].0.piece as usize];
+                    let weights = *block.get_or_insert_with(|| next(&mut block_count));
+                    taken.pieces.push(MemberPiece { weights, places });
+                }
+                None => taken.rows.extend(on_piece.iter().map(|&(_, place, spot)| {
+                    (*rows[place as usize].get_or_insert_with(|| next(&mut row_count)), spot)
+                })),
+            }
+        }
+        members.push(taken);
+    }
+    let wanted =
+        Wanted { support: &first.support, face, places: &shape.places, rows: &rows, pieces: &blocks };
+    let weights = probe.weights(&wanted);
+    // From numbers to starts.
+    let groups = groups(first.support.points.len()) as u32;
+    for member in &mut members {
+        member.rows.iter_mut().for_each(|(row, _)| *row *= SUMS as u32 * groups);
+        for piece in &mut member.pieces {
+            piece.weights = (row_count * SUMS as u32 + piece.weights * COEFFICIENTS as u32) * groups;
+        }
+    }
+    Some(Weighed { weights, members })
+}
+
+fn next(count: &mut u32) -> u32 {
+    *count += 1;
+    *count - 1
+}
+
+/// A place in whole steps, if it is one of these.
+fn coded(at: Place) -> Option<[u16; 2]> {
+    let steps = at.map(|weight| weight * WHOLE);
+    let is_whole = steps.iter().all(|&step| step.fract() == 0.0 && (0.0..=WHOLE).contains(&step));
+    is_whole.then(|| steps.map(|step| step as u16))
+}
+
+/// A table that is being made.
+struct Building {
+    table: Table,
+    /// By spot.
+    slots: Vec<u32>,
+    /// The next slot.
+    next: u32,
+}
+
+impl Building {
+    /// Adds weights; gives where they start.
+    fn weights(&mut self, weights: &[[f64; LANES]]) -> Result<u32, ReplayError> {
+        let start = self.table.weights.len();
+        self.table.weights.extend_from_slice(weights);
+        let is_small = self.table.weights.len() <= u32::MAX as usize;
+        if is_small { Ok(start as u32) } else { Err(ReplayError::TooLarge) }
+    }
+
+    fn points(&mut self, points: &[u32]) -> Result<u32, ReplayError> {
+        self.table.points.extend_from_slice(points);
+        let is_small = self.table.points.len() <= u32::MAX as usize;
+        if is_small { Ok(points.len() as u32) } else { Err(ReplayError::TooLarge) }
+    }
+
+    fn take_slot(&mut self, spot: u32) {
+        self.slots[spot as usize] = self.next;
+        self.next += 1;
+    }
+
+    /// The jobs of control vertices.
+    fn corners(
+        &mut self,
+        control: &Control<'_>,
+        corners: &[Group],
+        spots: &[Spot],
+    ) -> Result<(), ReplayError> {
+        // Where the weights of each side of each stencil start.
+        let mut starts: Vec<Option<Vec<u32>>> = vec![None; control.stencils.list.len()];
+        for corner in corners {
+            let number = control.stencils.by_vertex[corner.of as usize] as usize;
+            if starts[number].is_none() {
+                starts[number] = Some(self.stencil(&control.stencils.list[number])?);
+            }
+            let ring = control.mesh.topology().ring(VertexId(corner.of)).map(|v| v.0);
+            let points: Vec<u32> = [corner.of].into_iter().chain(ring).collect();
+            let points = self.points(&points)?;
+            // Spots of one side share its slot.
+            let mut slots: Vec<(u32, u32)> = Vec::new();
+            for &spot in &corner.spots {
+                let Spot::Corner(_, side) = spots[spot as usize] else { continue };
+                if let Some(&(_, slot)) = slots.iter().find(|&&(known, _)| known == side) {
+                    self.slots[spot as usize] = slot;
+                    continue;
+                }
+                let start = starts[number].as_ref().and_then(|starts| starts.get(side as usize));
+                self.table.rows.push(start.copied().unwrap_or(0));
+                slots.push((side, self.next));
+                self.take_slot(spot);
+            }
+            self.table.jobs.push(Job { points, rows: slots.len() as u32, pieces: 0 });
+        }
+        self.table.corner_jobs = self.table.jobs.len();
+        self.table.sides.sort_unstable_by_key(|&(start, _)| start);
+        Ok(())
+    }
+
+    /// The weights of a control vertex's sides; gives where they start.
+    fn stencil(&mut self, stencil: &VertexStencil) -> Result<Vec<u32>, ReplayError> {
+        let groups = groups(stencil.position.len());
+        let mut starts = Vec::with_capacity(stencil.sides.len());
+        for side in &stencil.sides {
+            let mut weights = vec![[0.0; LANES]; SUMS * groups];
+            let of_position = stencil.position[1..].iter().copied();
+            let tangents = [0, 1].map(|tangent| side.tangents.iter().map(move |weights| weights[tangent]));
+            let [first, second] = tangents;
+            for (i, weight) in of_position.enumerate() {
+                weights[i / LANES][i % LANES] = weight;
+            }
+            for (sum, tangent) in [(1, first), (2, second)] {
+                for (i, weight) in tangent.enumerate() {
+                    weights[sum * groups + i / LANES][i % LANES] = weight;
+                }
+            }
+            let start = self.weights(&weights)?;
+            self.table.sides.push((start, [side.first as u32, side.faces as u32]));
+            starts.push(start);
+        }
+        Ok(starts)
+    }
+
+    /// The jobs of the faces of a shape.
+    fn shape(&mut self, shape: &Shape, weighed: Weighed) -> Result<(), ReplayError> {
+        let start = self.weights(&weighed.weights)?;
+        for (member, taken) in shape.members.iter().zip(weighed.members) {
+            let points = self.points(&member.support.points)?;
+            let (rows, pieces) = (taken.rows.len() as u32, taken.pieces.len() as u32);
+            self.table.jobs.push(Job { points, rows, pieces });
+            for (row, spot) in taken.rows {
+                self.table.rows.push(start + row);
+                self.take_slot(spot);
+            }
+            for MemberPiece { weights, places } in taken.pieces {
+                self.table.pieces.push(Piece { weights: start + weights, places: places.len() as u32 });
+                for (place, spot) in places {
+                    self.table.places.push(place);
+                    self.take_slot(spot);
+                }
+            }
+        }
+        Ok(())
+    }
+}

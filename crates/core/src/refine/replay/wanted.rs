@@ -1,0 +1,126 @@
+//! Where the vertices of a refined mesh and its normals on sides of sharp edges stand on the limit surface: at control vertices, or
+//! at places over control faces.
+
+use std::collections::HashMap;
+
+use super::ReplayError;
+use super::weights::Place;
+use crate::index::{FaceId, HalfEdgeId};
+use crate::limit::VertexStencils;
+use crate::mesh::Mesh;
+use crate::refine::Traced;
+use crate::refine::exact_result::{Exact, Origin};
+
+/// Something that stands on the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Spot {
+    /// At a control vertex, on the side of that number.
+    Corner(u32, u32),
+    /// Over a control face, by the bits of both weights.
+    Over(u32, [u64; 2]),
+}
+
+/// All that is asked for.
+#[derive(Debug, Default)]
+pub(super) struct Wants {
+    /// Those of the vertices, by their numbers, then others.
+    pub(super) spots: Vec<Spot>,
+    /// The half-edges of [`Exact::sides`], and the spots of their normals.
+    pub(super) sides: Vec<(u32, u32)>,
+    /// Vertices with several sides, and the spots of these.
+    pub(super) averages: Vec<(u32, Vec<u32>)>,
+}
+
+impl Spot {
+    /// The weights of the second and the third corner.
+    pub(super) fn place(bits: [u64; 2]) -> Place {
+        bits.map(f64::from_bits)
+    }
+
+    /// That of a point of the control mesh.
+    fn of(control: &Mesh, stencils: &VertexStencils, origin: &Origin) -> Option<Self> {
+        let corners = control.triangles().get(origin.face as usize)?;
+        let [_, u, v] = origin.barycentric;
+        match origin.barycentric.iter().position(|&weight| weight == 1.0) {
+            Some(corner) => {
+                let h = HalfEdgeId::of(FaceId(origin.face), corner);
+                Some(Self::Corner(corners[corner], side_of(control, stencils, h)))
+            }
+            None if u >= 0.0 && v >= 0.0 && u + v <= 1.0 => {
+                Some(Self::Over(origin.face, [u, v].map(f64::to_bits)))
+            }
+            None => None,
+        }
+    }
+}
+
+/// The number of the side of a control vertex that the face of a half-edge is on, which leaves it.
+fn side_of(control: &Mesh, stencils: &VertexStencils, h: HalfEdgeId) -> u32 {
+    let topology = control.topology();
+    let vertex = topology.origin(h);
+    let sides = &stencils.list[stencils.by_vertex[vertex.index()] as usize].sides;
+    if sides.len() < 2 {
+        return 0;
+    }
+    let around = topology.outgoing_ring(vertex);
+    let faces = around.clone().count();
+    let slot = around.clone().position(|other| other == h).unwrap_or(0);
+    let own = sides.iter().position(|side| (slot + faces - side.first) % faces < side.faces);
+    own.unwrap_or(0) as u32
+}
+
+impl Wants {
+    /// What the vertices and sides of `refined` ask for, a refinement of `control`.
+    pub(super) fn of(
+        control: &Mesh,
+        stencils: &VertexStencils,
+        refined: &Exact,
+    ) -> Result<Self, ReplayError> {
+        let count = refined.mesh.vertex_count();
+        if refined.origins.len() != count {
+            return Err(ReplayError::NoOrigins { origins: refined.origins.len(), vertices: count });
+        }
+        let spot = |(vertex, origin): (u32, &Origin)| {
+            Spot::of(control, stencils, origin).ok_or(ReplayError::Elsewhere { vertex })
+        };
+        let spots = (0..).zip(&refined.origins).map(spot).collect::<Result<Vec<_>, _>>()?;
+        let mut wants = Self { spots, ..Self::default() };
+        wants.add_sides(control, stencils, refined)?;
+        Ok(wants)
+    }
+
+    fn add_sides(
+        &mut self,
+        control: &Mesh,
+        stencils: &VertexStencils,
+        refined: &Exact,
+    ) -> Result<(), ReplayError> {
+        let topology = refined.mesh.topology();
+        let mut known: HashMap<(u32, Spot), u32> = HashMap::new();
+        // By vertex with sides, the spots on its sides.
+        let mut around: Vec<(u32, u32)> = Vec::new();
+        for &(h, _) in &refined.sides {
+            let vertex = topology.origin(HalfEdgeId(h)).0;
+            let origin = refined.corner_origin(control.triangles(), HalfEdgeId(h));
+            let spot = origin.and_then(|origin| Spot::of(control, stencils, &origin));
+            let spot = spot.ok_or(ReplayError::Elsewhere { vertex })?;
+            let own = self.spots[vertex as usize];
+            let spots = &mut self.spots;
+            let number = *known.entry((vertex, spot)).or_insert_with(|| {
+                if own == spot {
+                    return vertex;
+                }
+                spots.push(spot);
+                spots.len() as u32 - 1
+            });
+            self.sides.push((h, number));
+            around.push((vertex, number));
+        }
+        around.sort_unstable();
+        around.dedup();
+        let several = around.chunk_by(|a, b| a.0 == b.0).filter(|own| own.len() > 1);
+        let spots = |own: &[(u32, u32)]| own.iter().map(|&(_, spot)| spot).collect();
+        self.averages = several.map(|own| (own[0].0, spots(own))).collect();
+        Ok(())
+    }
+}

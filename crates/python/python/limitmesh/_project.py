@@ -1,0 +1,128 @@
+"""Points against the limit surface: closest points and signed distances."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _limitmesh, _options
+from ._arrays import Floats
+from ._limitmesh import OptionError
+from ._mesh import MeshLike
+from ._options import Boundary, Length, ProgressCallback, Scheme
+from ._refine import _mesh_of
+
+
+@dataclass(frozen=True)
+class Projected:
+    """The closest points of a limit surface, one for each of those that were given.
+
+    Attributes
+    ----------
+    points, normals
+        (n, 3): the closest points, in the mesh's unit, and the unit normals there; 0 where there is none.
+    distances, lower
+        (n,): how far they are, and what no point of the surface is nearer than.
+    signed
+        (n,): the distances, below 0 inside of a closed surface; where it is open, behind it, by its normals.
+    faces, barycentric
+        (n,) and (n, 3): the control mesh's triangles that they are on, and the weights of their corners, as `limit_surface` takes them.
+    """
+
+    points: Floats
+    normals: Floats
+    distances: Floats
+    lower: Floats
+    signed: Floats
+    faces: npt.NDArray[np.int64]
+    barycentric: Floats
+
+
+def project(
+    points: npt.ArrayLike,
+    vertices: npt.ArrayLike | MeshLike,
+    faces: Any = None,
+    *,
+    tolerance: Length = "0.0001%",
+    interpolate: bool | Length = False,
+    crease_angle: float | None = None,
+    creases: Any = None,
+    corners: Any = None,
+    boundary: Boundary = "smooth",
+    concave_corners: str | None = None,
+    scheme: Scheme = "loop",
+    weld: float | None = 0.0,
+    threads: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> Projected:
+    """The closest points of a mesh's limit surface itself to points, such as those of a scan, certified.
+
+    Parameters
+    ----------
+    points
+        (n, 3), finite.
+    vertices, faces
+        The control mesh, as for `refine`.
+    tolerance
+        How much nearer the surface may be than what was found: a length, or a part of the control mesh's diagonal.
+    interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, weld
+        What the limit surface is, as for `refine`; the scheme is ``"loop"`` or ``"loop-warren"``.
+    threads, progress
+        As for `refine`.
+
+    Raises
+    ------
+    MeshError
+        As `refine`.
+    OptionError
+        Points that are none, or as `refine`.
+
+    Examples
+    --------
+    The limit of a vertex of an octahedron is 24/55 of it.
+
+    >>> import limitmesh
+    >>> vertices = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]]
+    >>> faces = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]
+    >>> found = limitmesh.project([[2, 0, 0], [0.4, 0, 0]], vertices, faces)
+    >>> round(float(found.signed[0]), 6), bool(found.signed[1] < 0)
+    (1.563636, True)
+    """
+    control = _options.control_of(
+        interpolate=interpolate,
+        crease_angle=crease_angle,
+        boundary=boundary,
+        concave_corners=concave_corners,
+        scheme=scheme,
+        weld=weld,
+        repair=True,
+    )
+    rows = _points_of(points)
+    within = _options.extent(tolerance, "tolerance")
+    native = _mesh_of(vertices, faces, None, creases, corners)._native()
+    workers, callback = _options.threads_of(threads), _options.callback_of(progress)
+    found = _limitmesh.project(rows, native, control, within, workers, callback)
+    closest, normals, barycentric, triangles, distances, lower, signed = found
+    return Projected(closest, normals, distances, lower, signed, triangles, barycentric)
+
+
+def _points_of(points: npt.ArrayLike) -> Floats:
+    try:
+        rows = np.ascontiguousarray(points, dtype=np.float64)
+    except (ValueError, TypeError):
+        raise OptionError("points is no array of numbers, expected (n, 3)") from None
+    if not rows.size:
+        rows = rows.reshape(-1, 3)
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise OptionError(f"points has the shape {rows.shape}, expected (n, 3)")
+    is_finite = np.isfinite(rows).all(axis=1)
+    if not is_finite.all():
+        row = int(np.argmin(is_finite))
+        raise OptionError(f"points[{row}] is {rows[row]}, expected finite numbers")
+    return rows
+
+
+__all__ = ["Projected", "project"]
