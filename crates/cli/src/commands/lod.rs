@@ -32,7 +32,7 @@ const USUAL_RATIO: f64 = 0.25;
 struct Written {
     split: SplitSurface,
     /// By vertex, its place on the coarser level and its normal there.
-    coarser: Option<(Vec<[f64; 3]>, Vec<[f64; 3]>)>,
+    coarser: Option<[Vec<[f64; 3]>; 2]>,
     channels: Vec<Channel>,
 }
 
@@ -143,7 +143,7 @@ fn written(
     let (split, normals) = level.split_surface();
     let coarser = level.geomorph.as_ref().map(|morph| {
         let positions = split.sources.iter().map(|&v| morph.positions[v as usize]).collect();
-        (positions, normals)
+        [positions, normals]
     });
     Ok(Written { split, coarser, channels })
 }
@@ -221,7 +221,7 @@ fn write(
             .map(|(level, report)| {
                 let own = DetailLevel::new(output(level)).least_coverage(report.least_coverage);
                 match &level.coarser {
-                    Some((positions, normals)) => own.coarser(positions, normals),
+                    Some([positions, normals]) => own.coarser(positions, normals),
                     None => own,
                 }
             })
@@ -235,7 +235,7 @@ fn write(
     }
     for (lod, level) in levels.iter().enumerate() {
         let axis = |axis: usize| -> Vec<f64> {
-            level.coarser.iter().flat_map(|(positions, _)| positions).map(|position| position[axis]).collect()
+            level.coarser.iter().flat_map(|[positions, _]| positions).map(|position| position[axis]).collect()
         };
         let coarse = [axis(0), axis(1), axis(2)];
         let names = ["coarse_x", "coarse_y", "coarse_z"];

@@ -26,7 +26,7 @@ pub struct DetailLevel<'a> {
     /// Its triangles, normals and channels.
     pub output: Output<'a>,
     /// By vertex, its place on the coarser level and the normal that it is shaded with there, of any length.
-    pub coarser: Option<(&'a [[f64; 3]], &'a [[f64; 3]])>,
+    pub coarser: Option<[&'a [[f64; 3]]; 2]>,
     /// The least height of the object in a picture, as a part of the picture's, at which the level is shown.
     pub least_coverage: f64,
 }
@@ -39,7 +39,7 @@ impl<'a> DetailLevel<'a> {
 
     /// Sets [`Self::coarser`].
     pub fn coarser(mut self, positions: &'a [[f64; 3]], normals: &'a [[f64; 3]]) -> Self {
-        self.coarser = Some((positions, normals));
+        self.coarser = Some([positions, normals]);
         self
     }
 
@@ -72,7 +72,7 @@ pub fn write_levels(
             let at =
                 |points: &[[f64; 3]]| own.vertices.iter().map(|&v| points[v as usize]).collect::<Vec<_>>();
             let (positions, normals) = (at(level.output.surface.positions), level.output.normals.map(at));
-            let target = level.coarser.map(|(coarse, shaded)| {
+            let target = level.coarser.map(|[coarse, shaded]| {
                 let shaded = normals.as_ref().map(|normals| displaced("NORMAL", normals, &at(shaded)));
                 core::iter::once(displaced("POSITION", &positions, &at(coarse))).chain(shaded).collect()
             });
