@@ -71,7 +71,15 @@ fn on_triangle(ray: &Ray, [a, b, c]: [[f64; 3]; 3]) -> Option<(f64, f64)> {
 /// A mesh that can be asked for rays: triangles in a grid of boxes, by halves.
 struct Fine {
     corners: Vec<[[f64; 3]; 3]>,
-    nodes: Vec<([[f64; 3]; 2], std::ops::Range<usize>, [usize; 2])>,
+    nodes: Vec<BoxNode>,
+}
+
+/// A box, the triangles in it, and its halves, if it has any.
+struct BoxNode {
+    low: [f64; 3],
+    high: [f64; 3],
+    range: std::ops::Range<usize>,
+    children: Option<[usize; 2]>,
 }
 
 impl Fine {
@@ -86,21 +94,20 @@ impl Fine {
     }
 
     fn node(&mut self, range: std::ops::Range<usize>) -> usize {
-        let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-        for p in self.corners[range.clone()].as_flattened() {
-            for i in 0..3 {
-                (bounds[0][i], bounds[1][i]) = (bounds[0][i].min(p[i]), bounds[1][i].max(p[i]));
-            }
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &p in self.corners[range.clone()].as_flattened() {
+            low = [0, 1, 2].map(|i| p[i].min(low[i]));
+            high = [0, 1, 2].map(|i| p[i].max(high[i]));
         }
         let own = self.nodes.len();
-        self.nodes.push((bounds, range.clone(), [0; 2]));
+        self.nodes.push(BoxNode { low, high, range: range.clone(), children: None });
         if range.len() > 8 {
-            let sides = minus(bounds[1], bounds[0]);
+            let sides = minus(high, low);
             let axis = (0..3).max_by(|&a, &b| sides[a].total_cmp(&sides[b])).unwrap();
             self.corners[range.clone()].sort_by(|a, b| a[0][axis].total_cmp(&b[0][axis]));
             let half = range.start + range.len() / 2;
             let children = [self.node(range.start..half), self.node(half..range.end)];
-            self.nodes[own].2 = children;
+            self.nodes[own].children = Some(children);
         }
         own
     }
@@ -109,16 +116,16 @@ impl Fine {
     fn count(&self, ray: &Ray) -> (usize, bool) {
         let (mut count, mut is_close, mut waiting) = (0, false, vec![0]);
         while let Some(node) = waiting.pop() {
-            let (bounds, range, children) = &self.nodes[node];
+            let BoxNode { low, high, range, children } = &self.nodes[node];
             let (mut first, mut last) = (f64::NEG_INFINITY, f64::INFINITY);
             for i in 0..3 {
-                let [a, b] = [0, 1].map(|end: usize| (bounds[end][i] - ray.origin[i]) / ray.direction[i]);
+                let [a, b] = [low, high].map(|end| (end[i] - ray.origin[i]) / ray.direction[i]);
                 (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
             }
             if first > last * (1.0 + 1e-9) {
                 continue;
             }
-            if *children != [0; 2] {
+            if let Some(children) = children {
                 waiting.extend(children);
                 continue;
             }
