@@ -142,13 +142,7 @@ impl<'a> LimitSurface<'a> {
 
     /// Answers for places over a face that there is. `spare` is scratch space.
     fn find(&self, face: FaceId, places: &mut Vec<Place>, spare: &mut Vec<Place>, found: &mut impl Answers) {
-        let topology = self.mesh.topology();
-        let corners = [0, 1, 2].map(|corner| {
-            let h = HalfEdgeId::of(face, corner);
-            let position = vector(self.positions[topology.origin(h).index()]);
-            let normal = self.normals.as_ref().map_or([0.0; 3], |normals| normals.at(topology, h));
-            LimitPoint { position, normal: vector(normal) }
-        });
+        let corners = self.corner_points(face);
         take_corners(corners, places, found);
         if !places.is_empty() {
             let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
@@ -187,6 +181,17 @@ impl<'a> LimitSurface<'a> {
     /// The limits of the control vertices.
     pub(crate) fn corner_limits(&self) -> &[[f64; 3]] {
         &self.positions
+    }
+
+    /// The limits of a control face's corners, with normals on its side.
+    pub(crate) fn corner_points(&self, face: FaceId) -> [LimitPoint; 3] {
+        let topology = self.mesh.topology();
+        [0, 1, 2].map(|corner| {
+            let h = HalfEdgeId::of(face, corner);
+            let position = vector(self.positions[topology.origin(h).index()]);
+            let normal = self.normals.as_ref().map_or([0.0; 3], |normals| normals.at(topology, h));
+            LimitPoint { position, normal: vector(normal) }
+        })
     }
 
     /// The limit positions of a control face's corners.

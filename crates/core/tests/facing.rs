@@ -8,14 +8,10 @@ use limitmesh::criterion::Viewpoint;
 use limitmesh::mesh::{CreaseTag, Tags};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly};
 use limitmesh::{FaceId, Facing, LimitSurface, Mesh, SurfacePoint};
-use support::{Random, lumpy, octahedron, samples};
+use support::{Random, dot, lumpy, octahedron, samples};
 
 /// Points a side of a face.
 const SIDE: u32 = 16;
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|i| a[i] * b[i]).sum()
-}
 
 /// A mesh with some of its edges sharp, for ever and for a while.
 fn creased() -> Mesh {

@@ -14,20 +14,10 @@ use limitmesh::measure::{Bvh, distances_to};
 use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
 use limitmesh::scheme::Loop;
-use support::Random;
-
-type Point = [f64; 3];
+use support::{Point, Random, cross, dot};
 
 fn plus(a: Point, b: Point, weight: f64) -> Point {
     [0, 1, 2].map(|i| a[i] + weight * b[i])
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 fn unit(a: Point) -> Point {

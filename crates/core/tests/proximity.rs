@@ -2,6 +2,8 @@
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod support;
+
 use core::ops::ControlFlow;
 
 use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
@@ -9,7 +11,7 @@ use limitmesh::refine::limit_reference;
 use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{Closest, FaceId, LimitSurface, Membership, Mesh, Proximity, ProximityError};
 
-type Point = [f64; 3];
+use support::{Point, cross, distance, dot, minus};
 
 fn model(name: &str) -> Mesh {
     Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
@@ -58,23 +60,6 @@ fn meshes() -> Vec<(String, Mesh)> {
     meshes.push(("sheet".into(), model("sheet")));
     meshes.push(("tagged octahedron".into(), tagged(&octahedron())));
     meshes
-}
-
-fn sub(a: Point, b: Point) -> Point {
-    [0, 1, 2].map(|k| a[k] - b[k])
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    (0..3).map(|k| a[k] * b[k]).sum()
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
-}
-
-fn distance(a: Point, b: Point) -> f64 {
-    let d = sub(a, b);
-    dot(d, d).sqrt()
 }
 
 /// Points in and around a mesh.
@@ -142,7 +127,7 @@ fn where_the_nearest_point_is_smooth_the_way_there_is_along_the_normal() {
         points.iter().zip(Proximity::new(&surface).unwrap().closest(&points, 1e-12).unwrap())
     {
         let normal = surface.at(found.face, found.barycentric).normal;
-        let way = sub(*point, found.point);
+        let way = minus(*point, found.point);
         assert!(distance(cross(way, normal), [0.0; 3]) < 1e-6, "{point:?}: {way:?} and {normal:?}");
     }
 }
@@ -206,10 +191,10 @@ fn places_and_sizes_change_nothing() {
 fn crossings(mesh: &Mesh, from: Point, direction: Point) -> Option<i32> {
     let mut count = 0;
     for triangle in mesh.triangles() {
-        let [a, b, c] = triangle.map(|v| sub(mesh.positions()[v as usize], from));
+        let [a, b, c] = triangle.map(|v| minus(mesh.positions()[v as usize], from));
         // Signed volumes with the ray, by edges.
         let volumes = [[a, b], [b, c], [c, a]].map(|[p, q]| dot(direction, cross(p, q)));
-        let normal = cross(sub(b, a), sub(c, a));
+        let normal = cross(minus(b, a), minus(c, a));
         let along = dot(a, normal) / dot(direction, normal);
         if volumes.iter().all(|&x| x > 1e-9) || volumes.iter().all(|&x| x < -1e-9) {
             if along > 0.0 {

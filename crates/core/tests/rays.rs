@@ -8,19 +8,7 @@ use limitmesh::mesh::{CreaseTag, Tags};
 use limitmesh::refine::limit_reference;
 use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{Crossing, FaceId, Hit, LimitSurface, Mesh, Ray, RayCaster, RayError, RayOptions};
-use support::{Random, lumpy, octahedron, sheet, torus};
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|i| a[i] * b[i]).sum()
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|i| a[i] - b[i])
-}
+use support::{Random, cross, dot, lumpy, minus, octahedron, sheet, torus};
 
 fn tetrahedron() -> Mesh {
     let positions = vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];

@@ -1,4 +1,4 @@
-//! The triangles of a forest in slots, without gaps, and the same numbered by control face and path.
+//! The triangles of a forest in slots, without gaps.
 
 use super::forest::{Forest, NONE};
 use crate::closure::{Diagonal, closure};
@@ -94,7 +94,7 @@ impl Buffers {
 }
 
 /// The triangles that cover a leaf, four at most, and how many they are.
-fn covering(forest: &Forest<'_>, node: u32) -> ([[u32; 3]; 4], usize) {
+pub(super) fn covering(forest: &Forest<'_>, node: u32) -> ([[u32; 3]; 4], usize) {
     let corners = forest.node(node).corners;
     let splits = [0, 1, 2].map(|edge| forest.split_of(node, edge));
     let split = (0..3).filter(|&edge| splits[edge].is_some()).fold(0, |bits, edge| bits | 1 << edge);
@@ -119,53 +119,4 @@ fn covering(forest: &Forest<'_>, node: u32) -> ([[u32; 3]; 4], usize) {
     let pattern = closure(split, diagonal).triangles();
     found.iter_mut().zip(pattern).for_each(|(triangle, labels)| *triangle = labels.map(label));
     (found, pattern.len())
-}
-
-/// Positions and triangles in an order that the forest alone decides: vertices of the control mesh first, the others as a walk over the
-/// control faces comes to them.
-pub(super) fn numbered(
-    forest: &Forest<'_>,
-    control_vertices: usize,
-    faces: usize,
-) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
-    let mut walk = Walk {
-        forest,
-        numbers: vec![NONE; forest.vertices.positions.len()],
-        positions: forest.vertices.positions[..control_vertices].to_vec(),
-        triangles: Vec::with_capacity(forest.triangles),
-    };
-    (0..control_vertices).for_each(|vertex| walk.numbers[vertex] = vertex as u32);
-    (0..faces as u32).for_each(|face| walk.node(face));
-    (walk.positions, walk.triangles)
-}
-
-struct Walk<'f, 'a> {
-    forest: &'f Forest<'a>,
-    numbers: Vec<u32>,
-    positions: Vec<[f64; 3]>,
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Walk<'_, '_> {
-    fn node(&mut self, node: u32) {
-        let children = self.forest.node(node).children;
-        if children == NONE {
-            let (found, count) = covering(self.forest, node);
-            for triangle in &found[..count] {
-                let numbered = triangle.map(|vertex| self.number(vertex));
-                self.triangles.push(numbered);
-            }
-            return;
-        }
-        (children..children + 4).for_each(|child| self.node(child));
-    }
-
-    fn number(&mut self, vertex: u32) -> u32 {
-        let number = &mut self.numbers[vertex as usize];
-        if *number == NONE {
-            *number = self.positions.len() as u32;
-            self.positions.push(self.forest.vertices.positions[vertex as usize]);
-        }
-        *number
-    }
 }

@@ -9,6 +9,7 @@ use std::collections::HashMap;
 use smallvec::SmallVec;
 
 use super::demand::Question;
+use super::measure::Measure;
 use super::pieces::{Ground, Pieces};
 use crate::limit_surface::LimitSurface;
 use crate::node::{Along, Beyond, Edges, Place, beyond};
@@ -114,11 +115,11 @@ pub(super) struct Forest<'a> {
 
 impl<'a> Forest<'a> {
     /// The control faces alone.
-    pub(super) fn of(surface: LimitSurface<'a>) -> Self {
+    pub(super) fn of(surface: LimitSurface<'a>, measure: Measure) -> Self {
         let control = surface.control();
         let (topology, faces) = (control.topology(), control.face_count());
         let edges = Edges::of(control);
-        let pieces = Pieces::of(surface);
+        let pieces = Pieces::of(surface, measure);
         let values = parallel::pieces_of(faces, BLOCK, |block| {
             block.map(|face| pieces.control_value(face as u32)).collect::<Vec<_>>()
         })
@@ -160,6 +161,11 @@ impl<'a> Forest<'a> {
 
     pub(super) fn surface(&self) -> &LimitSurface<'a> {
         self.pieces.surface()
+    }
+
+    /// What values are.
+    pub(super) fn measure(&self) -> Measure {
+        self.pieces.measure()
     }
 
     pub(super) fn node(&self, node: u32) -> &Node {
@@ -397,7 +403,7 @@ impl<'a> Forest<'a> {
             let (slots, count) = (own.own, core::mem::take(&mut own.triangles));
             let theirs = own.ground;
             self.released.extend(&slots[..usize::from(count)]);
-            if matches!(ground, Ground::General(_)) {
+            if matches!(ground, Ground::General(_) | Ground::Sampled(_)) {
                 self.pieces.give_back(theirs);
             }
             self.node_mut(child).parent = NONE;

@@ -8,10 +8,12 @@
 //! triangles. Gives a conforming mesh ([`Front::mesh`]), the same in buffers of which an update tells what it changed
 //! ([`Front::positions`], [`Front::triangles`], [`Changes`]), and a proven bound of its distance from the limit surface ([`Front::bound`]).
 //!
+//! A front may go by other criteria of the literature instead of distances ([`Measure`]), to be compared with them.
+//!
 //! Data flows from `pieces` (the surface over a node, its *value*: how far it is from the node's triangle, whatever the neighbours
-//! are) to `forest` (nodes, neighbours, vertices), which `least` brings from one least set of divided nodes to the next, where the proof
+//! are; by another `measure`, what that sees) to `forest` (nodes, neighbours, vertices), which `least` brings from one least set of divided nodes to the next, where the proof
 //! is; `demand` says which nodes want to be divided and for how long that is certain while cameras move, `agenda` keeps nodes by
-//! when they are to be asked again; `buffers` has the triangles.
+//! when they are to be asked again; `buffers` has the triangles, `snapshot` the mesh with where it came from.
 //!
 //! ```
 //! use limitmesh::front::{Demand, Front};
@@ -39,15 +41,19 @@ mod buffers;
 mod demand;
 mod forest;
 mod least;
+mod measure;
 mod pieces;
+mod snapshot;
 
 use agenda::Agenda;
 use buffers::Buffers;
 pub use buffers::Changes;
 pub use demand::Demand;
-use demand::Question;
+use demand::{Goal, Question};
 use forest::Forest;
 use least::{Watch, extend, loosen};
+pub use measure::Measure;
+pub use snapshot::Snapshot;
 
 use crate::criterion::CriterionError;
 use crate::limit::LimitError;
@@ -108,9 +114,28 @@ impl<'a> Front<'a> {
     /// # Errors
     /// The scheme has no limit at the shape of some ring.
     pub fn new(control: &'a Mesh, scheme: &'a dyn Scheme) -> Result<Self, FrontError> {
-        let surface = LimitSurface::without_normals(control, scheme)?;
-        let length = control.diagonal();
-        let forest = Forest::of(surface);
+        Self::measured_by(control, scheme, Measure::Distance)
+    }
+
+    /// The same going by another measure than distances: what [`Demand::tolerance`] asks is then in that measure's unit. Cameras go with
+    /// distances alone.
+    ///
+    /// # Errors
+    /// As for [`Self::new`].
+    pub fn measured_by(
+        control: &'a Mesh,
+        scheme: &'a dyn Scheme,
+        measure: Measure,
+    ) -> Result<Self, FrontError> {
+        let surface = match measure {
+            Measure::PlanarityAngle => LimitSurface::new(control, scheme)?,
+            _ => LimitSurface::without_normals(control, scheme)?,
+        };
+        let length = match measure {
+            Measure::PlanarityAngle => core::f64::consts::PI,
+            _ => control.diagonal(),
+        };
+        let forest = Forest::of(surface, measure);
         if let Some(why) = forest.surface().failure() {
             return Err(why.clone().into());
         }
@@ -141,9 +166,15 @@ impl<'a> Front<'a> {
     /// pictures or another limit in pixels, other levels, and a number of triangles that cameras' limit does not fit.
     ///
     /// # Errors
-    /// The demand is out of range, or a stencil failed.
+    /// The demand is out of range, or asks for cameras where the front does not go by distances, or a stencil failed.
     pub fn update(&mut self, demand: &Demand) -> Result<&Changes, FrontError> {
         demand.check()?;
+        if let Goal::Pixels(value, _) = demand.goal
+            && self.forest.measure() != Measure::Distance
+        {
+            let (name, expected) = ("limit in pixels", "none, for a front that does not go by distances");
+            return Err(CriterionError::BadParameter { name, value, expected }.into());
+        }
         if self.demand.as_ref() == Some(demand) {
             self.changes = Changes::default();
             return Ok(&self.changes);
@@ -358,15 +389,30 @@ impl<'a> Front<'a> {
     /// # Errors
     /// A coordinate is not finite.
     pub fn mesh(&self) -> Result<Mesh, FrontError> {
-        let control = self.forest.surface().control();
-        let (positions, triangles) =
-            buffers::numbered(&self.forest, control.vertex_count(), control.face_count());
-        Ok(Mesh::from_triangles(positions, triangles)?)
+        let numbered = snapshot::numbered(&self.forest);
+        Ok(Mesh::from_triangles(numbered.positions, numbered.triangles)?)
     }
 
-    /// How far mesh and limit surface are from each other at most, both ways and place by place, in the control mesh's units: proven for schemes of the Loop family,
-    /// an estimate from samples for others.
+    /// The same mesh with the tags that last, and with where it came from.
+    ///
+    /// # Errors
+    /// A coordinate is not finite.
+    pub fn snapshot(&self) -> Result<Snapshot, FrontError> {
+        Ok(Snapshot::of(&self.forest)?)
+    }
+
+    /// How far mesh and limit surface are from each other at most, both ways and place by place, in the control mesh's units: proven for
+    /// schemes of the Loop family, an estimate from samples for others. Infinite where a front does not go by distances: nothing is known then.
     pub fn bound(&self) -> f64 {
+        match self.forest.measure() {
+            Measure::Distance => self.worst(),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The greatest value of a triangle's node, in the unit of what the front goes by: more than was asked only where levels or triangles
+    /// are limited.
+    pub fn worst(&self) -> f64 {
         self.forest.worst(|extent| extent.value)
     }
 
@@ -384,7 +430,7 @@ impl<'a> Front<'a> {
 
     /// Whether the distance is proven.
     pub fn is_certified(&self) -> bool {
-        self.forest.surface().rules().is_certified()
+        self.forest.measure() == Measure::Distance && self.forest.surface().rules().is_certified()
     }
 }
 

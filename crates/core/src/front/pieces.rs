@@ -1,5 +1,7 @@
 //! The limit surface over nodes: points in the middles of edges, and how far it is from a node's triangle.
 //!
+//! Where a front goes by another [`Measure`], all nodes have their own pieces, with the points that it looks at ([`Sampled`]).
+//!
 //! A node over part of a regular piece keeps the piece's number and its place there; any other its own piece. Values belong to nodes
 //! alone: of parts of regular pieces by second derivatives ([`SecondDerivatives`]); of others what [`Sheet::off_linear`] finds for the
 //! node's triangle, and for closing triangles how far the middles of edges are from those of the triangle, since linear interpolation
@@ -7,6 +9,7 @@
 
 use core::array::from_fn;
 
+use super::measure::{Measure, Sampled, greatest};
 use crate::certificate::{SecondDerivatives, Sheet, SubTriangle};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
@@ -61,6 +64,8 @@ pub(super) enum Ground {
     Regular(u32, Spot),
     /// A piece of its own.
     General(u32),
+    /// A piece of its own, of a front that does not go by distances.
+    Sampled(u32),
 }
 
 /// A piece that is not regular, and the points in the middles of its edges.
@@ -106,24 +111,39 @@ impl<T> Shelf<T> {
 /// The pieces of a limit surface over the nodes that there are.
 pub(super) struct Pieces<'a> {
     surface: LimitSurface<'a>,
+    measure: Measure,
     regular: Shelf<Box<Quartic>>,
     general: Shelf<Box<General>>,
+    sampled: Shelf<Box<Sampled>>,
 }
 
 /// A part of a node's surface, and its value.
 pub(super) type Part = (Ground, f64);
 
 impl<'a> Pieces<'a> {
-    pub(super) fn of(surface: LimitSurface<'a>) -> Self {
-        Self { surface, regular: Shelf::default(), general: Shelf::default() }
+    pub(super) fn of(surface: LimitSurface<'a>, measure: Measure) -> Self {
+        let (regular, general, sampled) = (Shelf::default(), Shelf::default(), Shelf::default());
+        Self { surface, measure, regular, general, sampled }
+    }
+
+    pub(super) fn measure(&self) -> Measure {
+        self.measure
     }
 
     pub(super) fn surface(&self) -> &LimitSurface<'a> {
         &self.surface
     }
 
+    fn control_sampled(&self, face: u32) -> Sampled {
+        let (sheet, rules) = self.surface.sheet(FaceId(face));
+        Sampled::of(sheet.patch, self.surface.corner_points(FaceId(face)), rules)
+    }
+
     /// The value of a control face.
     pub(super) fn control_value(&self, face: u32) -> f64 {
+        if self.measure != Measure::Distance {
+            return self.control_sampled(face).value(self.measure);
+        }
         let (sheet, rules) = self.surface.sheet(FaceId(face));
         match &sheet.patch {
             Patch::Regular(points) => {
@@ -141,15 +161,16 @@ impl<'a> Pieces<'a> {
         let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let off = sheet.off_linear(SubTriangle::Whole, TIGHT * size, self.surface.rules());
         let straight = [a + b, b + c, c + a].map(|sum| 0.5 * sum);
-        let apart = (0..3).map(|edge| middles[edge].distance(straight[edge]));
-        let value = apart
-            .fold(0.0, |most: f64, apart| if apart > most || apart.is_nan() { apart } else { most })
-            + off;
+        let value = greatest((0..3).map(|edge| middles[edge].distance(straight[edge]))) + off;
         if value.is_nan() { f64::INFINITY } else { value }
     }
 
     /// The surface over a control face that is to be divided.
     pub(super) fn control(&mut self, face: u32) -> Ground {
+        if self.measure != Measure::Distance {
+            let own = self.control_sampled(face);
+            return Ground::Sampled(self.sampled.put(Box::new(own)));
+        }
         let (sheet, rules) = self.surface.sheet(FaceId(face));
         match &sheet.patch {
             Patch::Regular(points) => {
@@ -181,6 +202,15 @@ impl<'a> Pieces<'a> {
                 };
                 piece.sheet.children(self.surface.rules()).map(|sheet| self.part(sheet))
             }
+            Ground::Sampled(piece) => {
+                let Some(piece) = self.sampled.get(piece) else {
+                    return [(Ground::Control, f64::INFINITY); 4];
+                };
+                piece.children(self.surface.rules()).map(|part| {
+                    let value = part.value(self.measure);
+                    (Ground::Sampled(self.sampled.put(Box::new(part))), value)
+                })
+            }
         }
     }
 
@@ -203,6 +233,7 @@ impl<'a> Pieces<'a> {
             Ground::Control => {}
             Ground::Regular(piece, _) => self.regular.take(piece),
             Ground::General(piece) => self.general.take(piece),
+            Ground::Sampled(piece) => self.sampled.take(piece),
         }
     }
 
@@ -217,7 +248,9 @@ impl<'a> Pieces<'a> {
             Ground::Control => {
                 let (sheet, rules) = self.surface.sheet(FaceId(face));
                 match &sheet.patch {
-                    Patch::Regular(points) => at(&quartic(points), Spot::WHOLE.middle(edge)),
+                    Patch::Regular(points) if self.measure == Measure::Distance => {
+                        at(&quartic(points), Spot::WHOLE.middle(edge))
+                    }
                     _ => sheet.patch.refined(rules).middle(edge).position,
                 }
             }
@@ -225,6 +258,7 @@ impl<'a> Pieces<'a> {
                 self.regular.get(piece).map_or(DVec3::NAN, |piece| at(piece, spot.middle(edge)))
             }
             Ground::General(piece) => self.general.get(piece).map_or(DVec3::NAN, |piece| piece.middles[edge]),
+            Ground::Sampled(piece) => self.sampled.get(piece).map_or(DVec3::NAN, |piece| piece.middle(edge)),
         }
     }
 }

@@ -35,6 +35,14 @@ impl ExtraordinaryPatch {
         core::iter::once(self.at).chain(self.ring.iter().copied()).chain(self.outer)
     }
 
+    /// The point of a corner of the face.
+    pub(super) fn control_point(&self, corner: usize) -> DVec3 {
+        match (corner + 3 - self.corner) % 3 {
+            0 => self.at,
+            local => self.ring[local - 1],
+        }
+    }
+
     /// Moves all so that the irregular vertex is at the origin, and gives where it was.
     pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
         let from = core::mem::take(&mut self.at);

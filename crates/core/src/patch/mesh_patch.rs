@@ -62,6 +62,11 @@ impl MeshPatch {
         self.first
     }
 
+    /// The point of a corner of the face.
+    pub(super) fn control_point(&self, corner: usize) -> DVec3 {
+        vector(self.mesh.positions()[self.mesh.topology().origin(corners(self.first)[corner]).index()])
+    }
+
     /// The corners and their neighbours; some more than once.
     pub(crate) fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
         let topology = self.mesh.topology();

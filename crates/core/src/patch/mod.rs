@@ -142,6 +142,18 @@ impl Patch {
         }
     }
 
+    /// The control point of a corner, on the piece's own level.
+    pub(crate) fn control_point(&self, corner: usize) -> DVec3 {
+        match self {
+            Self::Regular(points) => points[box_spline::CORNERS[corner]],
+            Self::Extraordinary(patch) => patch.control_point(corner),
+            Self::Pole(patch) => patch.control_point(corner),
+            Self::Sectors(sectors) => sectors.0[corner].at,
+            Self::SemiSharp(patch) => patch.control_point(corner),
+            Self::Mesh(local) => local.control_point(corner),
+        }
+    }
+
     /// Moves the piece so that one of its points is at the origin, and gives where that was. Pieces that are refined a few times before
     /// they are others, or of which nobody asks for more than limits, stay.
     pub(crate) fn moved_to_origin(&mut self) -> DVec3 {

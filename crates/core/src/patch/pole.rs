@@ -54,6 +54,10 @@ impl PolePatch {
     }
 
     /// Moves all so that the irregular vertex is at the origin, and gives where it was.
+    pub(super) fn control_point(&self, corner: usize) -> DVec3 {
+        self.near.control_point(corner)
+    }
+
     pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
         let from = self.near.moved_to_origin();
         self.mean -= from;

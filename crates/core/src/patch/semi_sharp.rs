@@ -12,9 +12,9 @@ mod regular;
 use lasting_twin::Gaps;
 use regular::{RefinedRegular, RegularSemiSharp};
 
-use super::Patch;
 use super::sector::{Centre, Far, SectorPatch, VertexSector};
 use super::{LimitPoint, Rules};
+use super::{Patch, box_spline};
 use crate::index::HalfEdgeId;
 use crate::mesh::{Mesh, Sharpness};
 use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule, faded};
@@ -160,6 +160,14 @@ impl SemiSharpPatch {
                 None => Self::Rings(corners),
             })),
             false => Patch::of(SectorPatch(corners.each_ref().map(SemiSharpVertex::sector))),
+        }
+    }
+
+    /// The point of a corner of the face.
+    pub(super) fn control_point(&self, corner: usize) -> DVec3 {
+        match self {
+            Self::Regular(regular) => regular.points[box_spline::CORNERS[corner]],
+            Self::Rings(corners) => corners[corner].at,
         }
     }
 

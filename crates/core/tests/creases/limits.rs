@@ -13,7 +13,7 @@ use limitmesh::refine::{UniformOptions, uniform};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{HalfEdgeId, Mesh, VertexId};
 
-use crate::support::{Point, distance};
+use crate::support::{Point, cross, distance, dot};
 
 const CENTRE: VertexId = VertexId(0);
 
@@ -91,14 +91,6 @@ fn step(mesh: &Mesh, scheme: &dyn Scheme, first: u32) -> (Mesh, u32) {
     let on_edge = ring(&refined)[slot];
     let (mesh, index) = cropped(&refined, 3);
     (mesh, index[&on_edge])
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    (0..3).map(|axis| a[axis] * b[axis]).sum()
 }
 
 fn unit(a: Point) -> Point {

@@ -11,6 +11,18 @@ use limitmesh::scheme::Scheme;
 
 pub type Point = [f64; 3];
 
+pub fn minus(a: Point, b: Point) -> Point {
+    [0, 1, 2].map(|i| a[i] - b[i])
+}
+
+pub fn dot(a: Point, b: Point) -> f64 {
+    (0..3).map(|i| a[i] * b[i]).sum()
+}
+
+pub fn cross(a: Point, b: Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
 /// A small deterministic generator, so that tests do not depend on a crate's stream of random numbers.
 pub struct Random(u64);
 
