@@ -27,6 +27,11 @@ pub(crate) enum Method {
     Amresh,
     /// All faces
     Uniform,
+    /// Parts of faces that are not flat at their corners and the middles of their edges, by --angle or --tolerance, over a restricted quadtree
+    /// (Zorin, Schröder and Sweldens)
+    Planarity,
+    /// Parts of faces whose corners' control points are too far from their limits, by --tolerance, over a restricted quadtree (Müller and Jaeschke)
+    VertexError,
 }
 
 const EXAMPLES: &str = "\
@@ -38,6 +43,8 @@ Examples:
   limitmesh refine builtin:cup --tolerance 0.001% --dry-run
   limitmesh refine builtin:cup -o cup.ply --method limit-normal --angle 5 --levels 4
   limitmesh refine builtin:sphere -o seen.ply --method limit-normal --view 0,0,-1 --levels 5
+  limitmesh refine builtin:cup -o cup.ply --method planarity --angle 5
+  limitmesh refine builtin:cup -o cup.ply --method vertex-error --tolerance 0.1%
   limitmesh refine part.stl -o part.ply --crease-angle 30 --interpolate
   limitmesh refine scan.stl -o smooth.ply --interpolate-within 0.05
   limitmesh refine builtin:head -o head.ply --scheme sqrt3 --angle 10
@@ -53,6 +60,8 @@ Exit code 3 means that a cap was reached before what was asked for; the mesh is 
 /// Triangles at most where no number is given: as many as take about 10 gigabytes.
 pub(crate) const MOST_EXACT: usize = 30_000_000;
 const MOST_STEPWISE: usize = 50_000_000;
+/// A restricted quadtree keeps the pieces of its nodes.
+const MOST_RESTRICTED: usize = 5_000_000;
 
 /// The heading of the options of the stepwise methods.
 const STEPWISE: &str = "Options of the other methods";
@@ -97,8 +106,8 @@ pub(crate) struct RefineArguments {
     /// The angle that a face's normal may differ by [degrees, above 0 to 180]
     ///
     /// Smaller angles divide more faces. For exact and limit-normal it is the cone around the limit normals of the
-    /// face's vertices; for amresh the angle between neighbouring faces. Not with --method uniform. Default: 10 for
-    /// limit-normal and amresh; for exact it is one of the goals, and there is none. Where the surface has no tangent
+    /// face's vertices; for amresh the angle between neighbouring faces; for planarity that to limit normals at corners and middles of
+    /// edges. Not with --method uniform and vertex-error. Default: 10 for limit-normal, amresh and planarity; for exact it is one of the goals, and there is none. Where the surface has no tangent
     /// plane, as at a cusp, exact ends at 1/1024 of a control face times the angle in radians, and says so.
     #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
     pub(crate) angle: Option<f64>,
@@ -134,8 +143,8 @@ pub(crate) struct RefineArguments {
     /// Give no more triangles
     ///
     /// What was reached by then is written, and the exit code is 3; the stepwise methods stop before the step that
-    /// would give more. Default: 30000000 for exact, 50000000 for the others, which keep memory below about 10
-    /// gigabytes.
+    /// would give more. Default: 30000000 for exact, 5000000 for planarity and vertex-error, 50000000 for the others, which keep
+    /// memory below about 10 gigabytes.
     #[arg(long, value_name = "N", value_parser = values::positive)]
     pub(crate) max_triangles: Option<usize>,
 
@@ -194,7 +203,11 @@ pub(crate) struct RefineArguments {
 impl RefineArguments {
     /// The cap on triangles that holds.
     pub(crate) fn max_triangles(&self) -> usize {
-        let most = if self.method == Method::Exact { MOST_EXACT } else { MOST_STEPWISE };
+        let most = match self.method {
+            Method::Exact => MOST_EXACT,
+            Method::Planarity | Method::VertexError => MOST_RESTRICTED,
+            Method::LimitNormal | Method::Amresh | Method::Uniform => MOST_STEPWISE,
+        };
         self.max_triangles.unwrap_or(most)
     }
 

@@ -16,7 +16,7 @@ use crate::criterion::{Camera, CriterionError};
 use crate::vector::{DVec3, vector};
 
 /// Levels at most below a control face: paths take two bits a level.
-pub(super) const MOST_LEVELS: u32 = 30;
+pub const MOST_LEVELS: u32 = 30;
 
 /// Triangles at most, where nothing else is asked.
 pub(super) const MOST_TRIANGLES: usize = 10_000_000;

@@ -48,7 +48,7 @@ mod snapshot;
 use agenda::Agenda;
 use buffers::Buffers;
 pub use buffers::Changes;
-pub use demand::Demand;
+pub use demand::{Demand, MOST_LEVELS};
 use demand::{Goal, Question};
 use forest::Forest;
 use least::{Watch, extend, loosen};

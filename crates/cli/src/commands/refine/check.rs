@@ -5,7 +5,7 @@ use std::path::Path;
 
 use limitmesh_io::Format;
 
-use super::{picture, sqrt3};
+use super::{picture, restricted, sqrt3};
 use crate::arguments::{Method, MorphTolerance, RefineArguments, RefiningScheme};
 use crate::failure::usage;
 use crate::format::thousands;
@@ -19,6 +19,7 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
     }
     match arguments.method {
         Method::Exact => stepwise_options(arguments)?,
+        Method::Planarity | Method::VertexError => restricted::options(arguments)?,
         _ => exact_options(arguments)?,
     }
     if arguments.method == Method::Uniform {

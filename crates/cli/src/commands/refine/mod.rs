@@ -16,6 +16,7 @@ mod normals;
 mod package;
 mod provenance;
 mod put_back;
+mod restricted;
 mod selection;
 mod sqrt3;
 mod stepwise;
@@ -96,11 +97,13 @@ fn refine(
 ) -> anyhow::Result<Outcome> {
     if let Some(asset) = asset::Job::of(arguments, format)? {
         sqrt3::refuse_scenes(arguments)?;
+        restricted::refuse_scenes(arguments)?;
         arguments.features.check_of_scene()?;
         return asset.run(progress);
     }
     if let Some(package) = package::Job::of(arguments, format)? {
         sqrt3::refuse_scenes(arguments)?;
+        restricted::refuse_scenes(arguments)?;
         arguments.features.check_of_scene()?;
         return package.run(progress);
     }
@@ -114,6 +117,7 @@ fn refine(
     }
     let input = input.with_creases(arguments.features.creases_from)?;
     let is_sqrt3 = arguments.scheme == RefiningScheme::Sqrt3;
+    let is_restricted = matches!(arguments.method, Method::Planarity | Method::VertexError);
     let input_report = InputReport {
         path: input.name,
         format: input.format,
@@ -145,6 +149,7 @@ fn refine(
         ..match &goals {
             Some(goals) => exact::parameters(arguments, goals),
             None if is_sqrt3 => sqrt3::parameters(arguments, diagonal)?,
+            None if is_restricted => restricted::parameters(arguments, diagonal)?,
             None => stepwise::parameters(arguments),
         }
     };
@@ -158,6 +163,10 @@ fn refine(
     let start = Instant::now();
     let mut refined = match &goals {
         _ if is_sqrt3 => sqrt3::run((control, &read, diagonal), arguments, format, progress)?,
+        _ if is_restricted => {
+            let asked = (&control, &read, diagonal);
+            restricted::run(asked, &channels, arguments, format, progress)?
+        }
         Some(goals) => exact::run((&control, &read, &channels), goals, arguments, progress)?,
         None => stepwise::run((control.mesh, &channels, false), arguments, Some(format), progress)?,
     };

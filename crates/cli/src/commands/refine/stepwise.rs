@@ -103,7 +103,7 @@ fn refine(
         (Method::Amresh, _) => Box::new(NeighbourNormal::new(angle)),
         (Method::LimitNormal, Some(view)) => Box::new(LimitNormal::new(angle).view(view)),
         (Method::LimitNormal, None) => Box::new(LimitNormal::new(angle)),
-        (Method::Uniform | Method::Exact, _) => {
+        (Method::Uniform | Method::Exact | Method::Planarity | Method::VertexError, _) => {
             let options = UniformOptions::default().levels(levels).origins(keeps_origins).max_triangles(cap);
             return Ok(uniform_observed(control, scheme, &options, &mut observer)?);
         }
