@@ -50,6 +50,16 @@ pub(crate) enum RefiningScheme {
     Sqrt3,
 }
 
+impl From<SchemeName> for RefiningScheme {
+    fn from(name: SchemeName) -> Self {
+        match name {
+            SchemeName::Loop => Self::Loop,
+            SchemeName::LoopWarren => Self::LoopWarren,
+            SchemeName::Butterfly => Self::Butterfly,
+        }
+    }
+}
+
 impl RefiningScheme {
     /// The scheme, if it splits triangles in four.
     ///

@@ -4,14 +4,16 @@ use std::time::{Duration, Instant};
 
 use limitmesh::Mesh;
 use limitmesh::criterion::{LimitNormal, NeighbourNormal};
+use limitmesh::front::{Demand, Front, Measure};
 use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between, triangle_quality};
 use limitmesh::refine::{
     Exact, ExactOptions, StepwiseOptions, Stop, UniformOptions, exact, stepwise, uniform,
 };
+use limitmesh::sqrt3::{self, Sqrt3, Sqrt3Options};
 use limitmesh_paper::{match_angle, nearest_level};
 
 use super::interpolation;
-use crate::arguments::{CompareArguments, ConcaveCorners};
+use crate::arguments::{CompareArguments, ConcaveCorners, RefiningScheme};
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds, table, thousands, upper_bound};
 use crate::input;
@@ -35,9 +37,10 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     progress.stage(format!("refining by {levels} levels to stand for the limit surface"));
     let reference = reference::at_level(&control, scheme, levels)?;
     let tree = Bvh::new(reference.mesh.as_triangles())?;
-    let judge = Judge { arguments, reference: &reference, tree: &tree, diagonal };
+    let own = arguments.scheme.into();
+    let judge = Judge { arguments, scheme: own, reference: &reference, tree: &tree, diagonal };
 
-    let mut methods = Vec::with_capacity(7);
+    let mut methods = Vec::with_capacity(11);
     progress.stage("limit-normal");
     let options = StepwiseOptions::default().levels(arguments.levels).max_triangles(Some(MOST_TRIANGLES));
     let criterion = LimitNormal::new(arguments.angle.to_radians());
@@ -90,6 +93,23 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
         let proven = error.certified.then_some([error.lower, error.upper]);
         methods.push(judge.judge((name, None), (&mesh, levels), proven, took)?);
     }
+    for (name, measure) in RESTRICTED {
+        progress.stage(name);
+        let start = Instant::now();
+        let mut front = Front::measured_by(&control, scheme, measure)?;
+        front.update(&Demand::tolerance(0.0).triangles(count).max_levels(DEEPEST))?;
+        let mesh = front.mesh()?;
+        let took = start.elapsed();
+        let angle = (measure == Measure::PlanarityAngle).then(|| front.limit().to_degrees());
+        methods.push(judge.judge((name, angle), (&mesh, front.depth() as usize), None, took)?);
+    }
+    if !arguments.interpolation.are_given() {
+        let found = by_sqrt3(&control, count, reference.mesh.face_count(), &judge, progress);
+        match found {
+            Ok(found) => methods.push(found),
+            Err(why) => progress.note(format!("sqrt3 left out: {why}")),
+        }
+    }
     progress.clear();
     if arguments.json {
         output::print(&output::json(&methods)?)?;
@@ -109,12 +129,51 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
 /// Triangles that a method may give: more would need more memory than most machines have.
 const MOST_TRIANGLES: usize = 20_000_000;
 
+/// Criteria of the literature over a restricted quadtree, by their names.
+const RESTRICTED: [(&str, Measure); 3] = [
+    ("planarity", Measure::PlanarityAngle),
+    ("planarity-distance", Measure::PlanarityDistance),
+    ("vertex-error", Measure::VertexError),
+];
+
+/// Levels at most of those: where the surface has no tangent plane, angles to it never close.
+const DEEPEST: u32 = 8;
+
+/// Adaptive √3-subdivision with so many triangles, against its own limit surface, by as many triangles as the other one at most.
+fn by_sqrt3(
+    control: &Mesh,
+    count: usize,
+    most: usize,
+    judge: &Judge<'_>,
+    progress: &Progress,
+) -> anyhow::Result<ComparedMethod> {
+    progress.stage("sqrt3");
+    let start = Instant::now();
+    let Sqrt3 { mesh, levels, .. } =
+        sqrt3::adaptive(control, &Sqrt3Options::default().triangles(Some(count)))?;
+    let took = start.elapsed();
+    // Two steps at a time: then boundaries are divided, too.
+    let mut steps = 0;
+    while control.face_count().saturating_mul(9usize.saturating_pow(steps / 2 + 1)) <= most {
+        steps += 2;
+    }
+    let levels_of = steps as usize;
+    let options = UniformOptions::default().levels(levels_of).limit(true);
+    let reference = Reference { mesh: sqrt3::uniform(control, &options)?.mesh, levels: levels_of };
+    let tree = Bvh::new(reference.mesh.as_triangles())?;
+    let judge = Judge { scheme: RefiningScheme::Sqrt3, reference: &reference, tree: &tree, ..*judge };
+    judge.judge(("sqrt3", None), (&mesh, levels), None, took)
+}
+
 /// Triangles up to which the optimised mesh is shown too: beyond, it would take minutes.
 const MOST_OPTIMISED: usize = 200_000;
 
 /// Measures every method against the same limit surface.
+#[derive(Clone, Copy)]
 struct Judge<'a> {
     arguments: &'a CompareArguments,
+    /// Whose limit surface.
+    scheme: RefiningScheme,
     reference: &'a Reference,
     /// The reference's search tree, built once for all methods.
     tree: &'a Bvh<'a>,
@@ -125,7 +184,7 @@ struct Judge<'a> {
 impl Judge<'_> {
     fn limit(&self) -> anyhow::Result<LimitReport> {
         Ok(LimitReport {
-            scheme: self.arguments.scheme,
+            scheme: self.scheme,
             levels: self.reference.levels,
             chosen: true,
             error: None,
@@ -198,11 +257,16 @@ fn in_words(arguments: &CompareArguments, judge: &Judge<'_>, methods: &[Compared
     format!(
         "{}, against its limit surface ({}, {} levels)\n\n{}\n\
          Distances are symmetric Hausdorff distances in per cent of the control mesh's diagonal, sampled: lower \
-         bounds,\n{} samples a surface, or more where it has more vertices. What is proven is an upper bound.\n",
+         bounds,\n{} samples a surface, or more where it has more vertices. What is proven is an upper bound.{}\n",
         input::display_name(&arguments.input),
         counted(judge.reference.mesh.face_count(), "triangle", "triangles"),
         judge.reference.levels,
         table(&rows),
         thousands(arguments.samples),
+        if methods.iter().any(|m| m.method == "sqrt3") {
+            "\nsqrt3 is measured against its own limit surface."
+        } else {
+            ""
+        },
     )
 }

@@ -149,7 +149,7 @@ fn load_reference(
         (reference::at_level(&mesh, scheme.scheme(), levels)?.mesh, levels)
     };
     let limit = LimitReport {
-        scheme,
+        scheme: scheme.into(),
         levels,
         error: None,
         chosen: arguments.reference_levels.is_none(),

@@ -7,9 +7,10 @@ use super::measurement::LimitReport;
 /// One method at its triangle count.
 #[derive(Debug, Serialize)]
 pub(crate) struct ComparedMethod {
-    /// `limit-normal`, `amresh`, `uniform`, `uniform-limit`, `exact`, `exact-balance` or `exact-optimize`.
+    /// `limit-normal`, `amresh`, `uniform`, `uniform-limit`, `exact`, `exact-balance`, `exact-optimize`, `planarity`, `planarity-distance`,
+    /// `vertex-error` or `sqrt3`.
     pub(crate) method: &'static str,
-    /// The angle used; null for uniform and exact refinement.
+    /// The angle used; null for methods that have none.
     pub(crate) angle_degrees: Option<f64>,
     /// Steps done, or levels of the most divided part.
     pub(crate) levels: usize,
@@ -30,7 +31,7 @@ pub(crate) struct ComparedMethod {
     pub(crate) mean_min_angle_degrees: f64,
     /// Wall-clock seconds of the refinement alone.
     pub(crate) seconds: f64,
-    /// What stands for the limit surface.
+    /// What stands for the limit surface; sqrt3 has its own.
     pub(crate) reference: LimitReport,
     pub(crate) reference_triangles: usize,
 }

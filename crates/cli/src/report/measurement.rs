@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::certified::CertifiedReport;
 use super::diagnosis::DiagnosisReport;
-use crate::arguments::{Boundary, ConcaveCorners, CreasesFrom, SchemeName};
+use crate::arguments::{Boundary, ConcaveCorners, CreasesFrom, RefiningScheme};
 use crate::format::number;
 
 /// What a sampled distance is, in every report of one.
@@ -48,7 +48,7 @@ pub(crate) struct SurfaceReport {
 /// How a limit surface is represented.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct LimitReport {
-    pub(crate) scheme: SchemeName,
+    pub(crate) scheme: RefiningScheme,
     /// Levels of uniform refinement, all vertices moved to the limit; for certified distances, of the most divided part
     /// of exact refinement.
     pub(crate) levels: usize,

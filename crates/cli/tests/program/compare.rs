@@ -1,4 +1,4 @@
-//! `compare`: seven methods at nearly equal triangle counts.
+//! `compare`: eleven methods at nearly equal triangle counts.
 
 use serde_json::Value;
 
@@ -11,7 +11,19 @@ fn methods_stand_side_by_side_at_nearly_equal_counts() {
     let names: Vec<_> = list.iter().map(|m| m["method"].as_str().expect("a name")).collect();
     assert_eq!(
         names,
-        ["limit-normal", "amresh", "uniform", "uniform-limit", "exact", "exact-balance", "exact-optimize"]
+        [
+            "limit-normal",
+            "amresh",
+            "uniform",
+            "uniform-limit",
+            "exact",
+            "exact-balance",
+            "exact-optimize",
+            "planarity",
+            "planarity-distance",
+            "vertex-error",
+            "sqrt3"
+        ]
     );
     for method in list {
         has_keys(
@@ -37,11 +49,16 @@ fn methods_stand_side_by_side_at_nearly_equal_counts() {
     has_keys(exact, "certified.lower certified.upper certified.lower_percent certified.upper_percent");
     assert!(percent(exact) <= 1.02 * exact["certified"]["upper_percent"].as_f64().expect("a number"));
     let proven = |method: &Value| method["certified"]["upper"].as_f64().expect("a number");
-    for better in &list[5..] {
+    for better in &list[5..7] {
         assert!(better["triangles"].as_f64() <= Some(triangles(0)));
         assert!(percent(better) < percent(&list[0]) && proven(better) < proven(exact), "{better}");
     }
-    assert!(list[..4].iter().all(|method| method["certified"].is_null()));
+    assert!(list[..4].iter().chain(&list[7..]).all(|method| method["certified"].is_null()));
+    for other in &list[7..] {
+        let own = other["triangles"].as_f64().expect("a count");
+        assert!(own <= triangles(0) && own > 0.9 * triangles(0), "{other}");
+        assert_eq!(other["reference"]["scheme"] == "sqrt3", other["method"] == "sqrt3");
+    }
     for other in [levels.saturating_sub(1), levels + 1] {
         let miss = |level: u64| (142.0 * 4f64.powi(level as i32) - triangles(0)).abs();
         assert!(miss(levels) <= miss(other));
@@ -62,6 +79,16 @@ fn the_counts_are_those_of_refine() {
     let amresh = format!("refine builtin:cup -o {{}} --method amresh --angle {angle} --levels 2 --report -");
     let report = run(&amresh, &[&output]).expect(0).json();
     assert_eq!(list[1]["triangles"], report["output"]["triangles"]);
+    let count = &list[0]["triangles"];
+    for (row, method) in [
+        (7, "--method planarity --max-levels 8"),
+        (9, "--method vertex-error --max-levels 8"),
+        (10, "--scheme sqrt3"),
+    ] {
+        let words = format!("refine builtin:cup -o {{}} {method} --triangles {count} --report -");
+        let report = run(&words, &[&output]).expect(0).json();
+        assert_eq!(list[row]["triangles"], report["output"]["triangles"], "{method}");
+    }
 }
 
 #[test]
@@ -69,7 +96,7 @@ fn the_table_is_aligned() {
     let text = run("compare builtin:torus --samples 20000", &[]).expect(0).stdout;
     let rows: Vec<&str> =
         text.lines().skip_while(|line| !line.starts_with("method")).take_while(|l| !l.is_empty()).collect();
-    assert_eq!(rows.len(), 8, "{text}");
+    assert_eq!(rows.len(), 12, "{text}");
     let widths: Vec<usize> = rows.iter().map(|row| row.chars().count()).collect();
     assert!(widths.iter().all(|&width| width == widths[0]), "{text}");
 }

@@ -27,6 +27,7 @@ mod quantities;
 mod refine;
 mod render;
 mod reproduce;
+mod restricted;
 mod shading;
 mod size;
 mod sqrt3;

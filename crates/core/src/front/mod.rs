@@ -422,6 +422,11 @@ impl<'a> Front<'a> {
         Some(self.forest.worst(|extent| self.question.measure(extent)))
     }
 
+    /// Levels of the finest triangle below its control face.
+    pub fn depth(&self) -> u32 {
+        self.forest.worst(|extent| f64::from(extent.level)) as u32
+    }
+
     /// The distance, or number of pixels, that all triangles keep as far as levels allow: what was asked, or what so many triangles
     /// allow.
     pub fn limit(&self) -> f64 {

@@ -159,7 +159,7 @@ pub(super) fn parameters(arguments: &RefineArguments, diagonal: f64) -> anyhow::
             balance: false,
             divide_flat: false,
             optimize: false,
-            max_levels: levels(arguments) as usize,
+            max_levels: most_levels(arguments) as usize,
             max_memory: None,
             provenance: exact.provenance,
         }),
@@ -168,7 +168,7 @@ pub(super) fn parameters(arguments: &RefineArguments, diagonal: f64) -> anyhow::
 }
 
 /// Levels at most.
-fn levels(arguments: &RefineArguments) -> u32 {
+fn most_levels(arguments: &RefineArguments) -> u32 {
     arguments.exact.max_levels.map_or(MOST_LEVELS, |levels| levels as u32)
 }
 
@@ -203,9 +203,9 @@ pub(super) fn run(
     progress.stage(format!("refining {}", counted(control.mesh.face_count(), "triangle", "triangles")));
     let mut front = Front::measured_by(&control.mesh, scheme, goal.measure)?;
     let most = arguments.exact.triangles.unwrap_or(usize::MAX).min(arguments.max_triangles());
-    let demand = Demand::tolerance(goal.limit).triangles(most).max_levels(levels(arguments));
+    let demand = Demand::tolerance(goal.limit).triangles(most).max_levels(most_levels(arguments));
     front.update(&demand)?;
-    let (worst, stop) = (front.worst(), goal.stop(&front, arguments));
+    let (worst, levels, stop) = (front.worst(), front.depth() as usize, goal.stop(&front, arguments));
     let found = front.snapshot()?;
     drop(front);
     let channels = channels.refined(&control.mesh, &found, arguments)?;
@@ -224,8 +224,6 @@ pub(super) fn run(
             counted(mesh.face_count(), "triangle", "triangles"),
         )),
     };
-    let deepest = origins.iter().flat_map(|origin| origin.barycentric).filter(|&weight| weight > 0.0);
-    let levels = -deepest.fold(1.0, f64::min).log2();
     Ok(Refined {
         normals,
         channels,
@@ -233,10 +231,10 @@ pub(super) fn run(
         trail: Trail::default(),
         achieved: vec![goal.in_words(worst, &unit)],
         inverted: None,
-        how: counted(levels as usize, "level", "levels"),
+        how: counted(levels, "level", "levels"),
         outcome,
         report: MethodReport {
-            levels: levels as usize,
+            levels,
             stop: exact_stop_name(stop),
             ..stepwise::report(&[], Stop::Satisfied)
         },
