@@ -189,6 +189,7 @@ fn portraits(
 /// Writes the numbers, the charts and, last, the page.
 fn write(results: &Results, portraits: &[Picture], folder: &mut Folder<'_>) -> anyhow::Result<()> {
     folder.write("table1.csv", numbers::table_1_csv(results.rows()).as_bytes())?;
+    folder.write("references.csv", numbers::references_csv(results.rows()).as_bytes())?;
     folder.write("drift.csv", numbers::drift_csv(&results.table_1).as_bytes())?;
     folder.write("seams.csv", numbers::seams_csv(&results.table_1).as_bytes())?;
     let json = serde_json::to_string_pretty(results)? + "\n";

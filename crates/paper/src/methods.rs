@@ -2,11 +2,13 @@
 
 use limitmesh::Mesh;
 use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal};
+use limitmesh::front::{Demand, Front, FrontError, Measure};
 use limitmesh::refine::{
     Exact, ExactOptions, RefineError, Refinement, SeamRule, StepwiseOptions, UniformOptions, exact, stepwise,
     uniform,
 };
 use limitmesh::scheme::Loop;
+use limitmesh::sqrt3::{self, Sqrt3Options};
 
 /// The paper's method: stepwise refinement by limit normals, angle in degrees.
 ///
@@ -56,4 +58,37 @@ pub fn exact_with(control: &Mesh, faces: usize) -> Result<Exact, RefineError> {
 /// See [`RefineError`].
 pub fn uniform_plain(control: &Mesh, levels: usize) -> Result<Refinement, RefineError> {
     uniform(control, &Loop, &UniformOptions::default().levels(levels))
+}
+
+/// A criterion of the literature over a restricted quadtree: the least limit that takes at most so many faces, within eight levels, since
+/// where the surface has no tangent plane some criteria are never met.
+///
+/// # Errors
+/// See [`FrontError`].
+pub fn restricted(control: &Mesh, measure: Measure, faces: usize) -> Result<Mesh, FrontError> {
+    let mut front = Front::measured_by(control, &Loop, measure)?;
+    front.update(&Demand::tolerance(0.0).triangles(faces).max_levels(8))?;
+    front.mesh()
+}
+
+/// Adaptive √3-subdivision: the best mesh with at most so many faces, its vertices on the limit surface.
+///
+/// # Errors
+/// See [`RefineError`].
+pub fn sqrt3_with(control: &Mesh, faces: usize) -> Result<Mesh, RefineError> {
+    Ok(sqrt3::adaptive(control, &Sqrt3Options::default().triangles(Some(faces)))?.mesh)
+}
+
+/// What stands for the limit surface of √3-subdivision: an even number of uniform steps, six at least and more while they give no more than
+/// `most` faces. (Every second step divides boundaries.)
+///
+/// # Errors
+/// See [`RefineError`].
+pub fn sqrt3_reference(control: &Mesh, most: usize) -> Result<(Mesh, usize), RefineError> {
+    let mut steps = 6;
+    while control.face_count().saturating_mul(3usize.saturating_pow(steps + 2)) <= most {
+        steps += 2;
+    }
+    let options = UniformOptions::default().levels(steps as usize).limit(true);
+    Ok((sqrt3::uniform(control, &options)?.mesh, steps as usize))
 }

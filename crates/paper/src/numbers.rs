@@ -93,6 +93,37 @@ pub(super) fn table_1_csv<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
     csv(&TABLE_1_COLUMNS, rows.map(|row| table_1_cells(row).to_vec()))
 }
 
+/// The header of references.csv.
+const REFERENCES_COLUMNS: [&str; 8] = [
+    "model",
+    "angle_degrees",
+    "planarity_faces",
+    "planarity_shd_percent",
+    "vertex_error_faces",
+    "vertex_error_shd_percent",
+    "sqrt3_faces",
+    "sqrt3_shd_percent",
+];
+
+/// The cells of a row of other methods of the literature, as in the CSV and on the page.
+pub(super) fn references_cells(row: &Row) -> [String; 8] {
+    [
+        row.model.to_owned(),
+        row.angle_degrees.to_string(),
+        row.planarity.faces.to_string(),
+        shd(row.planarity.shd_percent),
+        row.vertex_error.faces.to_string(),
+        shd(row.vertex_error.shd_percent),
+        row.sqrt3.faces.to_string(),
+        shd(row.sqrt3.shd_percent),
+    ]
+}
+
+/// Those as a file.
+pub(super) fn references_csv<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
+    csv(&REFERENCES_COLUMNS, rows.map(|row| references_cells(row).to_vec()))
+}
+
 /// Distance against steps as a file; empty cells where the level is that of the reference.
 pub(super) fn drift_csv(studies: &[Study]) -> String {
     let header =

@@ -5,9 +5,10 @@ use super::figures::closure::ClosureFigure;
 use super::figures::cone::ConeFigure;
 use super::figures::view::ViewFigure;
 use super::html::{escape, findings, header, list, paragraph, pictures, section, table, wide};
-use super::numbers::{Results, shd, table_1_cells};
+use super::numbers::{Results, references_cells, shd, table_1_cells};
 use super::prose;
 use super::statistics::{Against, against};
+use super::study::Row;
 use crate::format::thousands;
 use crate::paper_models::{self, HEAD, Part, SHOE, SPHERE, TABLE_1};
 
@@ -143,7 +144,31 @@ fn table_1(results: &Results) -> String {
         )
         + &wide(&chart)
         + &findings(&prose::table_1(results))
+        + &references(results)
         + &notes
+}
+
+/// The criteria and the scheme of three of the paper's references, at the counts of Table 1.
+fn references(results: &Results) -> String {
+    let over = "<tr class=\"over\"><th colspan=\"2\"></th><th colspan=\"2\">planarity (Zorin)</th>\
+                <th colspan=\"2\">vertex errors (Müller)</th><th colspan=\"2\">√3 (Kobbelt)</th></tr>\n";
+    let head = header(&["model", "angle", "faces", "SHD %", "faces", "SHD %", "faces", "SHD %"], &[]);
+    let row = |row: &Row| {
+        let mut cells = references_cells(row);
+        for column in [2, 4, 6] {
+            cells[column] = cells[column].parse().map_or_else(|_| cells[column].clone(), thousands);
+        }
+        cells[1].push('°');
+        cells.to_vec()
+    };
+    let groups: Vec<Vec<Vec<String>>> =
+        results.table_1.iter().map(|study| study.rows.iter().map(row).collect()).collect();
+    let intro = "Methods of three of the paper's references, with no more faces than its own: the planarity of Zorin, Schröder and \
+                 Sweldens (how high the limit surface is over a triangle in the middles of its edges) and the vertex errors of Müller and \
+                 Jaeschke (how far control points are from their limits), both over a quadtree whose neighbours differ by one level and \
+                 with vertices on the limit surface, and Kobbelt's √3-subdivision, against a limit surface of its own.";
+    let caption = "Also as references.csv.";
+    paragraph(intro) + &table("references", caption, &(over.to_owned() + &head), &groups)
 }
 
 /// A row of Table 1 with its counts in groups of three digits and its ratio marked.

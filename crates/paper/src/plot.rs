@@ -4,9 +4,11 @@
 use limitmesh_render::svg::{Drawing, Pen};
 use limitmesh_render::{Align, RenderError};
 
-use super::palette::{AMRESH, EXACT, GRID, PALE, PAPER, UNIFORM, dot, plain, small, thin};
+use super::palette::{
+    AMRESH, EXACT, GRID, PALE, PAPER, PLANARITY, SQRT3, UNIFORM, VERTEX_ERROR, dot, plain, small, thin,
+};
 use super::room::{Legend, Room, lines, paragraph, width_of};
-use super::study::{DriftPoint, Row};
+use super::study::{DriftPoint, Measured, Row};
 
 /// A logarithmic axis: from values to pixels, over whole decades or halves of them.
 struct LogAxis {
@@ -62,6 +64,9 @@ pub(super) fn table_1(rows: &[Row], room: Room) -> Result<String, RenderError> {
         (PAPER, "limit normal (paper)"),
         (AMRESH, "Amresh"),
         (UNIFORM, "uniform, limit vertices (nearest count)"),
+        (PLANARITY, "planarity (Zorin)"),
+        (VERTEX_ERROR, "vertex errors (Müller)"),
+        (SQRT3, "√3 (Kobbelt), to its own limit"),
         (EXACT, "exact"),
     ];
     let legend = Legend::new(&entries, width - 20.0)?;
@@ -71,8 +76,7 @@ pub(super) fn table_1(rows: &[Row], room: Room) -> Result<String, RenderError> {
     let models = rows.chunk_by(|a, b| a.model == b.model).count() as f64;
     let bottom = top + rows.len() as f64 * step + models * (gap + name);
     let mut drawing = Drawing::new(width, bottom + 30.0 + 17.0 * caption.len() as f64)?;
-    let values =
-        rows.iter().flat_map(|r| [&r.paper, &r.amresh, &r.uniform_limit, &r.exact]).map(|m| m.shd_percent);
+    let values = rows.iter().flat_map(dots_of).map(|(measured, _)| measured.shd_percent);
     let axis = LogAxis::new(values, left, right);
     let mut free = 0.0;
     for tick in axis.ticks() {
@@ -105,11 +109,25 @@ pub(super) fn table_1(rows: &[Row], room: Room) -> Result<String, RenderError> {
     drawing.finish()
 }
 
+/// What is shown of a row, what matters most last.
+fn dots_of(row: &Row) -> [(&Measured, [u8; 3]); 7] {
+    [
+        (&row.uniform_limit, UNIFORM),
+        (&row.vertex_error, VERTEX_ERROR),
+        (&row.planarity, PLANARITY),
+        (&row.sqrt3, SQRT3),
+        (&row.amresh, AMRESH),
+        (&row.paper, PAPER),
+        (&row.exact, EXACT),
+    ]
+}
+
 fn dots(drawing: &mut Drawing, row: &Row, axis: &LogAxis, y: f64) {
-    let all = [&row.uniform_limit, &row.amresh, &row.paper, &row.exact].map(|m| axis.at(m.shd_percent));
-    let (low, high) = (all.into_iter().fold(f64::MAX, f64::min), all.into_iter().fold(f64::MIN, f64::max));
+    let all = dots_of(row).map(|(measured, colour)| (axis.at(measured.shd_percent), colour));
+    let places = all.iter().map(|&(x, _)| x);
+    let (low, high) = (places.clone().fold(f64::MAX, f64::min), places.fold(f64::MIN, f64::max));
     drawing.line([low, y], [high, y], &thin(PALE).opacity(0.6));
-    for (x, colour) in all.into_iter().zip([UNIFORM, AMRESH, PAPER, EXACT]) {
+    for (x, colour) in all {
         dot(drawing, [x, y], 5.0, colour);
     }
 }

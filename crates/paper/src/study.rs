@@ -1,11 +1,12 @@
 //! All that is measured of one model: its rows of Table 1, its drift over steps, its seam rules.
 //!
 //! Everything is measured against one reference, the model's limit surface as uniform refinement with limit
-//! vertices gives it, whose search tree is built once.
+//! vertices gives it, whose search tree is built once; √3-subdivision has a limit surface of its own.
 
 use std::time::Instant;
 
 use limitmesh::Mesh;
+use limitmesh::front::Measure;
 use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between};
 use limitmesh::refine::SeamRule;
 use limitmesh::refine::limit_reference;
@@ -50,6 +51,12 @@ pub(super) struct Row {
     pub(super) exact: Measured,
     /// Upper bound of its distance, which is proven.
     pub(super) exact_upper_percent: f64,
+    /// By Zorin's planarity, as a distance, with at most as many faces.
+    pub(super) planarity: Measured,
+    /// By Müller's vertex errors, with at most as many faces.
+    pub(super) vertex_error: Measured,
+    /// Adaptive √3-subdivision with at most as many faces, against its own limit surface.
+    pub(super) sqrt3: Measured,
 }
 
 /// One step count of the paper's method, and uniform refinement with limit vertices at as many levels.
@@ -111,7 +118,9 @@ pub(super) fn study(player: &Player, settings: &Settings, stage: &dyn Fn(&str)) 
     let reference = limit_reference(control, &Loop, level)?;
     let reference_triangles = reference.face_count();
     let tree = Bvh::new(reference.as_triangles())?;
-    let mut bench = Bench::new(player.name, control, &tree, level, settings);
+    let (sqrt3, _) = methods::sqrt3_reference(control, settings.reference_triangles)?;
+    let trees = [&tree, &Bvh::new(sqrt3.as_triangles())?];
+    let mut bench = Bench::new(player.name, control, trees, level, settings);
     let reference = Reference {
         level,
         triangles: reference_triangles,
@@ -147,6 +156,8 @@ struct Bench<'a> {
     model: &'static str,
     control: &'a Mesh,
     reference: &'a Bvh<'a>,
+    /// The limit surface of √3-subdivision.
+    sqrt3: &'a Bvh<'a>,
     level: usize,
     settings: &'a Settings,
     uniform: Vec<Option<Measured>>,
@@ -157,11 +168,12 @@ impl<'a> Bench<'a> {
     fn new(
         model: &'static str,
         control: &'a Mesh,
-        reference: &'a Bvh<'a>,
+        [reference, sqrt3]: [&'a Bvh<'a>; 2],
         level: usize,
         settings: &'a Settings,
     ) -> Self {
-        Self { model, control, reference, level, settings, uniform: vec![None; level], paper: Vec::new() }
+        let uniform = vec![None; level];
+        Self { model, control, reference, sqrt3, level, settings, uniform, paper: Vec::new() }
     }
 
     /// A length in per cent of the diagonal of the control mesh's bounding box.
@@ -170,9 +182,13 @@ impl<'a> Bench<'a> {
     }
 
     fn measure(&self, surface: &Mesh) -> anyhow::Result<Measured> {
+        self.measure_against(surface, self.reference)
+    }
+
+    fn measure_against(&self, surface: &Mesh, reference: &Bvh<'_>) -> anyhow::Result<Measured> {
         let tree = Bvh::new(surface.as_triangles())?;
         let options = SamplingOptions::default().samples(self.settings.samples);
-        let found = hausdorff_between(&tree, self.reference, &options);
+        let found = hausdorff_between(&tree, reference, &options);
         Ok(Measured {
             faces: surface.face_count(),
             shd_percent: self.percent(found.symmetric()),
@@ -218,6 +234,10 @@ impl<'a> Bench<'a> {
         let matched = match_angle(paper.faces, angle, |angle| methods::amresh(self.control, angle, steps))?;
         let amresh = self.measure(&matched.refinement.mesh)?;
         let exact = methods::exact_with(self.control, paper.faces)?;
+        let restricted = |measure| methods::restricted(self.control, measure, paper.faces);
+        let planarity = self.measure(&restricted(Measure::PlanarityDistance)?)?;
+        let vertex_error = self.measure(&restricted(Measure::VertexError)?)?;
+        let sqrt3 = methods::sqrt3_with(self.control, paper.faces)?;
         let uniform_limit_level = nearest_level(self.control.face_count(), paper.faces);
         Ok(Row {
             model: self.model,
@@ -230,6 +250,9 @@ impl<'a> Bench<'a> {
             uniform_limit_level,
             exact: self.measure(&exact.mesh)?,
             exact_upper_percent: self.percent(exact.error.upper),
+            planarity,
+            vertex_error,
+            sqrt3: self.measure_against(&sqrt3, self.sqrt3)?,
         })
     }
 

@@ -47,7 +47,8 @@ fn the_folder_is_whole_and_the_page_says_what_the_files_say() {
     let csv = read(&out, "table1.csv");
     let rows = csv_is_sound(&csv);
     let page = read(&out, "index.html");
-    page_has_the_rows(&page, &rows);
+    page_has_the_rows(&page, "table1", &rows);
+    page_has_the_rows(&page, "references", &references_are_sound(&read(&out, "references.csv"), &rows));
     links_lead_somewhere(&page, &out);
     json_agrees(&read(&out, "reproduction.json"), &rows);
     for name in names(&out).iter().filter(|name| name.ends_with(".svg")) {
@@ -91,8 +92,27 @@ fn csv_is_sound(csv: &str) -> Vec<Vec<String>> {
     rows
 }
 
-fn page_has_the_rows(page: &str, rows: &[Vec<String>]) {
-    let table = between(page, "<table id=\"table1\">", "</table>");
+/// The methods of other references have no more faces than the paper's, and nearly as many.
+fn references_are_sound(csv: &str, table_1: &[Vec<String>]) -> Vec<Vec<String>> {
+    let rows: Vec<Vec<String>> =
+        csv.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect();
+    assert_eq!(rows.len(), table_1.len());
+    for (row, paper) in rows.iter().zip(table_1) {
+        assert_eq!(row[..2], paper[..2]);
+        let number = |cell: &String| cell.parse::<f64>().expect("a number");
+        let faces = number(&paper[2]);
+        for pair in row[2..].chunks(2) {
+            let [own, shd] = [&pair[0], &pair[1]].map(number);
+            assert!(own <= faces && own > 0.9 * faces && shd > 0.0 && shd < 2.0, "{row:?}");
+        }
+        // Planarity by distance is nearly a bound of what is measured, vertex errors are not.
+        assert!(number(&row[3]) < number(&row[5]), "{row:?}");
+    }
+    rows
+}
+
+fn page_has_the_rows(page: &str, id: &str, rows: &[Vec<String>]) {
+    let table = between(page, &format!("<table id=\"{id}\">"), "</table>");
     assert_eq!(table.len(), 1);
     let body = table[0].split_once("</thead>").expect("a head").1;
     let shown: Vec<Vec<String>> = between(body, "<tr", "</tr>")

@@ -53,7 +53,8 @@ fn vertices_are_where_the_provenance_says() {
     let model = limitmesh_models::find("cup").expect("a model");
     let (control, _) = Mesh::from_soup(&model.soup(), &Default::default()).expect("a mesh");
     let surface = LimitSurface::new(&control, &Loop).expect("limits");
-    let names = ["x", "y", "z", "nx", "ny", "nz", "parent_face", "parent_a", "parent_b", "parent_c"].map(column);
+    let names =
+        ["x", "y", "z", "nx", "ny", "nz", "parent_face", "parent_a", "parent_b", "parent_c"].map(column);
     let vertices = soup(&output).positions.len();
     for line in body.lines().take(vertices).step_by(17) {
         let own: Vec<f64> = line.split(' ').map(|word| word.parse().expect("a number")).collect();
