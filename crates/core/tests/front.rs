@@ -5,10 +5,12 @@
 mod support;
 
 use std::collections::{BTreeSet, HashMap};
+use std::ops::ControlFlow;
 
 use limitmesh::criterion::Camera;
-use limitmesh::front::{Demand, Front};
+use limitmesh::front::{Demand, Front, FrontError, Measure};
 use limitmesh::mesh::PolygonSoup;
+use limitmesh::progress::Progress;
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, LimitSurface, Mesh};
 use support::{Random, lumpy, octahedron, sheet, tagged_obj, torus};
@@ -150,6 +152,54 @@ fn updates_give_what_a_fresh_front_does() {
 }
 
 /// A camera that moves a little from frame to frame is looked at node by node; a fresh front asks all nodes.
+/// Wherever an update is cancelled, there is a whole mesh, and the next one ends where a fresh front does.
+#[test]
+fn cancelled_updates_go_on_from_where_they_were() {
+    let mut random = Random::new(23);
+    for (name, control) in models() {
+        let size = control.diagonal();
+        let mut front = Front::new(&control, &Loop).unwrap();
+        let mut copy = Copy { positions: front.positions().to_vec(), triangles: front.triangles().to_vec() };
+        let mut cancelled = 0;
+        for step in 0..24 {
+            let tolerance = size * 10f64.powf(-2.8 + 0.8 * random.signed());
+            let demand = match step % 4 {
+                0 => Demand::tolerance(0.0).triangles(control.face_count() + random.below(4000)),
+                1 => Demand::pixels(0.02 + 0.02 * random.signed(), &[camera(&mut random, size)])
+                    .triangles(20_000),
+                _ => Demand::tolerance(tolerance),
+            };
+            let (mut calls, last) = (0, 1 + random.below(6));
+            let mut observer = |_: &Progress| {
+                calls += 1;
+                if calls < last { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+            };
+            match front.update_observed(&demand, &mut observer) {
+                Err(FrontError::Cancelled(_)) => cancelled += 1,
+                other => drop(other.unwrap()),
+            }
+            copy.follow(&front);
+            let mesh = front.mesh().unwrap();
+            assert!(mesh.validate().is_ok());
+            assert_eq!(
+                unnumbered(&copy.positions, &copy.triangles),
+                unnumbered(mesh.positions(), mesh.triangles()),
+                "{name}, step {step}"
+            );
+            if step % 3 == 2 {
+                front.update(&demand).unwrap();
+                copy.follow(&front);
+                assert!(bytes(&front) == fresh(&control, &Loop, &demand), "{name}, step {step}: {demand:?}");
+            }
+        }
+        assert!(cancelled > 5, "{name}: {cancelled}");
+    }
+    let mut never = |_: &Progress| ControlFlow::Break(());
+    let control = octahedron();
+    let found = Front::measured_by_observed(&control, &Loop, Measure::Distance, &mut never);
+    assert!(matches!(found, Err(FrontError::Cancelled(_))));
+}
+
 #[test]
 fn cameras_that_move_a_little() {
     for (name, control) in [("lumpy", lumpy(9, 7)), ("sheet", sheet(4, 5, 3))] {

@@ -9,11 +9,12 @@ use std::collections::HashMap;
 use smallvec::SmallVec;
 
 use super::demand::Question;
+use super::halt::Halt;
 use super::measure::Measure;
 use super::pieces::{Ground, Pieces};
 use crate::limit_surface::LimitSurface;
 use crate::node::{Along, Beyond, Edges, Place, beyond};
-use crate::parallel;
+use crate::parallel::{self, Cancelled};
 use crate::patch::child_corners;
 use crate::vector::{DVec3, vector};
 
@@ -115,14 +116,18 @@ pub(super) struct Forest<'a> {
 
 impl<'a> Forest<'a> {
     /// The control faces alone.
-    pub(super) fn of(surface: LimitSurface<'a>, measure: Measure) -> Self {
+    pub(super) fn of(
+        surface: LimitSurface<'a>,
+        measure: Measure,
+        halt: &mut Halt<'_>,
+    ) -> Result<Self, Cancelled> {
         let control = surface.control();
         let (topology, faces) = (control.topology(), control.face_count());
         let edges = Edges::of(control);
         let pieces = Pieces::of(surface, measure);
-        let values = parallel::pieces_of(faces, BLOCK, |block| {
+        let values = parallel::pieces_polled(faces, BLOCK, &mut |_| halt.watch().poll(), |block| {
             block.map(|face| pieces.control_value(face as u32)).collect::<Vec<_>>()
-        })
+        })?
         .concat();
         let mut vertices = Vertices { positions: control.positions().to_vec(), ..Vertices::default() };
         let mut nodes = Vec::with_capacity(faces);
@@ -144,7 +149,7 @@ impl<'a> Forest<'a> {
         let touched = (0..faces as u32).collect();
         nodes.iter_mut().for_each(|node: &mut Node| node.is_touched = true);
         debug_assert_eq!(topology.face_count(), faces);
-        Self {
+        Ok(Self {
             triangles: faces,
             nodes,
             extents,
@@ -156,7 +161,7 @@ impl<'a> Forest<'a> {
             hanging: HashMap::new(),
             touched,
             released: Vec::new(),
-        }
+        })
     }
 
     pub(super) fn surface(&self) -> &LimitSurface<'a> {

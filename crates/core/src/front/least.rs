@@ -23,6 +23,7 @@
 use smallvec::SmallVec;
 
 use super::forest::{Forest, NONE};
+use super::halt::Halt;
 
 /// What happens while nodes are divided.
 pub(super) trait Watch {
@@ -40,10 +41,13 @@ pub(super) struct Outcome {
     pub(super) merged: usize,
     /// Nodes that want and were not divided since the watch stopped it.
     pub(super) waiting: Vec<u32>,
+    /// Nodes that are to be merged and were not since somebody asked to stop.
+    pub(super) leaving: Vec<u32>,
 }
 
-/// Takes out of the set what is not in it any more: `lost` want no more. What would join is left waiting.
-pub(super) fn loosen(forest: &mut Forest<'_>, lost: Vec<u32>) -> Outcome {
+/// Takes out of the set what is not in it any more: `lost` want no more. What would join is left waiting, and what is not merged when
+/// somebody asks to stop, leaving.
+pub(super) fn loosen(forest: &mut Forest<'_>, lost: Vec<u32>, halt: &mut Halt<'_>) -> Outcome {
     let suspects = suspected(forest, lost);
     let mut settling = Settling { forest, watch: None, work: Vec::new(), outcome: Outcome::default() };
     for &node in &suspects {
@@ -57,8 +61,12 @@ pub(super) fn loosen(forest: &mut Forest<'_>, lost: Vec<u32>) -> Outcome {
     guilty.sort_unstable_by_key(|&node| (core::cmp::Reverse(forest.node(node).place.level), node));
     for node in guilty {
         forest.node_mut(node).is_suspect = false;
-        forest.merge(node);
-        outcome.merged += 1;
+        if halt.goes_on(forest.triangles) {
+            forest.merge(node);
+            outcome.merged += 1;
+        } else {
+            outcome.leaving.push(node);
+        }
     }
     outcome
 }

@@ -40,6 +40,7 @@ mod agenda;
 mod buffers;
 mod demand;
 mod forest;
+mod halt;
 mod least;
 mod measure;
 mod pieces;
@@ -51,6 +52,7 @@ pub use buffers::Changes;
 pub use demand::{Demand, MOST_LEVELS};
 use demand::{Goal, Question};
 use forest::Forest;
+use halt::Halt;
 use least::{Watch, extend, loosen};
 pub use measure::Measure;
 pub use snapshot::Snapshot;
@@ -59,6 +61,7 @@ use crate::criterion::CriterionError;
 use crate::limit::LimitError;
 use crate::limit_surface::LimitSurface;
 use crate::mesh::{Mesh, MeshError};
+use crate::progress::{Cancelled, Observer, unobserved};
 use crate::scheme::Scheme;
 
 /// Why there is no front.
@@ -74,6 +77,9 @@ pub enum FrontError {
     /// The result is no mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// The observer asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// Triangles that stand for the limit surface of a control mesh, kept up to date with what is asked of them.
@@ -93,6 +99,8 @@ pub struct Front<'a> {
     length: f64,
     /// Nodes that want, and were not divided since there would be too many triangles.
     waiting: Vec<u32>,
+    /// Nodes that have no reason to be divided any more, and still are since an update was cancelled.
+    leaving: Vec<u32>,
 }
 
 /// Steps towards a limit that fits: the first, and the greatest.
@@ -127,6 +135,20 @@ impl<'a> Front<'a> {
         scheme: &'a dyn Scheme,
         measure: Measure,
     ) -> Result<Self, FrontError> {
+        Self::measured_by_observed(control, scheme, measure, &mut unobserved)
+    }
+
+    /// [`Self::measured_by`], telling an observer how it goes on.
+    ///
+    /// # Errors
+    /// As for [`Self::new`], and [`FrontError::Cancelled`].
+    pub fn measured_by_observed(
+        control: &'a Mesh,
+        scheme: &'a dyn Scheme,
+        measure: Measure,
+        observer: &mut Observer<'_>,
+    ) -> Result<Self, FrontError> {
+        let mut halt = Halt::new(observer);
         let surface = match measure {
             Measure::PlanarityAngle => LimitSurface::new(control, scheme)?,
             _ => LimitSurface::without_normals(control, scheme)?,
@@ -135,13 +157,13 @@ impl<'a> Front<'a> {
             Measure::PlanarityAngle => core::f64::consts::PI,
             _ => control.diagonal(),
         };
-        let forest = Forest::of(surface, measure);
+        let forest = Forest::of(surface, measure, &mut halt)?;
         if let Some(why) = forest.surface().failure() {
             return Err(why.clone().into());
         }
         let question = Question { eyes: None, limit: f64::INFINITY, max_levels: demand::MOST_LEVELS };
         let agenda = Agenda::ladder(length);
-        let (changes, waiting) = (Changes::default(), Vec::new());
+        let (changes, waiting, leaving) = (Changes::default(), Vec::new(), Vec::new());
         let buffers = Buffers::default();
         let mut front = Self {
             forest,
@@ -154,8 +176,9 @@ impl<'a> Front<'a> {
             clocks: [0.0; 2],
             length,
             waiting,
+            leaving,
         };
-        front.ask_all(front.question.clone());
+        front.ask_all(front.question.clone(), &mut halt);
         front.finish((0, 0));
         Ok(front)
     }
@@ -168,6 +191,19 @@ impl<'a> Front<'a> {
     /// # Errors
     /// The demand is out of range, or asks for cameras where the front does not go by distances, or a stencil failed.
     pub fn update(&mut self, demand: &Demand) -> Result<&Changes, FrontError> {
+        self.update_observed(demand, &mut unobserved)
+    }
+
+    /// [`Self::update`], telling an observer how it goes on. When that breaks, the front is one between both demands, [`Self::changes`] says what
+    /// is new in it, and it goes on from there with the next demand.
+    ///
+    /// # Errors
+    /// As for [`Self::update`], and [`FrontError::Cancelled`].
+    pub fn update_observed(
+        &mut self,
+        demand: &Demand,
+        observer: &mut Observer<'_>,
+    ) -> Result<&Changes, FrontError> {
         demand.check()?;
         if let Goal::Pixels(value, _) = demand.goal
             && self.forest.measure() != Measure::Distance
@@ -181,16 +217,20 @@ impl<'a> Front<'a> {
         }
         self.demand = Some(demand.clone());
         let question = Question::of(demand);
-        let mut counts = (0, 0);
+        let (mut counts, mut halt) = ((0, 0), Halt::new(observer));
         let most = demand.most.unwrap_or(demand::MOST_TRIANGLES);
         // What is asked for is mostly near what there is; what nobody asked for begins with the coarsest mesh.
-        if demand.most.is_some() || !self.ask(question.clone(), most, &mut counts) {
+        if demand.most.is_some() || !self.ask(question.clone(), most, &mut counts, &mut halt) {
             let greatest = self.forest.greatest(&question);
             let is_near = demand.most.is_some() && self.question.eyes.is_some() == question.eyes.is_some();
             let start = if is_near { self.question.limit.min(greatest) } else { greatest };
-            self.fit(question, start, most, &mut counts);
+            self.fit(question, start, (most, &mut counts, &mut halt));
         }
         self.finish(counts);
+        if halt.is_asked() {
+            self.demand = None;
+            return Err(Cancelled.into());
+        }
         match self.forest.surface().failure() {
             Some(why) => Err(why.clone().into()),
             None => Ok(&self.changes),
@@ -199,15 +239,25 @@ impl<'a> Front<'a> {
 
     /// The least limit from the question's on whose triangles are no more than `most`, in growing steps from `start` and then by
     /// halving the numbers between one that does not fit and one that does: a greater limit never takes more.
-    fn fit(&mut self, question: Question, start: f64, most: usize, counts: &mut (usize, usize)) {
-        let mut fits = |limit: f64| self.ask_kept(Question { limit, ..question.clone() }, most, counts);
+    fn fit(
+        &mut self,
+        question: Question,
+        start: f64,
+        (most, counts, halt): (usize, &mut (usize, usize), &mut Halt<'_>),
+    ) {
+        let is_over = core::cell::Cell::new(false);
+        let mut fits = |limit: f64| {
+            let fits = self.ask_kept(Question { limit, ..question.clone() }, most, counts, halt);
+            is_over.set(halt.is_asked());
+            fits
+        };
         let least = question.limit;
         let (mut next, mut factor) = (start.min(f64::MAX).max(least), FIRST_STEP);
         let (low, high);
         if fits(next) {
             loop {
                 let fitting = next;
-                if fitting <= least {
+                if fitting <= least || is_over.get() {
                     return;
                 }
                 next = (next / factor).max(least);
@@ -221,6 +271,9 @@ impl<'a> Front<'a> {
             loop {
                 let unfit = next;
                 next = if next > 0.0 { next * factor } else { f64::INFINITY };
+                if is_over.get() {
+                    return;
+                }
                 // Nothing is divided where any distance will do.
                 if fits(next) || next.is_infinite() {
                     (low, high) = (unfit, next);
@@ -230,7 +283,7 @@ impl<'a> Front<'a> {
             }
         }
         let [mut low, mut high] = [low, high].map(f64::to_bits);
-        while high - low > 1 {
+        while high - low > 1 && !is_over.get() {
             let middle = low + (high - low) / 2;
             if fits(f64::from_bits(middle)) { high = middle } else { low = middle }
         }
@@ -238,12 +291,18 @@ impl<'a> Front<'a> {
     }
 
     /// Answers a question: `false` if that would take more triangles than `most`, whose front is then one of some greater limit.
-    fn ask(&mut self, question: Question, most: usize, counts: &mut (usize, usize)) -> bool {
-        if question == self.question && self.waiting.is_empty() {
+    fn ask(
+        &mut self,
+        question: Question,
+        most: usize,
+        counts: &mut (usize, usize),
+        halt: &mut Halt<'_>,
+    ) -> bool {
+        if question == self.question && self.waiting.is_empty() && self.leaving.is_empty() {
             return self.forest.triangles <= most;
         }
         if question.eyes.is_none() {
-            return self.ask_kept(question, most, counts);
+            return self.ask_kept(question, most, counts, halt);
         }
         let moved = question.moved(&self.question, self.length);
         let is_known = self.agenda.is_ring() && question.max_levels == self.question.max_levels;
@@ -251,8 +310,8 @@ impl<'a> Front<'a> {
             self.agenda = Agenda::ring(RING_PART * self.length);
             self.turning = Agenda::ring(RING_PART * self.length);
             self.clocks = [0.0; 2];
-            let (lost, gained) = self.ask_all(question);
-            return self.settle(lost, gained, most, counts);
+            let (lost, gained) = self.ask_all(question, halt);
+            return self.settle(lost, gained, (most, counts, halt));
         }
         self.question = question;
         let mut due = Vec::new();
@@ -268,19 +327,25 @@ impl<'a> Front<'a> {
             let wants = self.asked(node);
             self.note(node, wants, &mut lost, &mut gained);
         }
-        self.settle(lost, gained, most, counts)
+        self.settle(lost, gained, (most, counts, halt))
     }
 
     /// The same by measures that are kept for all nodes: for distances, and while a limit is searched for.
-    fn ask_kept(&mut self, question: Question, most: usize, counts: &mut (usize, usize)) -> bool {
+    fn ask_kept(
+        &mut self,
+        question: Question,
+        most: usize,
+        counts: &mut (usize, usize),
+        halt: &mut Halt<'_>,
+    ) -> bool {
         let is_known = !self.agenda.is_ring()
             && question.max_levels == self.question.max_levels
             && question.eyes == self.question.eyes;
         if !is_known {
             self.agenda = Agenda::ladder(self.forest.greatest(&question).min(f64::MAX));
             self.turning = Agenda::ring(self.length);
-            let (lost, gained) = self.ask_all(question);
-            return self.settle(lost, gained, most, counts);
+            let (lost, gained) = self.ask_all(question, halt);
+            return self.settle(lost, gained, (most, counts, halt));
         }
         let (low, high) = (question.limit.min(self.question.limit), question.limit.max(self.question.limit));
         self.question = question;
@@ -293,7 +358,7 @@ impl<'a> Front<'a> {
             let wants = self.question.measure(&self.forest.extents[node as usize]) > self.question.limit;
             self.note(node, wants, &mut lost, &mut gained);
         }
-        self.settle(lost, gained, most, counts)
+        self.settle(lost, gained, (most, counts, halt))
     }
 
     fn note(&mut self, node: u32, wants: bool, lost: &mut Vec<u32>, gained: &mut Vec<u32>) {
@@ -304,10 +369,11 @@ impl<'a> Front<'a> {
     }
 
     /// Asks all nodes another question.
-    fn ask_all(&mut self, question: Question) -> (Vec<u32>, Vec<u32>) {
+    fn ask_all(&mut self, question: Question, halt: &mut Halt<'_>) -> (Vec<u32>, Vec<u32>) {
         self.question = question;
         let (mut lost, mut gained) = (Vec::new(), Vec::new());
         for node in 0..self.forest.nodes.len() as u32 {
+            halt.goes_on(self.forest.triangles);
             if self.forest.exists(node) {
                 let wants = self.asked(node);
                 self.note(node, wants, &mut lost, &mut gained);
@@ -324,19 +390,21 @@ impl<'a> Front<'a> {
             clocks: self.clocks,
             length: self.length,
             most: usize::MAX,
+            halt: None,
         };
         asking.arrived(&self.forest, node)
     }
 
     fn settle(
         &mut self,
-        lost: Vec<u32>,
+        mut lost: Vec<u32>,
         mut gained: Vec<u32>,
-        most: usize,
-        counts: &mut (usize, usize),
+        (most, counts, halt): (usize, &mut (usize, usize), &mut Halt<'_>),
     ) -> bool {
+        lost.append(&mut self.leaving);
         // First what goes, so that triangles are not counted that are about to.
-        let mut loosened = loosen(&mut self.forest, lost);
+        let mut loosened = loosen(&mut self.forest, lost, halt);
+        self.leaving = core::mem::take(&mut loosened.leaving);
         gained.append(&mut self.waiting);
         gained.append(&mut loosened.waiting);
         gained.retain(|&node| self.forest.exists(node) && self.forest.wants(node));
@@ -346,6 +414,7 @@ impl<'a> Front<'a> {
             clocks: self.clocks,
             length: self.length,
             most,
+            halt: Some(&mut *halt),
         };
         let mut extended = extend(&mut self.forest, &gained, &mut asking);
         counts.0 += extended.divided;
@@ -357,7 +426,7 @@ impl<'a> Front<'a> {
             self.agenda.sweep(is_current);
             self.turning.sweep(is_current);
         }
-        self.waiting.is_empty() && self.forest.triangles <= most
+        self.waiting.is_empty() && self.forest.triangles <= most && !halt.is_asked()
     }
 
     fn finish(&mut self, (divided, merged): (usize, usize)) {
@@ -440,15 +509,16 @@ impl<'a> Front<'a> {
 }
 
 /// Asks nodes, and keeps them for later.
-struct Asking<'q> {
+struct Asking<'q, 'o> {
     question: &'q Question,
     agendas: [&'q mut Agenda; 2],
     clocks: [f64; 2],
     length: f64,
     most: usize,
+    halt: Option<&'q mut Halt<'o>>,
 }
 
-impl Watch for Asking<'_> {
+impl Watch for Asking<'_, '_> {
     fn arrived(&mut self, forest: &Forest<'_>, node: u32) -> bool {
         let extent = &forest.extents[node as usize];
         if u32::from(extent.level) >= self.question.max_levels {
@@ -466,6 +536,7 @@ impl Watch for Asking<'_> {
     }
 
     fn goes_on(&mut self, forest: &Forest<'_>) -> bool {
-        forest.triangles <= self.most
+        let is_allowed = self.halt.as_mut().is_none_or(|halt| halt.goes_on(forest.triangles));
+        is_allowed && forest.triangles <= self.most
     }
 }

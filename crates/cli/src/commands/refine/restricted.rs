@@ -201,10 +201,11 @@ pub(super) fn run(
     let goal = Goal::of(arguments, diagonal)?;
     let scheme = arguments.scheme()?;
     progress.stage(format!("refining {}", counted(control.mesh.face_count(), "triangle", "triangles")));
-    let mut front = Front::measured_by(&control.mesh, scheme, goal.measure)?;
+    let mut front =
+        Front::measured_by_observed(&control.mesh, scheme, goal.measure, &mut progress.observer())?;
     let most = arguments.exact.triangles.unwrap_or(usize::MAX).min(arguments.max_triangles());
     let demand = Demand::tolerance(goal.limit).triangles(most).max_levels(most_levels(arguments));
-    front.update(&demand)?;
+    front.update_observed(&demand, &mut progress.observer())?;
     let (worst, levels, stop) = (front.worst(), front.depth() as usize, goal.stop(&front, arguments));
     let found = front.snapshot()?;
     drop(front);
