@@ -5,11 +5,12 @@ use super::container::Container;
 use super::edit::{Edits, Members, items_of, quoted};
 use super::flaw::{GltfFlaw, Result};
 use super::geometry::{Appended, NewPrimitive};
+use super::idle::{self, Idle};
 use super::json::At;
-use super::primitive::DRACO;
 use super::source::Source;
 use super::uri::{self, Uri};
 use serde_json::{Value, json};
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
@@ -44,7 +45,12 @@ impl Changes {
         let text = &source.container.text;
         let top = Members::of(text)?;
         let mut edits = Edits::new(text);
-        let (buffer, start, bytes) = self.buffer(source, place, &top, &mut edits)?;
+        let idle = Idle::of(source, self);
+        let mut new = Cow::from(&self.appended.bytes);
+        let starts = if idle.has_views() { idle.append_to(new.to_mut()) } else { Vec::new() };
+        let (buffer, start, bytes) = buffer(&new, source, place, (&top, &mut edits))?;
+        let starts: Vec<usize> = starts.into_iter().map(|own| start + own).collect();
+        idle.edit((text, &top), &mut edits, (buffer, &starts))?;
         let count = |key: &str| source.json.get(key).and_then(Value::as_array).map_or(0, Vec::len);
         let (views, accessors) = (count("bufferViews"), count("accessors"));
         let new_views = self.appended.views.iter().map(|view| {
@@ -70,8 +76,7 @@ impl Changes {
         if let Some(way) = way.filter(|way| !way.is_empty()) {
             link_images(&top, &mut edits, way)?;
         }
-        let text = self.without_idle_extension(source, edits.apply())?;
-        let mut container = Container { text, ..Container::default() };
+        let mut container = Container { text: edits.apply(), ..Container::default() };
         let beside = match place {
             Place::Chunk => {
                 container.bin = (!bytes.is_empty()).then_some(bytes);
@@ -82,53 +87,6 @@ impl Changes {
             Place::Inside => None,
         };
         Ok(Written { container, beside })
-    }
-
-    /// The number of the buffer with the new bytes, where they start in it, and all of what goes to the place.
-    fn buffer<'a>(
-        &self,
-        source: &'a Source,
-        place: &Place<'_>,
-        top: &Members<'a>,
-        edits: &mut Edits<'a>,
-    ) -> Result<(usize, usize, Vec<u8>)> {
-        let text = &source.container.text;
-        let new = &self.appended.bytes;
-        let buffers = top.get("buffers").map_or_else(|| Ok(Vec::new()), items_of)?;
-        let uri = |bytes: &[u8]| match place {
-            Place::Chunk => None,
-            Place::File(name) => Some(quoted(&uri::escaped(name))),
-            Place::Inside => {
-                Some(quoted(&format!("data:application/octet-stream;base64,{}", uri::to_base64(bytes))))
-            }
-        };
-        // The first buffer is the chunk's, or was and has to go elsewhere.
-        let is_in_chunk = source.is_in_chunk();
-        if let (Some(&first), true) = (buffers.first(), matches!(place, Place::Chunk) || is_in_chunk) {
-            let mut bytes = source.first_buffer()?.to_vec();
-            if !new.is_empty() {
-                bytes.resize(bytes.len().next_multiple_of(4), 0);
-            }
-            let start = bytes.len();
-            bytes.extend(new);
-            let members = Members::of(first)?;
-            let length = bytes.len().to_string();
-            let uri = uri(&bytes);
-            if members.get("uri").is_none() && uri.is_none() {
-                if let Some(old) = members.get("byteLength") {
-                    edits.replace(old, length);
-                }
-            } else {
-                edits.replace(first, members.with(&[("uri", uri), ("byteLength", Some(length))]));
-            }
-            return Ok((0, start, bytes));
-        }
-        if !new.is_empty() {
-            let uri = uri(new).map(|uri| format!("\"uri\":{uri},")).unwrap_or_default();
-            let item = format!("{{{uri}\"byteLength\":{}}}", new.len());
-            append(edits, text, top, "buffers", vec![item])?;
-        }
-        Ok((buffers.len(), 0, new.clone()))
     }
 
     /// New attributes, indices and modes of primitives; `first` is the number of the first new accessor.
@@ -155,43 +113,60 @@ impl Changes {
             if members.get("mode").is_some_and(|mode| mode != "4") {
                 changes.push(("mode", Some("4".to_owned())));
             }
-            if let Some(extensions) = members.get("extensions") {
-                let own = Members::of(extensions)?;
-                if own.get(DRACO).is_some() {
-                    let left = (own.0.len() > 1).then(|| own.with(&[(DRACO, None)]));
-                    changes.push(("extensions", left));
-                }
+            if let Some(extensions) = members.get("extensions")
+                && Members::of(extensions)?.0.iter().any(|(key, _)| idle::OF_TRIANGLES.contains(&&key[..]))
+            {
+                changes.push(("extensions", idle::without(&members, &idle::OF_TRIANGLES)?));
             }
             edits.replace(old, members.with(&changes));
         }
         Ok(())
     }
+}
 
-    /// Takes the name of Draco's extension from the lists where no primitive is left that has it.
-    fn without_idle_extension(&self, source: &Source, text: String) -> Result<String> {
-        let is_compressed = |primitive: &At<'_>| primitive.path(&["extensions", DRACO]).is_some();
-        let (mut taken, mut left) = (false, false);
-        for (i, mesh) in source.root().list("meshes")?.into_iter().enumerate() {
-            for (j, primitive) in mesh.list("primitives")?.into_iter().enumerate() {
-                let is_replaced = self.primitives.contains_key(&(i, j));
-                taken |= is_replaced && is_compressed(&primitive);
-                left |= !is_replaced && is_compressed(&primitive);
+/// The number of the buffer with the new bytes, where they start in it, and all of what goes to the place.
+fn buffer<'a>(
+    new: &[u8],
+    source: &'a Source,
+    place: &Place<'_>,
+    (top, edits): (&Members<'a>, &mut Edits<'a>),
+) -> Result<(usize, usize, Vec<u8>)> {
+    let text = &source.container.text;
+    let buffers = top.get("buffers").map_or_else(|| Ok(Vec::new()), items_of)?;
+    let uri = |bytes: &[u8]| match place {
+        Place::Chunk => None,
+        Place::File(name) => Some(quoted(&uri::escaped(name))),
+        Place::Inside => {
+            Some(quoted(&format!("data:application/octet-stream;base64,{}", uri::to_base64(bytes))))
+        }
+    };
+    // The first buffer is the chunk's, or was and has to go elsewhere.
+    let is_in_chunk = source.is_in_chunk();
+    if let (Some(&first), true) = (buffers.first(), matches!(place, Place::Chunk) || is_in_chunk) {
+        let mut bytes = source.first_buffer()?.to_vec();
+        if !new.is_empty() {
+            bytes.resize(bytes.len().next_multiple_of(4), 0);
+        }
+        let start = bytes.len();
+        bytes.extend(new);
+        let members = Members::of(first)?;
+        let length = bytes.len().to_string();
+        let uri = uri(&bytes);
+        if members.get("uri").is_none() && uri.is_none() {
+            if let Some(old) = members.get("byteLength") {
+                edits.replace(old, length);
             }
+        } else {
+            edits.replace(first, members.with(&[("uri", uri), ("byteLength", Some(length))]));
         }
-        if left || !taken {
-            return Ok(text);
-        }
-        let top = Members::of(&text)?;
-        let mut changes = Vec::new();
-        for key in ["extensionsUsed", "extensionsRequired"] {
-            let Some(list) = top.get(key) else { continue };
-            let draco = quoted(DRACO);
-            let kept: Vec<&str> = items_of(list)?.into_iter().filter(|name| *name != draco).collect();
-            // An empty list is not allowed.
-            changes.push((key, (!kept.is_empty()).then(|| format!("[{}]", kept.join(",")))));
-        }
-        Ok(top.with(&changes))
+        return Ok((0, start, bytes));
     }
+    if !new.is_empty() {
+        let uri = uri(new).map(|uri| format!("\"uri\":{uri},")).unwrap_or_default();
+        let item = format!("{{{uri}\"byteLength\":{}}}", new.len());
+        append(edits, text, top, "buffers", vec![item])?;
+    }
+    Ok((buffers.len(), 0, new.to_vec()))
 }
 
 /// Puts a way before the names of image files.

@@ -43,6 +43,33 @@ impl<'a> Edits<'a> {
         Ok(())
     }
 
+    /// Leaves the first `count` items of an array, at least one, whose items' texts are these.
+    pub(super) fn truncate(&mut self, items: &[&'a str], count: usize) {
+        let end = |item: &str| self.offset(item) + item.len();
+        if let (Some(kept), Some(last)) = (items[..count].last(), items.last()) {
+            self.changes.push((end(kept)..end(last), String::new()));
+        }
+    }
+
+    /// Takes members out of an object that is a part of the text, each with the comma before it; from the first on, with the one after.
+    pub(super) fn remove(&mut self, object: &'a str, keys: &[&str]) -> Result<()> {
+        let mut start = self.offset(object) + 1;
+        let mut is_first = true;
+        for (key, value) in &Members::of(object)?.0 {
+            let end = self.offset(value) + value.len();
+            if keys.contains(&&key[..]) {
+                self.changes.push((start..end, String::new()));
+            } else if std::mem::take(&mut is_first)
+                && let Some(comma) = self.text[start..].find(|c: char| !c.is_ascii_whitespace())
+                && self.text[start + comma..].starts_with(',')
+            {
+                self.changes.push((start + comma..start + comma + 1, String::new()));
+            }
+            start = end;
+        }
+        Ok(())
+    }
+
     /// The text with all changes. Additions at one place stand in the order in which they were made.
     pub(super) fn apply(mut self) -> String {
         self.changes.sort_by_key(|(range, _)| range.start);
@@ -154,6 +181,18 @@ mod tests {
             edits.apply(),
             "{ \"a\" : [ 1.50 , {\"x\":1e+2} ,3,4],\n \"\\u0062\": {\"c\":\"\\/\",\"d\":[5]}, \"e\":8.0 ,\"f\":[]}"
         );
+        let mut edits = Edits::new(text);
+        edits.truncate(&items_of(members.get("a").expect("a")).expect("items"), 1);
+        assert_eq!(edits.apply(), text.replace(" , {\"x\":1e+2}", ""));
+        let removed = |keys: &[&str]| {
+            let mut edits = Edits::new(text);
+            edits.remove(text, keys).expect("removed");
+            edits.apply()
+        };
+        assert_eq!(removed(&["a"]), text.replace(" \"a\" : [ 1.50 , {\"x\":1e+2} ],", ""));
+        assert_eq!(removed(&["e", "none"]), text.replace(", \"e\":7", ""));
+        assert_eq!(removed(&["a", "b"]), "{ \"e\":7 }");
+        assert_eq!(removed(&["a", "b", "e"]), "{ }");
         assert_eq!(inner.with(&[("d", None), ("g", Some("1".into()))]), "{\"c\":\"\\/\",\"g\":1}");
     }
 }

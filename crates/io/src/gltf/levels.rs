@@ -12,7 +12,6 @@ use super::changes::Changes;
 use super::edit::{Members, items_of, quoted};
 use super::flaw::Result;
 use super::fresh::{Groups, Part, attributes};
-use super::primitive::DRACO;
 use super::source::Source;
 use super::{Asset, Geometry, VertexAttribute};
 use crate::error::WriteError;
@@ -145,7 +144,7 @@ fn document(
     let top = Members::of(text)?;
     let list = |key: &str, new: Vec<String>| -> Result<Option<String>> {
         let old = top.get(key).map_or_else(|| Ok(Vec::new()), items_of)?;
-        let is_left = |item: &&str| key == "materials" || **item != quoted(DRACO) && **item != quoted(LOD);
+        let is_left = |item: &&str| key == "materials" || **item != quoted(LOD);
         let all: Vec<String> = old.into_iter().filter(is_left).map(str::to_owned).chain(new).collect();
         Ok((!all.is_empty()).then(|| format!("[{}]", all.join(","))))
     };

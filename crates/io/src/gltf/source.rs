@@ -41,7 +41,7 @@ pub(super) struct View<'a> {
 }
 
 /// Names under which meshopt compression is known.
-const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+pub(super) const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 impl Source {
     /// Takes a file apart and reads its JSON.

@@ -5,6 +5,7 @@
 mod accessors;
 mod assets;
 mod editing;
+mod extensions;
 mod flaws;
 mod fresh_documents;
 mod joining;
