@@ -7,6 +7,8 @@ use crate::write::WriteOptions;
 
 /// The channel of texture coordinates where a format gives them no name of their own.
 pub const TEXTURE: &str = "texture coordinates";
+/// Lists of texture coordinates by corner in PLY files, as MeshLab writes them.
+pub(crate) const TEXTURE_LISTS: &str = "texcoord";
 /// Colours where a format gives them no name.
 pub(crate) const COLOUR: &str = "colours";
 /// Colours of faces where a format gives them no name.

@@ -7,11 +7,11 @@ use tempfile::TempDir;
 
 use crate::common::{file, folder, run};
 
-const CORNERS: [[i32; 3]; 8] =
+pub(crate) const CORNERS: [[i32; 3]; 8] =
     [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]];
 
 /// Sides by their corners, with their normals.
-const SIDES: [([usize; 4], [i32; 3]); 6] = [
+pub(crate) const SIDES: [([usize; 4], [i32; 3]); 6] = [
     ([0, 3, 2, 1], [0, 0, -1]),
     ([4, 5, 6, 7], [0, 0, 1]),
     ([0, 1, 5, 4], [0, -1, 0]),

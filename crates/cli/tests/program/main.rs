@@ -28,6 +28,7 @@ mod refine;
 mod render;
 mod reproduce;
 mod restricted;
+mod seams;
 mod shading;
 mod size;
 mod sqrt3;

@@ -6,10 +6,12 @@ mod off;
 mod ply;
 mod ply_columns;
 mod property;
+mod split;
 mod stl;
 mod whole;
 
 pub use property::{Property, PropertyValues};
+pub use split::splits_vertices;
 pub(crate) use whole::{WholeFile, write_together};
 pub use whole::{check_writable, write_whole, write_whole_with};
 
@@ -18,6 +20,7 @@ use crate::format::Format;
 use crate::gltf;
 use crate::threemf;
 use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Triangles};
+use split::Split;
 use std::io::Write;
 use std::path::Path;
 
@@ -39,7 +42,7 @@ pub struct Output<'a> {
     pub vertex_properties: &'a [Property<'a>],
     /// Further properties of the triangles. PLY holds them.
     pub face_properties: &'a [Property<'a>],
-    /// What corners and faces carry: see [`holds`](crate::holds).
+    /// What corners and faces carry: see [`holds`](crate::holds). PLY may have vertices several times for it: see [`splits_vertices`].
     pub channels: &'a [Channel],
     /// Files that describe materials. OBJ names them.
     pub material_libraries: &'a [String],
@@ -233,7 +236,13 @@ fn write_checked(
 ) -> Result<(), WriteError> {
     match format {
         Format::Obj => obj::write(writer, output)?,
-        Format::Ply => ply::write(writer, output, options.ascii)?,
+        Format::Ply => match Split::of(output) {
+            None => ply::write(writer, output, options.ascii)?,
+            Some(split) => {
+                let properties = split.properties(output);
+                ply::write(writer, &split.output(output, &properties), options.ascii)?;
+            }
+        },
         Format::Stl => stl::write(writer, output, options.ascii)?,
         Format::Off => off::write(writer, output)?,
         Format::Gltf | Format::Glb => writer.write_all(&gltf::write_fresh(None, format, output)?)?,

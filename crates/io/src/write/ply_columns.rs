@@ -6,7 +6,8 @@ use limitmesh::mesh::{Channel, Domain, Semantic, Storage};
 
 use super::Output;
 use super::numbers::Pieces;
-use crate::channels::by_vertex;
+use super::split::is_of_vertices;
+use crate::channels::{TEXTURE_LISTS, by_vertex};
 use crate::format::Format;
 
 /// One number of each element.
@@ -25,7 +26,7 @@ pub(super) struct Column<'a> {
 pub(super) struct Columns<'a> {
     pub(super) vertices: Vec<Column<'a>>,
     pub(super) faces: Vec<Column<'a>>,
-    /// Texture coordinates with seams: a list for each face.
+    /// Texture coordinates that a file had by corner, or with seams and no names of their own: a list for each face.
     pub(super) textures: Option<&'a Channel>,
 }
 
@@ -46,7 +47,9 @@ impl<'a> Columns<'a> {
                 continue;
             }
             let (values, torn) = by_vertex(channel, vertices, triangles);
-            if torn > 0 && channel.semantic == Semantic::TextureCoordinates {
+            let is_by_corner =
+                channel.domain == Domain::Corner && (torn > 0 || channel.name == TEXTURE_LISTS);
+            if channel.semantic == Semantic::TextureCoordinates && is_by_corner && !is_of_vertices(channel) {
                 found.textures = found.textures.or(Some(channel));
                 continue;
             }

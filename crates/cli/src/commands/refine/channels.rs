@@ -6,7 +6,7 @@ use limitmesh::Mesh;
 use limitmesh::carry::carried;
 use limitmesh::mesh::{Channel, Domain, FaceParts};
 use limitmesh::refine::Traced;
-use limitmesh_io::{Format, Output, WriteOptions, holds, values_lost};
+use limitmesh_io::{Format, Output, WriteOptions, holds, splits_vertices, values_lost};
 
 use crate::arguments::RefineArguments;
 use crate::format::counted;
@@ -119,8 +119,18 @@ impl Channels {
         Ok(Self { channels, material_libraries, texture_files })
     }
 
-    /// Of which channels the output holds one value a vertex where there are several, and for how many.
+    /// Whether the output has vertices several times, for texture coordinates that differ there.
+    pub(super) fn split_vertices(&self, format: Format, mesh: &Mesh) -> bool {
+        format == Format::Ply && splits_vertices(&self.channels, mesh.triangles(), mesh.vertex_count())
+    }
+
+    /// What becomes of vertices with several values: that they are written several times, or of which channels one value is, and for how
+    /// many.
     pub(super) fn note(&self, format: Format, mesh: &Mesh) -> Option<String> {
+        if self.split_vertices(format, mesh) {
+            let note = "vertices on seams of texture coordinates are written once for each side, as the input has them";
+            return Some(note.to_owned());
+        }
         let lost = |channel: &Channel| {
             let vertices = values_lost(format, channel, mesh.triangles(), mesh.vertex_count());
             (vertices > 0).then(|| format!("{} at {}", channel.name, counted(vertices, "vertex", "vertices")))

@@ -177,7 +177,8 @@ fn refine(
 
     progress.stage(format!("writing {}", arguments.output_name()));
     let start = Instant::now();
-    if let Some(note) = refined.normals.as_ref().and_then(|all| all.note(format, arguments.split_normals)) {
+    let is_split = is_split(format, arguments, &refined);
+    if let Some(note) = refined.normals.as_ref().and_then(|all| all.note(format, is_split)) {
         progress.note(note);
     }
     if let Some(note) = refined.channels.note(format, &refined.mesh) {
@@ -258,13 +259,21 @@ fn turned_over(inverted: usize) -> Option<String> {
     (inverted > 0).then(|| format!("{triangles} turned over against the limit surface: it folds there"))
 }
 
+/// Whether vertices on sharp edges stand once for each side: as asked for, or as a file has vertices several times anyway. Frames
+/// have as many vertices as each other, whatever their normals.
+fn is_split(format: Format, arguments: &RefineArguments, refined: &Refined) -> bool {
+    arguments.split_normals
+        || !arguments.shared_topology && refined.channels.split_vertices(format, &refined.mesh)
+}
+
 fn write(path: &Path, format: Format, arguments: &RefineArguments, refined: &Refined) -> anyhow::Result<()> {
+    let is_split = is_split(format, arguments, refined);
     let Refined { mesh, normals, channels, provenance, .. } = refined;
     let mut output = channels.add_to(Output::new(mesh.as_triangles()));
     if let Some(normals) = normals {
-        output = normals.add_to(output, format, arguments.split_normals);
+        output = normals.add_to(output, format, is_split);
     }
-    let sources = normals.as_ref().and_then(|all| all.sources(format, arguments.split_normals));
+    let sources = normals.as_ref().and_then(|all| all.sources(format, is_split));
     let provenance =
         provenance.as_ref().map(|all| sources.map_or(Cow::Borrowed(all), |list| Cow::Owned(all.of(list))));
     let of_vertices = provenance.as_deref().map(Provenance::of_vertices);

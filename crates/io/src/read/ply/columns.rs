@@ -6,9 +6,7 @@
 use limitmesh::mesh::{Channel, Domain, Semantic, Storage};
 
 use super::header::{Element, Kind, Scalar};
-
-/// Lists of texture coordinates by corner, as MeshLab writes them.
-pub(super) const TEXTURES: &str = "texcoord";
+use crate::channels::TEXTURE_LISTS;
 
 /// Names of numbers that are one value together.
 const GROUPS: [(&[&str], Semantic); 6] = [
@@ -169,7 +167,7 @@ impl CornerTextures {
     /// The channel, if every face had a place for each corner.
     pub(super) fn channel(self) -> Option<Channel> {
         let Self { values, indices, is_wrong } = self;
-        let channel = Channel::new(TEXTURES, Semantic::TextureCoordinates, Domain::Corner, 2);
+        let channel = Channel::new(TEXTURE_LISTS, Semantic::TextureCoordinates, Domain::Corner, 2);
         let channel = channel.stored(Storage::Single);
         (!is_wrong && !indices.is_empty()).then(|| channel.with(values, indices))
     }

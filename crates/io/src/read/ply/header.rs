@@ -133,7 +133,7 @@ impl Header {
             let is_carried = |property: &&Property| match (element.name.as_str(), property.kind) {
                 ("vertex", Kind::Scalar(_)) => has_normals || !NORMALS.contains(&property.name.as_str()),
                 ("face", Kind::Scalar(_)) => !has_strips,
-                ("face", Kind::List { .. }) => !has_strips && property.name == super::columns::TEXTURES,
+                ("face", Kind::List { .. }) => !has_strips && property.name == crate::channels::TEXTURE_LISTS,
                 _ => false,
             };
             let taken: &[&str] = match element.name.as_str() {

@@ -11,8 +11,9 @@ mod source;
 
 use super::left_out::trailing_bytes;
 use super::{check_count, push_face};
+use crate::channels::TEXTURE_LISTS;
 use crate::error::{Flaw, Place};
-use columns::{Columns, CornerTextures, TEXTURES};
+use columns::{Columns, CornerTextures};
 use header::{Element, Encoding, Header, Kind, Scalar};
 use limitmesh::mesh::{Domain, PolygonFaces, PolygonSoup};
 use source::{Binary, Source, Text};
@@ -207,7 +208,7 @@ fn read_polygons<S: Source>(
         push_face(faces, triangle, || source.place())?;
     }
     let textures =
-        element.find(&[TEXTURES]).filter(|&at| matches!(element.properties[at].kind, Kind::List { .. }));
+        element.find(&[TEXTURE_LISTS]).filter(|&at| matches!(element.properties[at].kind, Kind::List { .. }));
     let (mut columns, mut places) = (Columns::of(element), (Vec::new(), Vec::new()));
     let mut more = |property: usize, kind: Kind, source: &mut S| match kind {
         Kind::Scalar(scalar) if columns.has(property) => {
@@ -247,9 +248,9 @@ fn read_polygons<S: Source>(
         }
         match corners.channel() {
             Some(channel) => soup.channels.push(channel),
-            None => {
-                soup.left_out.push(format!("face properties {TEXTURES} (not two numbers for each corner)"))
-            }
+            None => soup
+                .left_out
+                .push(format!("face properties {TEXTURE_LISTS} (not two numbers for each corner)")),
         }
     }
     Ok(())
