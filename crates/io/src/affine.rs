@@ -40,6 +40,18 @@ pub(crate) fn apply(m: &Affine, [x, y, z]: [f64; 3]) -> [f64; 3] {
     m.map(|row| row[0] * x + row[1] * y + row[2] * z + row[3])
 }
 
+/// Which way a normal looks after it, of any length: outwards still where it turns surfaces inside out.
+pub(crate) fn apply_to_normal(m: &Affine, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    let rows = linear(m);
+    let sign = if determinant(&rows) < 0.0 { -1.0 } else { 1.0 };
+    // Cofactors are the inverse's transpose times the determinant, and there where it is 0.
+    std::array::from_fn(|i| {
+        let [b, c] = [rows[(i + 1) % 3], rows[(i + 2) % 3]];
+        let cofactors = [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]];
+        sign * (cofactors[0] * x + cofactors[1] * y + cofactors[2] * z)
+    })
+}
+
 /// Whether it turns surfaces inside out.
 pub(crate) fn mirrors(m: &Affine) -> bool {
     determinant(&linear(m)) < 0.0
@@ -94,6 +106,20 @@ mod tests {
         assert!((greatest_stretch(&shear) - (1.0 + 5f64.sqrt()) / 2.0).abs() < 1e-14);
         let tiny = of_parts([0.0; 3], [0.0, 0.6, 0.0, 0.8], [1.16e-4; 3]);
         assert!((greatest_stretch(&tiny) / 1.16e-4 - 1.0).abs() < 1e-14);
+    }
+
+    /// Normals stay at right angles to what they were at right angles to, and look away from what they looked away from.
+    #[test]
+    fn normals_stay_normals() {
+        for scale in [[1.0, 2.0, 0.1], [-3.0, 1.0, 0.5], [-1.0, -1.0, -2.0]] {
+            let m = of_parts([7.0, 8.0, 9.0], [0.1, 0.9, -0.4, 0.2], scale);
+            let [u, v, n] = [[1.0, 2.0, 0.0], [0.0, 1.0, 3.0], [6.0, -3.0, 1.0]];
+            let moved = |d: [f64; 3]| linear(&m).map(|row| row[0] * d[0] + row[1] * d[1] + row[2] * d[2]);
+            let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+            let normal = apply_to_normal(&m, n);
+            assert!(dot(normal, moved(u)).abs() < 1e-12 && dot(normal, moved(v)).abs() < 1e-12);
+            assert!(dot(normal, moved(n)) > 1e-3);
+        }
     }
 
     #[test]

@@ -38,7 +38,7 @@ pub(crate) enum CreasesFrom {
     /// Its tags alone
     #[default]
     None,
-    /// Normals that differ between the two faces (vn of OBJ, nx of PLY)
+    /// Normals that differ between the two faces (vn of OBJ, nx of PLY, NORMAL of glTF)
     Normals,
     /// Different smoothing groups, or none (s of OBJ)
     SmoothingGroups,
@@ -64,7 +64,8 @@ pub(crate) struct FeatureArguments {
 
     /// Keep edges sharp that the file's normals, smoothing groups or materials say are sharp [default: none]
     ///
-    /// Beside --crease-angle and the tags of the file. For OBJ, PLY, OFF and STL files.
+    /// Beside --crease-angle and the tags of the file. For OBJ, PLY, OFF and STL files; glTF assets that are edited have normals only, 3MF files
+    /// none of these.
     #[arg(long, value_enum, value_name = "WHAT", hide_default_value = true, default_value_t)]
     pub(crate) creases_from: CreasesFrom,
 
@@ -87,14 +88,27 @@ impl FeatureArguments {
             || self.concave_corners.is_some()
     }
 
-    /// Refuses what has no meaning for assets and packages.
+    /// Refuses what has no meaning for assets.
     ///
     /// # Errors
     /// Edges are to be sharp by what only other files tell.
-    pub(crate) fn check_of_scene(&self) -> anyhow::Result<()> {
+    pub(crate) fn check_of_asset(&self) -> anyhow::Result<()> {
+        match self.creases_from {
+            CreasesFrom::None | CreasesFrom::Normals => Ok(()),
+            _ => {
+                usage("of glTF assets --creases-from follows normals alone; --crease-angle is for all files")
+            }
+        }
+    }
+
+    /// Refuses what has no meaning for packages.
+    ///
+    /// # Errors
+    /// Edges are to be sharp by what only other files tell.
+    pub(crate) fn check_of_package(&self) -> anyhow::Result<()> {
         match self.creases_from {
             CreasesFrom::None => Ok(()),
-            _ => usage("--creases-from is for OBJ, PLY, OFF and STL files; --crease-angle is for all"),
+            _ => usage("--creases-from is for OBJ, PLY, OFF, STL and glTF files; --crease-angle is for all"),
         }
     }
 

@@ -20,7 +20,7 @@ Examples:
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct RenderArguments {
-    /// Mesh file (.obj, .ply, .stl, .off, .gltf, .glb), - for standard input, or builtin:NAME
+    /// Mesh file (.obj, .ply, .stl, .off, .gltf, .glb, .3mf), - for standard input, or builtin:NAME
     pub(crate) input: PathBuf,
 
     /// Picture to write (.png), or - for standard output
@@ -35,7 +35,9 @@ pub(crate) struct RenderArguments {
     #[arg(long, conflicts_with = "smooth")]
     pub(crate) flat: bool,
 
-    /// Shade smoothly, by normals interpolated between the vertices (default)
+    /// Shade smoothly, by means of the faces' normals around each vertex, whatever normals the file has
+    ///
+    /// Default for files without normals; others are shaded by theirs.
     #[arg(long)]
     pub(crate) smooth: bool,
 
@@ -49,7 +51,8 @@ pub(crate) struct RenderArguments {
 
     /// Shade both sides of edges by themselves where the faces meet at more than this angle [degrees, above 0 to 180]
     ///
-    /// Edges that the file tags as sharp for ever are shaded so in any case. With --exact they are creases of the surface.
+    /// In place of the file's normals. Edges that the file tags as sharp for ever are shaded so in any case. With --exact they are creases
+    /// of the surface.
     #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
     pub(crate) crease_angle: Option<f64>,
 

@@ -6,7 +6,7 @@ use anyhow::Context;
 use limitmesh::Mesh;
 use limitmesh::scheme::Loop;
 
-use crate::arguments::InfoArguments;
+use crate::arguments::{CreasesFrom, InfoArguments};
 use crate::bulk::Bulk;
 use crate::dihedral::Dihedrals;
 use crate::failure::{Outcome, usage};
@@ -28,7 +28,11 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
             "--crease-angle, --boundary and --concave-corners belong to a limit surface; they need --limit",
         );
     }
-    arguments.features.check_of_scene()?;
+    if arguments.features.creases_from != CreasesFrom::None {
+        return usage(
+            "info follows tags and --crease-angle; --creases-from is for refine, evaluate and measure",
+        );
+    }
     let input::Soup { name, format, soup, asset, package, .. } =
         input::read(&arguments.input, &arguments.build, progress)?;
     let options = arguments.build.options()?;

@@ -1,9 +1,9 @@
 //! `limitmesh render`: a picture of a mesh.
 
 use anyhow::{Context, bail};
-use limitmesh::mesh::SplitSurface;
+use limitmesh::mesh::{Channel, SplitSurface};
 use limitmesh::refine::limit_reference;
-use limitmesh::{LimitSurface, RayCaster};
+use limitmesh::{LimitSurface, Mesh, RayCaster};
 use limitmesh_render::{Camera, Shading, Style, render_exact_observed};
 
 use super::covering::Cover;
@@ -34,7 +34,11 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
     let shading = if arguments.flat { Shading::Flat } else { Shading::Smooth };
     let style = Style::default().shading(shading).wireframe(arguments.wireframe);
     let view = picture::view_direction(arguments.view);
-    let split = (!arguments.flat).then(|| SplitSurface::by_faces(&mesh));
+    let normals = input.normals.filter(|_| !arguments.smooth && arguments.crease_angle.is_none());
+    let split = (!arguments.flat).then(|| match &normals {
+        Some(normals) => by_normals(&mesh, normals),
+        None => SplitSurface::by_faces(&mesh),
+    });
     let (surface, normals) = match &split {
         Some(split) => (split.as_triangles(), Some(&split.normals[..])),
         None => (mesh.as_triangles(), None),
@@ -49,6 +53,34 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
     let drawn = counted(mesh.face_count(), "triangle", "triangles");
     progress.note(format!("{}: {drawn} drawn", arguments.output.display()));
     Ok(Outcome::Done)
+}
+
+/// A mesh with the normals that its file has; with those of its faces where it has none.
+fn by_normals(mesh: &Mesh, normals: &Channel) -> SplitSurface {
+    let by_faces = SplitSurface::by_faces(mesh);
+    let number = |corner: usize, i: usize| normals.value(corner).get(i).copied().unwrap_or(0.0);
+    // The way round says which side is drawn, and may have been mended: normals are those of that side.
+    let faces_against = |face: usize| {
+        let [a, b, c] = mesh.triangles()[face].map(|v| mesh.positions()[v as usize]);
+        let [u, v] = [b, c].map(|end| [0, 1, 2].map(|i| end[i] - a[i]));
+        let own = [0, 1, 2].map(|i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            u[j] * v[k] - u[k] * v[j]
+        });
+        (3 * face..3 * face + 3).flat_map(|corner| [0, 1, 2].map(|i| own[i] * number(corner, i))).sum::<f64>()
+            < 0.0
+    };
+    let is_against: Vec<bool> = (0..mesh.face_count()).map(faces_against).collect();
+    SplitSurface::new(mesh, |h| {
+        let (corner, face) = (h.index(), h.face().index());
+        let own = [0, 1, 2].map(|i| number(corner, i));
+        let length = own.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if length > 0.0 && length.is_finite() {
+            let length = if is_against[face] { -length } else { length };
+            return own.map(|x| x / length);
+        }
+        by_faces.normals[by_faces.triangles[face][corner % 3] as usize]
+    })
 }
 
 /// Triangles of the mesh by which a limit surface is framed.

@@ -187,6 +187,10 @@ fn rest(json: &Value, old: &Value) -> Value {
             }
         }
     }
+    if let Some(list) = rest.get_mut("extensionsUsed").and_then(Value::as_array_mut) {
+        // Its triangles are none of a polygon's any more.
+        list.retain(|name| name != "FB_ngon_encoding");
+    }
     rest.as_object_mut().expect("a document").remove("buffers");
     rest
 }
@@ -199,14 +203,13 @@ fn nothing_but_meshes_changes_in_assets_of_others() {
     };
     let assets = PathBuf::from(models).join("assets");
     let folder = folder();
-    // Not compressed, so that the lists of extensions stay, too.
+    // Not compressed: what becomes of such views and of the lists of extensions is tested with the library.
     let names = [
         "AnimatedMorphCube.gltf",
         "MorphStressTest.gltf",
         "quad_skin.glb",
         "ShapeCollection.glb",
         "monkey.glb",
-        "pirate.glb",
         "BoxTextured.glb",
         "cubevc.glb",
         "TwoCubes.glb",

@@ -103,8 +103,49 @@ fn groups_and_materials_say_so_too() {
         let command = format!("refine {{}} -o {{}} --creases-from {from}");
         run(&command, &[&bare, &output]).expect(2).saying(what);
     }
-    let asset = folder.path().join("a.glb");
-    run("refine builtin:cube -o {}", &[&asset]).expect(0);
-    let again = folder.path().join("b.glb");
-    run("refine {} -o {} --creases-from normals", &[&asset, &again]).expect(2).saying("is for OBJ, PLY");
+    let package = folder.path().join("a.3mf");
+    run("refine builtin:cube -o {}", &[&package]).expect(0);
+    let again = folder.path().join("b.3mf");
+    run("refine {} -o {} --creases-from normals", &[&package, &again]).expect(2).saying("is for OBJ, PLY");
+}
+
+/// Normals of glTF assets say so, too: in the mesh's own coordinates where it is edited, and in the scene's elsewhere.
+#[test]
+fn normals_of_assets_say_so() {
+    let folder = folder();
+    let mut bytes = Vec::new();
+    let mut put = |numbers: &[i32; 3]| numbers.iter().for_each(|&x| bytes.extend((x as f32).to_le_bytes()));
+    SIDES.iter().for_each(|(corners, _)| corners.iter().for_each(|&corner| put(&CORNERS[corner])));
+    SIDES.iter().for_each(|(_, normal)| (0..4).for_each(|_| put(normal)));
+    bytes.extend((0..6u8).flat_map(|side| [0, 1, 2, 0, 2, 3].map(|corner| 4 * side + corner)));
+    std::fs::write(folder.path().join("cube.bin"), &bytes).expect("written");
+    let document = |attributes: &str| {
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":612,"uri":"cube.bin"}}],
+            "bufferViews":[{{"buffer":0,"byteLength":576}},{{"buffer":0,"byteOffset":576,"byteLength":36}}],"accessors":[
+            {{"bufferView":0,"componentType":5126,"count":24,"type":"VEC3","min":[-1,-1,-1],"max":[1,1,1]}},
+            {{"bufferView":0,"byteOffset":288,"componentType":5126,"count":24,"type":"VEC3"}},
+            {{"bufferView":1,"componentType":5121,"count":36,"type":"SCALAR"}}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0{attributes}}},"indices":2}}]}}],
+            "nodes":[{{"mesh":0,"scale":[-3,1,0.5]}}]}}"#
+        )
+    };
+    let input = file(&folder, "cube.gltf", &document(r#","NORMAL":1"#));
+    let output = folder.path().join("out.glb");
+    let refine = |options: &str| {
+        let command = format!("refine {{}} -o {{}} --tolerance 0.5% --report - {options}");
+        let report = run(&command, &[&input, &output]).expect(0).json();
+        report["meshes"][0]["size"]["after"]["volume"].as_f64().expect("a number")
+    };
+    // Meshes are refined at the scale of their largest appearance.
+    let whole = 8.0 * 27.0;
+    assert!((refine("--creases-from normals") - whole).abs() < 1e-9);
+    assert!(refine("") < 0.7 * whole);
+    run("refine {} -o {}", &[&input, &output])
+        .expect(0)
+        .saying("12 edges have different normals on both sides");
+    assert!((volume(&input, "--creases-from normals") - 8.0 * 1.5).abs() < 1e-9);
+    run("refine {} -o {} --creases-from materials", &[&input, &output]).expect(2).saying("normals alone");
+    let bare = file(&folder, "bare.gltf", &document(""));
+    run("refine {} -o {} --creases-from normals", &[&bare, &output]).expect(2).saying("has no normals");
 }

@@ -106,6 +106,69 @@ fn smooth_meshes_have_a_normal_for_each_vertex() {
     assert_eq!(count("v "), count("vn "));
 }
 
+/// A file's normals are what its picture is shaded by, whichever file it is; and options that ask for others are heard.
+#[test]
+fn pictures_are_shaded_by_the_files_normals() {
+    let folder = folder();
+    let picture = folder.path().join("out.png");
+    let draw = |input: &std::path::Path, options: &str| {
+        run(&format!("render {{}} -o {{}} --size 200x150 {options}"), &[input, &picture]).expect(0);
+        std::fs::read(&picture).expect("a picture")
+    };
+    // A sphere's own normals at the corners of an octahedron, which are the means of its faces', and then all along z.
+    let octahedron = |normal: &dyn Fn([i32; 3]) -> String| {
+        let corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
+        let mut text = String::new();
+        corners.iter().for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
+        corners.iter().for_each(|&corner| text += &format!("vn {}\n", normal(corner)));
+        for [a, b] in [[1, 3], [3, 2], [2, 4], [4, 1]] {
+            text += &format!("f {a}//{a} {b}//{b} 5//5\nf {b}//{b} {a}//{a} 6//6\n");
+        }
+        text
+    };
+    let own = octahedron(&|[x, y, z]| format!("{x} {y} {z}"));
+    let plain = own.lines().filter(|line| !line.starts_with("vn")).map(|line| {
+        let words: Vec<&str> = line.split(' ').map(|word| word.split("//").next().expect("a word")).collect();
+        words.join(" ") + "\n"
+    });
+    let plain = draw(&file(&folder, "plain.obj", &plain.collect::<String>()), "");
+    assert!(draw(&file(&folder, "own.obj", &own), "") == plain);
+    // Of any length, and against the way round of their faces.
+    let inwards =
+        file(&folder, "inwards.obj", &octahedron(&|[x, y, z]| format!("{} {} {}", -2 * x, -2 * y, -2 * z)));
+    assert!(draw(&inwards, "") == plain);
+    // Zeros are none.
+    assert!(draw(&file(&folder, "none.obj", &octahedron(&|_| "0 0 0".to_owned())), "") == plain);
+    let bent =
+        file(&folder, "bent.obj", &octahedron(&|[x, y, z]| format!("{} {} {}", x + 2 * y, y - x, z + x)));
+    assert!(draw(&bent, "") != plain);
+    assert!(draw(&bent, "--smooth") == plain);
+    assert!(draw(&bent, "--crease-angle 179") == plain);
+    assert!(draw(&bent, "--flat") == draw(&inwards, "--flat"));
+    // What refinement writes is shaded the same from any file that holds normals: corners, vertices, and a document's.
+    let input = file(&folder, "prism.obj", &prism());
+    let pictures = ["obj", "ply", "glb"].map(|format| {
+        let output = folder.path().join(format!("refined.{format}"));
+        let split = if format == "ply" { "--split-normals" } else { "" };
+        run(&format!("refine {{}} -o {{}} --crease-angle 40 --tolerance 0.01 {split}"), &[&input, &output])
+            .expect(0);
+        (draw(&output, ""), draw(&output, "--smooth"))
+    });
+    let pixels = |png: &[u8]| {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().expect("a picture");
+        let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+        reader.next_frame(&mut bytes).expect("a picture");
+        bytes
+    };
+    let apart = |a: &[u8], b: &[u8]| {
+        pixels(a).iter().zip(pixels(b)).map(|(a, b)| a.abs_diff(b)).max().expect("pixels")
+    };
+    assert!(pictures.iter().all(|(own, smooth)| own != smooth), "rims are sharp");
+    // Positions and normals are rounded to floats in some of them.
+    assert!(apart(&pictures[0].0, &pictures[1].0) <= 2);
+    assert!(apart(&pictures[0].0, &pictures[2].0) <= 2);
+}
+
 /// A box that is shaded by sides shows a single colour on each of them.
 #[test]
 fn boxes_show_one_colour_a_side() {

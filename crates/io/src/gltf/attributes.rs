@@ -7,6 +7,8 @@
 
 use super::parts::Names;
 use super::primitive::{AttributeName, Primitive};
+use crate::channels::NORMALS;
+use limitmesh::mesh::{Channel, Domain, Semantic};
 use std::collections::HashMap;
 
 /// A table of values, and which of them each corner of a mesh's soup has.
@@ -40,6 +42,24 @@ impl CornerAttribute {
     pub fn is_displacement(&self) -> bool {
         self.target.is_some() && self.plain_name() == "POSITION"
     }
+}
+
+/// The normals of the primitives `wanted` at the corners of their triangles, zero where there are none; `None` if no primitive has any.
+pub(super) fn normals(primitives: &[Primitive], wanted: &[usize]) -> Option<Channel> {
+    let has_some = |&part: &usize| !primitives[part].normals.is_empty();
+    if !wanted.iter().any(has_some) {
+        return None;
+    }
+    let (mut values, mut indices) = (vec![0.0; 3], Vec::new());
+    for &part in wanted {
+        let Primitive { normals, triangles, .. } = &primitives[part];
+        let first = (values.len() / 3) as u32;
+        let is_number = |n: &[f64; 3]| n.iter().all(|x| x.is_finite());
+        values.extend(normals.iter().flat_map(|n| if is_number(n) { *n } else { [0.0; 3] }));
+        indices
+            .extend(triangles.as_flattened().iter().map(|v| if normals.is_empty() { 0 } else { first + v }));
+    }
+    Some(Channel::new(NORMALS, Semantic::Other, Domain::Corner, 3).with(values, indices))
 }
 
 /// The tables of all attributes of the primitives `wanted` but positions, normals and tangents, and of what morph targets add to any but the last two; `vertex` gives

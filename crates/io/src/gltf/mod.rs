@@ -283,7 +283,7 @@ impl Asset {
                     }
                     all.faces.push(&corners);
                 }
-                channels.add(&own, &materials, placement.mirrors());
+                channels.add(&own, &materials, placement);
             }
         }
         all.channels = channels.into_channels(&self.source).map_err(|flaw| self.told(flaw))?;

@@ -9,7 +9,7 @@ use super::attributes::{self, CornerAttribute};
 use super::kinds::Kinds;
 use super::primitive::Primitive;
 use limitmesh::PolygonSoup;
-use limitmesh::mesh::CornerTag;
+use limitmesh::mesh::{Channel, CornerTag};
 use limitmesh::ring::INFINITELY_SHARP;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -71,6 +71,9 @@ pub struct MeshSoup {
     pub parts: Vec<Part>,
     /// Texture coordinates, colours, what has a name of its own, and what morph targets add to these and to positions.
     pub attributes: Vec<CornerAttribute>,
+    /// Normals of the corners as the document has them, of any length and zero where it has none: where they differ between two faces, the
+    /// edge was meant to be sharp. They are found anew, so that nothing carries them.
+    pub normals: Option<Channel>,
     /// What stayed apart at one place.
     pub kept_apart: KeptApart,
     /// Edges along which the primitives that were asked for meet others. Their ends are corners of the soup, so that they stay straight
@@ -157,6 +160,7 @@ pub(super) fn join(
     let corner = |vertex| CornerTag { vertex, sharpness: INFINITELY_SHARP };
     result.soup.corners = ends.into_iter().map(corner).collect();
     let wanted: Vec<usize> = (0..primitives.len()).filter(|&part| is_wanted[part]).collect();
+    result.normals = attributes::normals(primitives, &wanted);
     result.attributes = attributes::tables(primitives, &names, &wanted, |part, v| {
         numbers[root(&mut roots, number((part, v)))]
     });

@@ -24,6 +24,8 @@ pub(super) struct Primitive {
     pub(super) targets: Vec<Target>,
     /// By vertex, the joints that move it with their weights above 0, by joint; empty without a skin.
     pub(super) influences: Vec<Vec<(u32, f64)>>,
+    /// Its normals as they stand, of any length; empty where it has none or they make no sense, or if nobody asked for attributes.
+    pub(super) normals: Vec<[f64; 3]>,
     /// Attributes beside positions, normals, tangents, joints and weights, if these were asked for.
     pub(super) attributes: Vec<(AttributeName, Numbers)>,
     /// Names of all attributes.
@@ -108,6 +110,11 @@ impl Source {
             add_influences(&mut influences, &joints, &weights);
         }
         sort_influences(&mut influences);
+        // They are found anew, and only say which edges were meant to be sharp: a document is none the worse without.
+        let normals = if with_attributes { read("NORMAL", Some(count)).ok().flatten() } else { None };
+        let normals = normals.filter(|own| own.components == 3);
+        let normals = normals.map_or_else(Vec::new, |own| own.values.as_chunks::<3>().0.to_vec());
+        let normals = if normals.len() == count { normals } else { Vec::new() };
         let mut others = Vec::new();
         for name in names.iter().filter(|name| with_attributes && is_carried(name)) {
             let own = AttributeName { target: None, name: name.clone() };
@@ -127,7 +134,16 @@ impl Source {
             (None, None) => (0..count as u32).collect(),
         };
         let triangles = triangles(&corners, mode);
-        Ok(Some(Primitive { index, positions, triangles, targets, influences, attributes: others, names }))
+        Ok(Some(Primitive {
+            index,
+            positions,
+            triangles,
+            targets,
+            influences,
+            normals,
+            attributes: others,
+            names,
+        }))
     }
 
     /// The morph target at `at` of a primitive with `count` vertices, and perhaps what it adds to attributes that are carried.

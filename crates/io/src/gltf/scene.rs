@@ -56,6 +56,23 @@ impl Placement {
         }
     }
 
+    /// Which way a normal at vertex `v` of a mesh looks then, of any length.
+    pub(super) fn apply_to_normal(&self, mesh: &MeshSoup, v: usize, normal: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::Rigid(m) => affine::apply_to_normal(m, normal),
+            Self::Skinned(joints) => {
+                let mut mixture: Affine = [[0.0; 4]; 3];
+                for &(joint, weight) in mesh.influences.get(v).into_iter().flatten() {
+                    let Some(m) = joints.get(joint as usize) else { continue };
+                    let sum = mixture.as_flattened_mut().iter_mut().zip(m.as_flattened());
+                    sum.for_each(|(sum, own)| *sum += weight * own);
+                }
+                let is_moved = mixture != [[0.0; 4]; 3];
+                if is_moved { affine::apply_to_normal(&mixture, normal) } else { normal }
+            }
+        }
+    }
+
     /// Whether surfaces turn inside out.
     pub(super) fn mirrors(&self) -> bool {
         match self {

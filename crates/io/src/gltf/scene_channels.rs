@@ -6,8 +6,9 @@
 use super::attributes::CornerAttribute;
 use super::flaw::Result;
 use super::parts::MeshSoup;
+use super::scene::Placement;
 use super::source::Source;
-use crate::channels::{COLOUR, MATERIAL, TEXTURE};
+use crate::channels::{COLOUR, MATERIAL, NORMALS, TEXTURE};
 use limitmesh::mesh::{Channel, Domain, Semantic};
 
 /// Channels of a scene, as far as they were gathered.
@@ -20,8 +21,9 @@ pub(super) struct SceneChannels {
 }
 
 impl SceneChannels {
-    /// Adds a mesh once more; `materials` are those of its primitives. `is_mirrored` tells that faces run the other way round.
-    pub(super) fn add(&mut self, mesh: &MeshSoup, materials: &[Option<usize>], is_mirrored: bool) {
+    /// Adds a mesh once more, where it is placed; `materials` are those of its primitives.
+    pub(super) fn add(&mut self, mesh: &MeshSoup, materials: &[Option<usize>], placement: &Placement) {
+        let is_mirrored = placement.mirrors();
         let corners = 3 * mesh.soup.faces.len();
         for attribute in mesh.attributes.iter().filter(|attribute| attribute.target.is_none()) {
             let channel = self.channel(attribute);
@@ -47,6 +49,7 @@ impl SceneChannels {
                 channel.indices.extend(face.map(|index| first + index));
             }
         }
+        self.add_normals(mesh, placement);
         self.corners += corners;
         for channel in &mut self.channels {
             pad(channel, self.corners);
@@ -55,6 +58,35 @@ impl SceneChannels {
             let material = materials.get(part.primitive).copied().flatten();
             let number = material.map_or(0, |material| material as u32 + 1);
             self.materials.extend(part.faces.clone().map(|_| number));
+        }
+    }
+
+    /// Adds a mesh's normals as the scene shows them, if it has some.
+    fn add_normals(&mut self, mesh: &MeshSoup, placement: &Placement) {
+        let Some(own) = &mesh.normals else { return };
+        let mut values = own.values.clone();
+        let mut is_moved = vec![false; own.value_count()];
+        for (&v, &index) in mesh.soup.faces.iter().flatten().zip(&own.indices) {
+            if !std::mem::replace(&mut is_moved[index as usize], true)
+                && let Some(normal) = values.as_chunks_mut::<3>().0.get_mut(index as usize)
+            {
+                *normal = placement.apply_to_normal(mesh, v as usize, *normal);
+            }
+        }
+        let at = self.channels.iter().position(|channel| channel.name == NORMALS).unwrap_or_else(|| {
+            let mut channel = Channel::new(NORMALS, Semantic::Other, Domain::Corner, 3);
+            pad(&mut channel, self.corners);
+            self.channels.push(channel);
+            self.channels.len() - 1
+        });
+        let channel = &mut self.channels[at];
+        let first = channel.value_count() as u32;
+        channel.values.extend(values);
+        for mut face in own.indices.as_chunks::<3>().0.iter().copied() {
+            if placement.mirrors() {
+                face.reverse();
+            }
+            channel.indices.extend(face.map(|index| first + index));
         }
     }
 

@@ -102,6 +102,36 @@ fn scenes_carry_attributes_and_names_of_materials() {
     assert_eq!(names, ["wood", "wood"]);
 }
 
+/// Normals stand at right angles to what they stood at right angles to, on the outside, where each instance is.
+#[test]
+fn normals_are_as_the_scene_shows_them() {
+    let nodes = r#""nodes":[{"mesh":0,"scale":[1,1,2]},{"mesh":0,"scale":[-1,1,1]}]"#;
+    let accessors = r#",{"count":3,"type":"VEC3","componentType":5126,"bufferView":1}"#;
+    let bytes = asset(nodes, accessors, &[0.0, 0.6, 0.8, f32::NAN, 0.0, 1.0, 0.6, 0.0, 0.8]);
+    let bytes = with_primitive(&bytes, r#""attributes":{"POSITION":0,"NORMAL":1}"#);
+    let soup = read_bytes(&bytes, Format::Glb).unwrap();
+    assert_eq!(soup.left_out, ["normals"]);
+    let [normals] = &soup.channels[..] else { panic!("{:?}", soup.channels) };
+    assert_eq!(normals.name, "normals");
+    let unit = |corner: usize| {
+        let own: [f64; 3] = normals.value(corner).try_into().unwrap();
+        let length = own.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if length > 0.0 { own.map(|x| x / length) } else { own }
+    };
+    let all: Vec<[f64; 3]> = (0..6).map(unit).collect();
+    // Twice as high, (0, 0.6, 0.8) becomes (0, 0.6, 0.4); mirrored, faces run the other way and x changes its sign.
+    let steep = |a: f64, c: f64| [a / (a * a + c * c).sqrt(), c / (a * a + c * c).sqrt()];
+    let [a, c] = steep(0.6, 0.4);
+    let expected = [[0.0, a, c], [0.0; 3], [a, 0.0, c], [-0.6, 0.0, 0.8], [0.0; 3], [0.0, 0.6, 0.8]];
+    for (found, expected) in all.iter().zip(expected) {
+        assert!((0..3).all(|i| (found[i] - expected[i]).abs() < 1e-7), "{all:?}");
+    }
+    // One that is broken keeps no mesh from being read.
+    let broken =
+        with_primitive(&asset(nodes, accessors, &[0.0; 9]), r#""attributes":{"POSITION":0,"NORMAL":7}"#);
+    assert!(read_bytes(&broken, Format::Glb).unwrap().channels.is_empty());
+}
+
 /// Colours of materials and the pictures on them, moved as the document says.
 #[test]
 fn materials_have_base_colours() {

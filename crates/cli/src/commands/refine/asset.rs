@@ -21,11 +21,13 @@ use super::control::Control;
 use super::exact::{self, Goals};
 use super::put_back::{MOST_WIDE, PutBack, channel, moved_positions};
 use super::selection::Selection;
-use super::{change_in_words, estimate, picture, stepwise, summary, turned_over};
+use super::{change_in_words, estimate, picture, split_normals, stepwise, summary, turned_over};
 use crate::arguments::{
-    ConcaveCorners, Extent, Featured, Length, Method, MorphTolerance, RefineArguments, RelativeTo,
+    ConcaveCorners, CreasesFrom, Extent, Featured, Length, Method, MorphTolerance, RefineArguments,
+    RelativeTo,
 };
 use crate::bulk::Bulk;
+use crate::creases::Hints;
 use crate::failure::{Outcome, usage};
 use crate::format::counted;
 use crate::input;
@@ -101,7 +103,7 @@ impl Job {
         Ok(())
     }
 
-    /// Refuses choices for attributes that no mesh has.
+    /// Refuses choices for attributes that no mesh has, and sharp edges by normals where there are none.
     fn check_channels(&self, asset: &Asset, name: &str) -> anyhow::Result<()> {
         let contents = asset.contents()?;
         let primitives = contents.meshes.iter().flat_map(|mesh| &mesh.primitives);
@@ -111,6 +113,9 @@ impl Job {
             let kind = name.split_once('_').map_or(*name, |(kind, _)| kind);
             !["POSITION", "NORMAL", "TANGENT", "JOINTS", "WEIGHTS"].contains(&kind)
         };
+        if self.arguments.features.creases_from == CreasesFrom::Normals && !names.contains("NORMAL") {
+            return usage(format!("--creases-from: {name} has no normals"));
+        }
         self.arguments.channels.check(name, names.iter().copied().filter(is_free))?;
         let named = names.iter().copied().filter(is_free).map(|own| (own, own.starts_with("TEXCOORD_")));
         self.arguments.channels.check_tolerances(name, named)
@@ -177,7 +182,18 @@ impl Job {
             built => built.map_err(|error| input::describe(&name, error))?,
         };
         self.notes(&name, &own, &built.1, progress);
-        let (built, diagnosis, trace) = built;
+        let (mut built, diagnosis, trace) = built;
+        let normals = own.normals.as_ref().map(|own_normals| own_normals.on_mesh(&own.soup, &built, &trace));
+        let normals = normals.transpose()?;
+        let hints = || Hints { normals: normals.as_ref(), channels: &[] };
+        if let Some(note) = split_normals((hints(), &built), arguments) {
+            progress.note(format!("{name}: {note}"));
+        }
+        if normals.is_some()
+            && let Some(tags) = hints().tags(&built, arguments.features.creases_from, &name)?
+        {
+            built = built.with_tags(tags)?;
+        }
         own.soup.channels = own.attributes.iter().map(channel).collect();
         arguments.channels.apply(&mut own.soup.channels)?;
         let on_mesh = |channel: &Channel| channel.on_mesh(&own.soup, &built, &trace);

@@ -35,6 +35,7 @@ use limitmesh_render::Style;
 use super::{interpolation, picture};
 use crate::arguments::{CreasesFrom, Method, RefineArguments, RefiningScheme, Unit};
 use crate::bulk::Bulk;
+use crate::creases::Hints;
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds};
 use crate::input::{self, Input};
@@ -98,13 +99,13 @@ fn refine(
     if let Some(asset) = asset::Job::of(arguments, format)? {
         sqrt3::refuse_scenes(arguments)?;
         restricted::refuse_scenes(arguments)?;
-        arguments.features.check_of_scene()?;
+        arguments.features.check_of_asset()?;
         return asset.run(progress);
     }
     if let Some(package) = package::Job::of(arguments, format)? {
         sqrt3::refuse_scenes(arguments)?;
         restricted::refuse_scenes(arguments)?;
-        arguments.features.check_of_scene()?;
+        arguments.features.check_of_package()?;
         return package.run(progress);
     }
     let kept: &[&str] = if format.is_some_and(Normals::are_held) { &["normals"] } else { &[] };
@@ -112,7 +113,7 @@ fn refine(
     if let Some(note) = format.and_then(|format| lost_tags(input.mesh.tags(), format)) {
         progress.note(note);
     }
-    if let Some(note) = split_normals(&input, arguments) {
+    if let Some(note) = split_normals((input.hints(), &input.mesh), arguments) {
         progress.note(note);
     }
     let input = input.with_creases(arguments.features.creases_from)?;
@@ -225,11 +226,11 @@ fn refine(
 }
 
 /// Tells about normals that say that edges are sharp, where nothing says what to do about that.
-fn split_normals(input: &Input, arguments: &RefineArguments) -> Option<String> {
+fn split_normals((hints, mesh): (Hints<'_>, &Mesh), arguments: &RefineArguments) -> Option<String> {
     if arguments.features.crease_angle.is_some() || arguments.features.creases_from != CreasesFrom::None {
         return None;
     }
-    let edges = input.hints().split_edges(&input.mesh);
+    let edges = hints.split_edges(mesh);
     let have = counted(edges, "edge has", "edges have");
     (edges > 0).then(|| {
         format!("{have} different normals on both sides; --creases-from normals keeps such edges sharp")
