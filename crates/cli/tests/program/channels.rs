@@ -161,11 +161,34 @@ fn materials_that_stay_behind_are_told() {
         .expect(0)
         .saying("left out: paint.mtl (of materials the names alone")
         .saying("3 corners have no texture coordinates");
-    let other = folder.path().join("other");
-    std::fs::create_dir(&other).expect("a folder");
-    run("refine {} -o {}", &[&input, &other.join("out.obj")])
-        .expect(0)
-        .saying("paint.mtl: named, not copied");
+    let other = folder.path().join("other place/deep");
+    std::fs::create_dir_all(&other).expect("folders");
+    let library = |input: &Path| {
+        let output = other.join("out.obj");
+        let said = run("refine {} -o {}", &[input, &output]).expect(0).stderr;
+        let text = std::fs::read_to_string(&output).expect("written");
+        (said, text.lines().find_map(|line| line.strip_prefix("mtllib ")).expect("a library").to_owned())
+    };
+    let (said, name) = library(&input);
+    assert_eq!(name, "paint.mtl");
+    assert!(said.contains("paint.mtl: named as in the input, and not found"), "{said}");
+    // A file that is there is found from where the output is; so are several in one line.
+    file(&folder, "paint.mtl", "newmtl red\n");
+    let (said, name) = library(&input);
+    assert!(said.contains("paint.mtl: left where it is, and named ../../paint.mtl"), "{said}");
+    assert_eq!(name, "../../paint.mtl");
+    assert!(other.join(name).is_file());
+    let several = file(&folder, "several.obj", &text.replace("paint.mtl", "paint.mtl my paint.mtl"));
+    assert_eq!(library(&several).1, "paint.mtl my paint.mtl");
+    let several = file(&folder, "several.obj", &text.replace("paint.mtl", "paint.mtl other.mtl"));
+    file(&folder, "other.mtl", "");
+    assert_eq!(library(&several).1, "../../paint.mtl ../../other.mtl");
+    let blank = file(&folder, "blank.obj", &text.replace("paint.mtl", "my paint.mtl"));
+    file(&folder, "my paint.mtl", "");
+    assert_eq!(library(&blank).1, "../../my paint.mtl");
+    let whole = folder.path().join("paint.mtl").display().to_string();
+    let absolute = file(&folder, "absolute.obj", &text.replace("paint.mtl", &whole));
+    assert_eq!(library(&absolute).1, whole);
     let beside = run("refine {} -o {}", &[&input, &folder.path().join("out.obj")]).expect(0);
     assert!(!beside.stderr.contains("paint.mtl"), "{}", beside.stderr);
 }

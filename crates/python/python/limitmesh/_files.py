@@ -31,7 +31,7 @@ def models() -> dict[str, str]:
 
 
 def load(path: str | os.PathLike[str]) -> Mesh:
-    """Reads a file, whatever is in it: OBJ, PLY, STL, OFF or glTF (what its scene shows), or a built-in model.
+    """Reads a file, whatever is in it: OBJ, PLY, STL, OFF, glTF (what its scene shows) or 3MF (what its build has), or a built-in model.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def save(path: str | os.PathLike[str], mesh: Refined | MeshLike, *, ascii: bool 
     Parameters
     ----------
     path
-        The file, whose extension (.obj, .ply, .stl, .off, .gltf, .glb) chooses the format.
+        The file, whose extension (.obj, .ply, .stl, .off, .gltf, .glb, .3mf) chooses the format.
     mesh
         A result, with its limit normals; or a mesh, which is mended first where that is needed.
     ascii
@@ -164,7 +164,7 @@ def refine_file(
     Parameters
     ----------
     source
-        OBJ, PLY, STL, OFF or glTF, or ``"builtin:NAME"``.
+        OBJ, PLY, STL, OFF, glTF or 3MF, or ``"builtin:NAME"``.
     target
         The file to write, whose extension chooses the format.
     uv

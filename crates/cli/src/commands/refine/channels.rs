@@ -1,13 +1,12 @@
 //! What the input carries beside its shape, on its way to the output: texture coordinates, colours, materials, groups.
 
-use std::path::{Path, PathBuf};
-
 use limitmesh::Mesh;
 use limitmesh::carry::carried;
 use limitmesh::mesh::{Channel, Domain, FaceParts};
 use limitmesh::refine::Traced;
 use limitmesh_io::{Format, Output, WriteOptions, holds, splits_vertices, values_lost};
 
+use super::linked;
 use crate::arguments::RefineArguments;
 use crate::format::counted;
 use crate::progress::Progress;
@@ -15,17 +14,6 @@ use crate::progress::Progress;
 fn names(channels: &[Channel]) -> String {
     let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
     names.join("; ")
-}
-
-/// Whether the output stands beside the input, so that it finds what that names.
-fn is_beside(arguments: &RefineArguments) -> bool {
-    let folder = |path: &Path| path.parent().map(Path::to_owned).unwrap_or_default();
-    let output = arguments.output.as_deref().map(folder);
-    let real = |folder: PathBuf| {
-        let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder };
-        folder.canonicalize().ok()
-    };
-    output.is_none_or(|output| real(output) == real(folder(arguments.input())))
 }
 
 /// The channels of a mesh, and the files that they lead to.
@@ -66,14 +54,17 @@ impl Channels {
             progress.note(format!(
                 "left out: {files} (of materials the names alone; only OBJ files name others)"
             ));
-        } else if !material_libraries.is_empty() && !is_beside(arguments) {
-            let files = material_libraries.join("; ");
-            progress.note(format!("{files}: named, not copied to the output's folder"));
         }
         if format != Format::Ply && !texture_files.is_empty() {
             let files = texture_files.join("; ");
             progress.note(format!("left out: {files} (only PLY files name pictures themselves)"));
         }
+        let follow = |are_held: bool, files: Vec<String>| match are_held {
+            true => linked::from_output(files, arguments, progress),
+            false => files,
+        };
+        let material_libraries = follow(format == Format::Obj, material_libraries);
+        let texture_files = follow(format == Format::Ply, texture_files);
         Self { channels: kept, material_libraries, texture_files }
     }
 

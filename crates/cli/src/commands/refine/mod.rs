@@ -12,6 +12,7 @@ mod exact;
 mod frames;
 mod input_distance;
 mod jobs;
+mod linked;
 mod normals;
 mod package;
 mod provenance;
