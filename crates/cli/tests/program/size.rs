@@ -80,6 +80,24 @@ fn what_has_moved_is_told_and_what_would_keep_it() {
     let stepwise = run("refine builtin:cube -o {} --method uniform --report -", &[&output]).expect(0).json();
     assert_eq!(stepwise["input_distance"], Value::Null);
     assert!(number(&stepwise["size"]["after"]["volume"]) < 1.0);
+    // Where much of the volume is gone, it is said what would keep it, once, whether the way is known or not.
+    let hints = |options: &str| {
+        let said = run(&format!("refine {options} -o {{}}"), &[&output]).expect(0).stderr;
+        said.matches("(--interpolate would lead the surface through the vertices)").count()
+    };
+    for options in
+        ["", "--no-input-distance", "--method uniform --levels 2", "--scheme loop-warren --angle 5"]
+    {
+        assert_eq!(hints(&format!("builtin:cube {options}")), 1, "{options}");
+    }
+    for options in
+        ["--interpolate", "--interpolate-within 1%", "--crease-angle 30", "--scheme sqrt3 --angle 20"]
+    {
+        assert_eq!(hints(&format!("builtin:cube {options}")), 0, "{options}");
+    }
+    // A sheet has no volume, and a fine mesh keeps its own.
+    assert_eq!(hints("builtin:sheet --no-input-distance"), 0);
+    assert_eq!(hints("builtin:bumpy --no-input-distance"), 0);
     // With a unit.
     run("refine builtin:cube -o {} --unit mm", &[&output]).expect(0).saying(" mm²").saying(" mm³");
 }

@@ -155,7 +155,8 @@ impl Idle {
         let mut empty = Vec::new();
         for key in LISTS {
             let Some(list) = top.get(key) else { continue };
-            let names = items_of(list)?;
+            // Whatever else stands there is not ours to judge.
+            let Ok(names) = items_of(list) else { continue };
             let is_kept = |own: &&str| !self.names.iter().any(|name| **own == quoted(name));
             let kept: Vec<&str> = names.iter().copied().filter(is_kept).collect();
             match kept.len() {

@@ -74,6 +74,11 @@ fn names_go_with_the_last_primitive_that_needs_them() {
     let mut other = document.clone();
     other["meshes"][2]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(3);
     assert_eq!(of_json(&other, &[(0, 0), (1, 0)])["extensionsRequired"], json!(["KHR_mesh_quantization"]));
+    // Something that is no list is left alone.
+    other = document.clone();
+    other["extensionsUsed"] = json!({});
+    let new = of_json(&other, &[(0, 0), (1, 0)]);
+    assert!(new["extensionsUsed"] == json!({}) && new.get("extensionsRequired").is_none(), "{new}");
     // Points and lines are used as triangles are.
     other = document.clone();
     other["meshes"][2]["primitives"][0] = json!({"mode": 0, "attributes": {"POSITION": 1}});

@@ -21,7 +21,7 @@ use super::control::Control;
 use super::exact::{self, Goals};
 use super::put_back::{MOST_WIDE, PutBack, channel, moved_positions};
 use super::selection::Selection;
-use super::{change_in_words, estimate, picture, split_normals, stepwise, summary, turned_over};
+use super::{estimate, picture, split_normals, stepwise, summary, turned_over};
 use crate::arguments::{
     ConcaveCorners, CreasesFrom, Extent, Featured, Length, Method, MorphTolerance, RefineArguments,
     RelativeTo,
@@ -228,7 +228,7 @@ impl Job {
         };
         let refining = start.elapsed();
         let after = Bulk::of(&refined.mesh);
-        refined.achieved.push(change_in_words(bulk, after, arguments.build.unit));
+        refined.tell_size([bulk, after], &arguments);
         progress.note(summary(&name, &refined, refining));
         if let Some(note) = refined.inverted.and_then(turned_over) {
             progress.note(format!("{name}: {note}"));

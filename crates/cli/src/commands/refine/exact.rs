@@ -14,7 +14,7 @@ use super::channels::Channels;
 use super::input_distance::InputDistance;
 use super::normals::Normals;
 use super::provenance::Provenance;
-use super::{Refined, cameras, view, view_report};
+use super::{INTERPOLATE, Refined, cameras, view, view_report};
 use crate::arguments::{ConcaveCorners, Extent, Featured, Length, MOST_EXACT, RefineArguments, Unit};
 use crate::dihedral::Dihedrals;
 use crate::failure::Outcome;
@@ -377,7 +377,7 @@ fn moved_in_words(
         .within(goals.diagonal, arguments.build.unit)
         .is_ok_and(|within| within.is_none())
     {
-        lines.push("(--interpolate would lead the surface through the vertices)".to_owned());
+        lines.push(INTERPOLATE.to_owned());
     }
     lines
 }

@@ -175,7 +175,7 @@ fn refine(
     let refining = start.elapsed();
 
     let after = Bulk::of(&refined.mesh);
-    refined.achieved.push(change_in_words(before, after, arguments.build.unit));
+    refined.tell_size([before, after], arguments);
 
     progress.stage(format!("writing {}", arguments.output_name()));
     let start = Instant::now();
@@ -305,6 +305,26 @@ fn phases(read: Duration, repair: Duration, refine: Duration, write: Duration) -
         refine: refine.as_secs_f64(),
         write: write.as_secs_f64(),
         total: (read + repair + refine + write).as_secs_f64(),
+    }
+}
+
+/// The part of a closed surface's volume that may be gone before it is said what would keep it.
+const MUCH_VOLUME: f64 = 0.1;
+
+/// What keeps the size of a mesh.
+const INTERPOLATE: &str = "(--interpolate would lead the surface through the vertices)";
+
+impl Refined {
+    /// Adds what became of area and volume to what is said, and what would have kept much of the volume that is gone.
+    fn tell_size(&mut self, [before, after]: [Bulk; 2], arguments: &RefineArguments) {
+        self.achieved.push(change_in_words(before, after, arguments.build.unit));
+        let is_kept = arguments.interpolation.are_given() || arguments.scheme == RefiningScheme::Sqrt3;
+        let is_told = self.achieved.iter().any(|line| line == INTERPOLATE);
+        if let (Some(before), Some(after), false) = (before.volume, after.volume, is_kept || is_told)
+            && after / before < 1.0 - MUCH_VOLUME
+        {
+            self.achieved.push(INTERPOLATE.to_owned());
+        }
     }
 }
 

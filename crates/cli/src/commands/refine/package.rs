@@ -15,7 +15,7 @@ use super::carried::Carried;
 use super::channels::Channels;
 use super::control::Control;
 use super::exact::{self, Goals};
-use super::{Refined, change_in_words, estimate, picture, stepwise, summary, turned_over};
+use super::{Refined, estimate, picture, stepwise, summary, turned_over};
 use crate::arguments::{Extent, Length, Method, RefineArguments, Unit};
 use crate::bulk::Bulk;
 use crate::failure::{Outcome, usage};
@@ -166,7 +166,7 @@ impl Job {
         };
         let refining = start.elapsed();
         let after = Bulk::of(&refined.mesh);
-        refined.achieved.push(change_in_words(bulk, after, arguments.build.unit));
+        refined.tell_size([bulk, after], &arguments);
         progress.note(summary(&name, &refined, refining));
         if let Some(note) = refined.inverted.and_then(turned_over) {
             progress.note(format!("{name}: {note}"));
