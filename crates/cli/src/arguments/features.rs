@@ -64,8 +64,8 @@ pub(crate) struct FeatureArguments {
 
     /// Keep edges sharp that the file's normals, smoothing groups or materials say are sharp [default: none]
     ///
-    /// Beside --crease-angle and the tags of the file. For OBJ, PLY, OFF and STL files; glTF assets that are edited have normals only, 3MF files
-    /// none of these.
+    /// Beside --crease-angle and the tags of the file. For OBJ, PLY, OFF and STL files; glTF assets that are edited have normals only,
+    /// 3MF files none of these.
     #[arg(long, value_enum, value_name = "WHAT", hide_default_value = true, default_value_t)]
     pub(crate) creases_from: CreasesFrom,
 

@@ -9,8 +9,8 @@
 //! An asset is far more than its triangles: nodes, materials, animations, cameras, extras, extensions that nobody here has
 //! heard of. So documents are *edited, never written anew*: the JSON text is kept, new buffers, views and accessors are
 //! appended to its arrays, and of a primitive only `attributes`, `indices`, `targets` and `mode` change; what says how
-//! geometry was stored goes when none is stored so any more. All other bytes of the text are those that were read. The JSON is read by serde_json, and found again in its text by serde_json's raw
-//! values; a crate that has a document model of its own would write that model, not the text.
+//! geometry was stored goes when none is stored so any more. All other bytes of the text are those that were read. The
+//! JSON is read by serde_json, and found again in its text by serde_json's raw values; a crate that has a document model of its own would write that model, not the text.
 //!
 //! What a document says of itself is not believed: every count, offset and index is checked before room is made for
 //! what it names, files are reached below the document's folder only, and a flaw names its place as JavaScript would.

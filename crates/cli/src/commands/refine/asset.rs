@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 use limitmesh::Mesh;
 use limitmesh::carry::borders;
-use limitmesh::mesh::{BuildOptions, Channel, Domain, MeshError, Semantic, Weld};
+use limitmesh::mesh::{BuildOptions, Channel, Domain, MeshError, Semantic, Trace, Weld};
 use limitmesh_io::gltf::{CornerAttribute, KeptApart, MeshSoup};
 use limitmesh_io::{Asset, Format};
 use limitmesh_render::Style;
@@ -182,18 +182,8 @@ impl Job {
             built => built.map_err(|error| input::describe(&name, error))?,
         };
         self.notes(&name, &own, &built.1, progress);
-        let (mut built, diagnosis, trace) = built;
-        let normals = own.normals.as_ref().map(|own_normals| own_normals.on_mesh(&own.soup, &built, &trace));
-        let normals = normals.transpose()?;
-        let hints = || Hints { normals: normals.as_ref(), channels: &[] };
-        if let Some(note) = split_normals((hints(), &built), arguments) {
-            progress.note(format!("{name}: {note}"));
-        }
-        if normals.is_some()
-            && let Some(tags) = hints().tags(&built, arguments.features.creases_from, &name)?
-        {
-            built = built.with_tags(tags)?;
-        }
+        let (built, diagnosis, trace) = built;
+        let built = self.sharpened(&name, &own, (built, &trace), progress)?;
         own.soup.channels = own.attributes.iter().map(channel).collect();
         arguments.channels.apply(&mut own.soup.channels)?;
         let on_mesh = |channel: &Channel| channel.on_mesh(&own.soup, &built, &trace);
@@ -269,6 +259,26 @@ impl Job {
             size: SizeReport { before: bulk, after },
         });
         Ok(())
+    }
+
+    /// The mesh with the edges sharp that the document's normals say are, if that is asked for; if nothing is, a note counts them.
+    fn sharpened(
+        &self,
+        name: &str,
+        own: &MeshSoup,
+        (mesh, trace): (Mesh, &Trace),
+        progress: &Progress,
+    ) -> anyhow::Result<Mesh> {
+        let Some(normals) = &own.normals else { return Ok(mesh) };
+        let normals = normals.on_mesh(&own.soup, &mesh, trace)?;
+        let hints = || Hints { normals: Some(&normals), channels: &[] };
+        if let Some(note) = split_normals((hints(), &mesh), &self.arguments) {
+            progress.note(format!("{name}: {note}"));
+        }
+        Ok(match hints().tags(&mesh, self.arguments.features.creases_from, name)? {
+            Some(tags) => mesh.with_tags(tags)?,
+            None => mesh,
+        })
     }
 
     /// What was repaired, and what stays apart.
