@@ -280,3 +280,34 @@ fn an_outline_seen_face_on_is_within_the_limit() {
         }
     }
 }
+
+#[test]
+#[ignore = "search"]
+fn search_for_bumps() {
+    let mut random = Random::new(77);
+    let (mut runs, mut wrong) = (0, 0);
+    for seed in 0..150 {
+        let model = Model::new("lumpy", support::lumpy(12 + (seed % 20) as usize, seed), 5);
+        for _ in 0..12 {
+            let mut any = || unit([0, 1, 2].map(|_| random.signed()));
+            let (away, up) = (any(), any());
+            let eye = away.map(|x| x * 30.0);
+            let limit = 3.0 * 2f64.powf(2.0 + 2.0 * random.signed());
+            let camera = Camera { eye, target: [0.0; 3], up, fov_degrees: 6.0, width: 400, height: 400 };
+            let options = ExactOptions::default().pixels(limit, vec![camera]);
+            let result = exact(&model.control, &Loop, &options).unwrap();
+            let said = result.pixels.unwrap();
+            let found = model.greatest(&result, &Picture::of(&camera), &mut random);
+            runs += 1;
+            if found > said * (1.0 + 1e-6) {
+                wrong += 1;
+                println!(
+                    "seed {seed}: {found} of {said}, {limit}, eye {eye:?}, {} triangles of {}",
+                    result.mesh.face_count(),
+                    model.control.face_count()
+                );
+            }
+        }
+    }
+    println!("{wrong} of {runs}");
+}

@@ -115,6 +115,11 @@ impl<'a> Pieces<'a> {
         Self { known: Some(refined), ..Self::of(patch) }
     }
 
+    /// The patch itself.
+    pub(crate) fn patch(&self) -> &'a Patch {
+        self.patch
+    }
+
     /// The patch refined once.
     pub(crate) fn refined(&mut self, rules: &'a Rules<'a>) -> &RefinedPatch<'a> {
         match self.known {

@@ -1,6 +1,6 @@
 //! What exact refinement is asked for, all of it, as one ratio for a triangle and its piece of the surface.
 
-use super::{CriterionError, Distance, LimitNormal, Pixels, Region, cone};
+use super::{Backs, CriterionError, Distance, LimitNormal, Pixels, Region, Viewpoint, cone};
 use crate::vector::DVec3;
 
 /// How far a triangle and its piece of the surface can be from each other. Both ways every point has one of the other within
@@ -19,6 +19,9 @@ impl Apart {
         self.own.min(self.height + self.across)
     }
 }
+
+/// What is not certain of a piece that looks away from a viewer may be as near to a corner as this part of its triangle's radius.
+const VIEW_REST: f64 = 1.0 / 1024.0;
 
 /// The criteria that are to be met together; without any, ratios are plain distances.
 #[derive(Clone, Debug, Default)]
@@ -63,41 +66,72 @@ impl Criteria {
         self.cone.map_or(usize::MAX, |cone| cone.deepest())
     }
 
+    /// Who sees nothing but the back of a triangle and its piece in a region. `is_back` tells that of a place from which they are seen: how
+    /// far from a corner of the triangle what is not certain is, if that is hardly more than the given length.
+    pub(crate) fn backs(
+        &self,
+        region: &Region,
+        mut is_back: impl FnMut(&Viewpoint, f64) -> Option<f64>,
+    ) -> Backs {
+        let cameras = self.pixels.as_ref();
+        let mut backs = cameras.map_or(Backs::nobodys(), |pixels| pixels.backs(region, &mut is_back));
+        if let Some(view) = self.cone.and_then(|cone| cone.view) {
+            backs.view = is_back(&view.viewpoint, VIEW_REST * region.radius).is_some();
+        }
+        backs
+    }
+
+    /// Whether it matters what looks away.
+    pub(crate) fn has_backs(&self) -> bool {
+        self.cone.is_some_and(|cone| cone.view.is_some())
+            || self.pixels.as_ref().is_some_and(Pixels::has_backs)
+    }
+
     /// The distance, in whatever direction, that is certainly good enough anywhere in a ball.
-    pub(crate) fn allowed_length(&self, region: &Region) -> f64 {
+    pub(crate) fn allowed_length(&self, region: &Region, backs: &Backs) -> f64 {
         let plain = match &self.distance {
             Some(distance) => distance.allowed(),
             None if self.is_some() => f64::INFINITY,
             None => 1.0,
         };
-        let seen = self.pixels.as_ref();
-        plain.min(seen.map_or(f64::INFINITY, |pixels| pixels.allowed_length(region.centre, region.radius)))
+        let allowed = |pixels: &Pixels| pixels.allowed_length(region.centre, region.radius, backs);
+        plain.min(self.pixels.as_ref().map_or(f64::INFINITY, allowed))
     }
 
     /// How many times over a distance fails. The region holds the triangle and its piece of the surface; its cone the
     /// normals of both and of the neighbouring triangles.
-    pub(crate) fn distance_ratio(&self, apart: &Apart, region: &Region) -> f64 {
+    pub(crate) fn distance_ratio(&self, apart: &Apart, region: &Region, backs: &Backs) -> f64 {
         let plain = match &self.distance {
             Some(distance) => apart.least() / distance.allowed(),
             None if self.is_some() => 0.0,
             None => apart.least(),
         };
         let Some(pixels) = &self.pixels else { return plain };
-        let allowed = pixels.allowed(region);
+        let allowed = pixels.allowed(region, backs);
         let own = (apart.own + self.rounding) / allowed.length;
-        plain.max(own.min(apart.height / allowed.height + (apart.across + self.rounding) / allowed.length))
+        let among = apart.height / allowed.height + (apart.across + self.rounding) / allowed.length;
+        plain.max(own.min(among)).max(pixels.rest_ratio(backs))
     }
 
     /// How many pixels a distance comes to at most; `None` without cameras.
-    pub(crate) fn pixels(&self, apart: &Apart, region: &Region) -> Option<f64> {
+    pub(crate) fn pixels(&self, apart: &Apart, region: &Region, backs: &Backs) -> Option<f64> {
         let pixels = self.pixels.as_ref()?;
-        let own = pixels.seen(region, 0.0, apart.own + self.rounding);
-        Some(own.min(pixels.seen(region, apart.height, apart.across + self.rounding)))
+        let own = pixels.seen(region, (0.0, apart.own + self.rounding), backs);
+        Some(own.min(pixels.seen(region, (apart.height, apart.across + self.rounding), backs)))
     }
 
     /// How many times over a triangle's normal leaves the cones around the limit normals of its corners (the paper's
     /// equations 2 and 11). The region holds the triangle, its cone both.
-    pub(crate) fn cone_ratio(&self, normal: DVec3, corners: [DVec3; 3], region: &Region) -> f64 {
-        self.cone.map_or(0.0, |goal| cone::ratio(normal, corners, goal.allowed_angle(region)))
+    pub(crate) fn cone_ratio(
+        &self,
+        normal: DVec3,
+        corners: [DVec3; 3],
+        region: &Region,
+        backs: &Backs,
+    ) -> f64 {
+        match self.cone {
+            Some(goal) if !backs.view => cone::ratio(normal, corners, goal.allowed_angle(region)),
+            _ => 0.0,
+        }
     }
 }

@@ -19,10 +19,13 @@
 //! to the ball's middle, κ, and the angle at which the ball is seen, together.
 //!
 //! What looks away from all cameras is not seen on closed surfaces: of them a picture shows the front alone, and its
-//! outlines bound the front. The back of an open one may be seen.
+//! outlines bound the front. The back of an open one may be seen. Which that is, whoever asks has to know ([`Backs`]): nothing here
+//! knows how a surface bends over a region.
+
+use smallvec::SmallVec;
 
 use super::region::{cosine_of, sum_of_angles};
-use super::{CriterionError, Region};
+use super::{CriterionError, Region, Viewpoint};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// A perspective camera.
@@ -54,6 +57,9 @@ impl Camera {
 /// keeps some accuracy, for shading and for what happens when the camera moves a little.
 const LEAST_SINE: f64 = 0.25;
 
+/// What is not certain of a piece that looks away may be as near to a corner as this part of what is allowed.
+const REST: f64 = 1.0 / 64.0;
+
 /// Sines of angles up to this are 0 but for rounding.
 const PARALLEL: f64 = 1e-9;
 
@@ -67,6 +73,28 @@ pub(crate) struct Allowed {
     pub(crate) length: f64,
     /// Along normals.
     pub(crate) height: f64,
+}
+
+/// Who sees nothing but the back of a triangle and of its piece of a closed surface.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Backs {
+    /// By camera; nothing where none does.
+    cameras: SmallVec<[bool; 8]>,
+    /// At most so many pixels from a corner of the triangle is what is not certain of that.
+    rest: f64,
+    /// The viewer that an angle depends on.
+    pub(crate) view: bool,
+}
+
+impl Backs {
+    /// Nobody.
+    pub(crate) fn nobodys() -> Self {
+        Self::default()
+    }
+
+    fn has(&self, camera: usize) -> bool {
+        self.cameras.get(camera).is_some_and(|&is_back| is_back)
+    }
 }
 
 /// A greatest distance in the pictures of some cameras.
@@ -88,51 +116,74 @@ impl Pixels {
         Ok(Self { limit, is_closed, lenses })
     }
 
+    /// Whether something may look away.
+    pub(crate) fn has_backs(&self) -> bool {
+        self.is_closed
+    }
+
+    /// Who sees nothing but the back of a region. `is_back` tells that of a place from which it is seen: how far from a corner of its
+    /// triangle what is not certain is, if that is hardly more than the given length.
+    pub(crate) fn backs(
+        &self,
+        region: &Region,
+        mut is_back: impl FnMut(&Viewpoint, f64) -> Option<f64>,
+    ) -> Backs {
+        let mut backs = Backs::nobodys();
+        if !self.is_closed {
+            return backs;
+        }
+        for (camera, lens) in self.lenses.iter().enumerate() {
+            let Some(glance) = lens.glance(region.centre, region.radius) else { continue };
+            let viewpoint = Viewpoint::Eye(lens.eye.to_array());
+            let Some(rest) = is_back(&viewpoint, REST * glance.allowed(self.limit, 1.0)) else { continue };
+            let rest = lens
+                .glance(region.centre, region.radius + rest)
+                .map_or(0.0, |glance| glance.pixels(0.0, rest, 1.0));
+            backs.rest = backs.rest.max(rest);
+            backs.cameras.resize(self.lenses.len(), false);
+            backs.cameras[camera] = true;
+        }
+        backs
+    }
+
     /// The greatest distance between a point that is seen in a ball and another one, in any direction, that is certainly
-    /// within the limit in all pictures: infinite where no camera sees the ball, 0 where an eye stands in it.
+    /// within the limit in all pictures: infinite where no camera sees more of the ball than its back, 0 where an eye stands in it.
     ///
     /// Never less for a ball within the ball.
-    pub(crate) fn allowed_length(&self, centre: DVec3, radius: f64) -> f64 {
-        let seen = self.lenses.iter().filter_map(|lens| lens.glance(centre, radius));
+    pub(crate) fn allowed_length(&self, centre: DVec3, radius: f64, backs: &Backs) -> f64 {
+        let seen = self.glances(centre, radius, backs);
         seen.map(|glance| glance.allowed(self.limit, 1.0)).fold(f64::INFINITY, f64::min)
     }
 
-    /// The same in any direction and along the normals of a region: infinite too where a closed surface looks away from
-    /// all cameras that see the ball. Neither is less than [`Self::allowed_length`].
+    /// The same in any direction and along the normals of a region. Neither is less than [`Self::allowed_length`].
     ///
     /// Never less for a region within the region. Lengths that are parts of what is allowed may be added: half of one and
     /// half of the other are within the limit together.
-    pub(crate) fn allowed(&self, region: &Region) -> Allowed {
+    pub(crate) fn allowed(&self, region: &Region, backs: &Backs) -> Allowed {
         let nothing = Allowed { length: f64::INFINITY, height: f64::INFINITY };
-        self.glances(region).fold(nothing, |least, (glance, sine)| Allowed {
+        self.glances(region.centre, region.radius, backs).fold(nothing, |least, glance| Allowed {
             length: least.length.min(glance.allowed(self.limit, 1.0)),
-            height: least.height.min(glance.allowed(self.limit, sine)),
+            height: least.height.min(glance.allowed(self.limit, glance.sine(region))),
         })
+    }
+
+    /// How many times over what is not certain of those that see the back is more than the limit.
+    pub(crate) fn rest_ratio(&self, backs: &Backs) -> f64 {
+        backs.rest / self.limit
     }
 
     /// How many pixels there are at most between a point that is seen in a region and one that is `height` along its
     /// normals and `across` in any direction from it.
-    pub(crate) fn seen(&self, region: &Region, height: f64, across: f64) -> f64 {
-        let seen = self.glances(region);
-        seen.map(|(glance, sine)| glance.pixels(height, across, sine)).fold(0.0, f64::max)
+    pub(crate) fn seen(&self, region: &Region, (height, across): (f64, f64), backs: &Backs) -> f64 {
+        let seen = self.glances(region.centre, region.radius, backs);
+        let seen = seen.map(|glance| glance.pixels(height, across, glance.sine(region))).fold(0.0, f64::max);
+        seen.max(backs.rest)
     }
 
-    /// Each camera that sees a region, with the greatest sine of the angle between lines of sight and normals.
-    fn glances(&self, region: &Region) -> impl Iterator<Item = (Glance, f64)> {
-        let seen = self.lenses.iter().filter_map(|lens| lens.glance(region.centre, region.radius));
-        seen.filter_map(|glance| {
-            let spread = sum_of_angles(region.sine, glance.spread);
-            if region.axis == DVec3::ZERO || spread >= 1.0 {
-                return Some((glance, 1.0));
-            }
-            let cosine = glance.toward.dot(region.axis);
-            // Looking along the normal is looking at the back.
-            if self.is_closed && cosine > spread {
-                return None;
-            }
-            let sine = glance.toward.cross(region.axis).length();
-            Some((glance, sum_of_angles(sine.min(1.0), spread).max(LEAST_SINE)))
-        })
+    /// Each camera that sees more of a ball than its back.
+    fn glances(&self, centre: DVec3, radius: f64, backs: &Backs) -> impl Iterator<Item = Glance> {
+        let front = self.lenses.iter().enumerate().filter(|&(camera, _)| !backs.has(camera));
+        front.filter_map(move |(_, lens)| lens.glance(centre, radius))
     }
 }
 
@@ -150,6 +201,16 @@ struct Glance {
 }
 
 impl Glance {
+    /// The greatest sine of the angle between lines of sight and the normals of a region.
+    fn sine(&self, region: &Region) -> f64 {
+        let spread = sum_of_angles(region.sine, self.spread);
+        if region.axis == DVec3::ZERO || spread >= 1.0 {
+            return 1.0;
+        }
+        let sine = self.toward.cross(region.axis).length();
+        sum_of_angles(sine.min(1.0), spread).max(LEAST_SINE)
+    }
+
     /// The greatest length that stays within so many pixels at angles to the line of sight up to that of the sine.
     fn allowed(&self, limit: f64, sine: f64) -> f64 {
         limit * self.depth / (self.pixels * sine + limit)
@@ -341,14 +402,12 @@ mod tests {
             let cameras = [numbers.camera(), numbers.camera()];
             let limit = 2f64.powf(6.0 * numbers.next());
             let region = numbers.region(if round % 2 == 0 { 0.5 } else { 0.01 });
-            let open = Pixels::new(limit, &cameras, false).unwrap();
-            let closed = Pixels::new(limit, &cameras, true).unwrap();
-            let length = open.allowed_length(region.centre, region.radius);
-            let height = open.allowed(&region).height;
-            let front = closed.allowed(&region).height;
-            assert_eq!(open.allowed(&region).length, length);
-            assert!(closed.allowed(&region).length >= length);
-            assert!(length <= height && height <= front, "{length} {height} {front}");
+            let pixels = Pixels::new(limit, &cameras, true).unwrap();
+            let nobodys = Backs::nobodys();
+            let length = pixels.allowed_length(region.centre, region.radius, &nobodys);
+            let height = pixels.allowed(&region, &nobodys).height;
+            assert_eq!(pixels.allowed(&region, &nobodys).length, length);
+            assert!(length <= height, "{length} {height}");
             for _ in 0..40 {
                 let (point, normal) = numbers.within(&region);
                 for camera in &cameras {
@@ -361,18 +420,15 @@ mod tests {
                     let found = pixels_between(camera, point, point + length * aside);
                     assert!(found <= limit * (1.0 + 1e-9), "{found} of {limit}: {camera:?} {region:?}");
                     closest = closest.max(found / limit);
-                    let facing = (point - vector(camera.eye)).dot(normal) < 0.0;
-                    for height in if facing { [height, front] } else { [height, 0.0] } {
-                        for along in [height * normal, -height * normal] {
-                            let found = pixels_between(camera, point, point + along);
-                            assert!(found <= limit * (1.0 + 1e-9), "{found} of {limit}: {region:?}");
-                            closest_along = closest_along.max(found / limit);
-                        }
+                    for along in [height * normal, -height * normal] {
+                        let found = pixels_between(camera, point, point + along);
+                        assert!(found <= limit * (1.0 + 1e-9), "{found} of {limit}: {region:?}");
+                        closest_along = closest_along.max(found / limit);
                     }
                     // Both parts together, and the number of pixels that is told.
                     let (share, total) = (numbers.next().abs(), 3.0 * numbers.next().abs());
                     let (part, rest) = (share * total * height, (1.0 - share) * total * length);
-                    let told = open.seen(&region, part, rest);
+                    let told = pixels.seen(&region, (part, rest), &nobodys);
                     let found = pixels_between(camera, point, point + part * normal + rest * aside);
                     assert!(found <= told * (1.0 + 1e-9), "{found} of {told}");
                     assert!(told <= limit || total > 1.0 - 1e-9, "{told} of {limit}");
@@ -399,12 +455,13 @@ mod tests {
                 (region.sine.asin() - turn).max(0.0).sin()
             };
             let inner = Region { centre, radius: share * region.radius, axis, sine };
-            let (outer, less) = (pixels.allowed(&region), pixels.allowed(&inner));
+            let nobodys = Backs::nobodys();
+            let (outer, less) = (pixels.allowed(&region, &nobodys), pixels.allowed(&inner, &nobodys));
             let is_less =
                 less.length < outer.length * (1.0 - 1e-7) || less.height < outer.height * (1.0 - 1e-7);
             assert!(!is_less, "{outer:?} {less:?}: {region:?} {inner:?}");
-            let outer = pixels.allowed_length(region.centre, region.radius);
-            let less = pixels.allowed_length(inner.centre, inner.radius);
+            let outer = pixels.allowed_length(region.centre, region.radius, &nobodys);
+            let less = pixels.allowed_length(inner.centre, inner.radius, &nobodys);
             assert!(less >= outer * (1.0 - 1e-12), "{outer} {less}: {region:?} {inner:?}");
         }
     }
@@ -420,16 +477,49 @@ mod tests {
             height: 100,
         };
         let pixels = Pixels::new(1.0, &[camera], true).unwrap();
-        assert_eq!(pixels.allowed_length(DVec3::new(0.0, 0.0, 5.5), 1.0), 0.0);
-        assert_eq!(pixels.allowed_length(DVec3::new(0.0, 0.0, 6.5), 1.0), f64::INFINITY);
-        assert_eq!(pixels.allowed_length(DVec3::new(9.0, 0.0, 0.0), 1.0), f64::INFINITY);
-        assert!(pixels.allowed_length(DVec3::new(6.0, 0.0, 0.0), 1.0).is_finite());
+        let nobodys = Backs::nobodys();
+        let length = |at: DVec3, radius: f64| pixels.allowed_length(at, radius, &nobodys);
+        assert_eq!(length(DVec3::new(0.0, 0.0, 5.5), 1.0), 0.0);
+        assert_eq!(length(DVec3::new(0.0, 0.0, 6.5), 1.0), f64::INFINITY);
+        assert_eq!(length(DVec3::new(9.0, 0.0, 0.0), 1.0), f64::INFINITY);
+        assert!(length(DVec3::new(6.0, 0.0, 0.0), 1.0).is_finite());
         // At depth 5 a pixel is a tenth of a unit.
-        assert!((pixels.allowed_length(DVec3::ZERO, 0.0) - 5.0 / 51.0).abs() < 1e-12);
-        let facing =
-            |z: f64| Region { centre: DVec3::ZERO, radius: 0.1, axis: DVec3::new(0.0, 0.0, z), sine: 0.1 };
-        assert_eq!(pixels.allowed(&facing(-1.0)).height, f64::INFINITY);
-        assert!(pixels.allowed(&facing(1.0)).height > 3.0 * pixels.allowed_length(DVec3::ZERO, 0.1));
-        assert_eq!(pixels.seen(&facing(1.0), 0.0, f64::NAN), f64::INFINITY);
+        assert!((length(DVec3::ZERO, 0.0) - 5.0 / 51.0).abs() < 1e-12);
+        let region = Region { centre: DVec3::ZERO, radius: 0.1, axis: DVec3::Z, sine: 0.1 };
+        assert!(pixels.allowed(&region, &nobodys).height > 3.0 * length(DVec3::ZERO, 0.1));
+        assert_eq!(pixels.seen(&region, (0.0, f64::NAN), &nobodys), f64::INFINITY);
+    }
+
+    /// Cameras that see nothing but the back ask for nothing but that what is not certain is within the limit; the others go on asking.
+    #[test]
+    fn backs_are_not_seen() {
+        let mut numbers = Numbers(17);
+        let (mut half, mut rests) = (0, 0.0f64);
+        for _ in 0..2000 {
+            let cameras = [numbers.camera(), numbers.camera()];
+            let region = numbers.region(0.3);
+            let pixels = Pixels::new(2.0, &cameras, true).unwrap();
+            let is_second = |viewpoint: &Viewpoint| *viewpoint == Viewpoint::Eye(cameras[1].eye);
+            let share = 1.5 * numbers.next().abs();
+            let backs = pixels.backs(&region, |viewpoint, rest| is_second(viewpoint).then_some(share * rest));
+            let first = Pixels::new(2.0, &cameras[..1], true).unwrap();
+            let nobodys = Backs::nobodys();
+            assert_eq!(pixels.allowed(&region, &backs), first.allowed(&region, &nobodys));
+            let told = pixels.seen(&region, (0.01, 0.02), &backs);
+            assert_eq!(
+                told,
+                first.seen(&region, (0.01, 0.02), &nobodys).max(2.0 * pixels.rest_ratio(&backs))
+            );
+            // 1/64 of what is allowed comes to a little more where it is nearer to the eye than the region.
+            assert!(pixels.rest_ratio(&backs) < 0.04);
+            half += usize::from(told > 0.0);
+            rests = rests.max(pixels.rest_ratio(&backs));
+            let open = Pixels::new(2.0, &cameras, false).unwrap();
+            assert_eq!(
+                open.allowed(&region, &open.backs(&region, |_, _| Some(0.0))),
+                open.allowed(&region, &nobodys)
+            );
+        }
+        assert!(half > 200 && rests > 0.01, "{half} {rests}");
     }
 }

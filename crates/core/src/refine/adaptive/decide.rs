@@ -344,7 +344,9 @@ impl<'a> Decider<'a> {
         }
         let judge = self.judge;
         let may_stay = !self.control.demands.divides(place);
-        if place.level >= self.max_levels || may_stay && judge.may_pass(&corners, &middles, place.level) {
+        if place.level >= self.max_levels
+            || may_stay && judge.may_pass(patch, &corners, &middles, place.level)
+        {
             let mut pieces = Pieces::with_refined(patch, refined);
             let part = (place.level, SubTriangle::Whole);
             let verdict = judge.general(&mut pieces, part, &corners, open, &self.allowance);

@@ -6,6 +6,7 @@
 //! [`Allowance`]: how far the triangles in it and beside it may be tilted, and how acute they may be. What is let pass is checked
 //! against it face by face, so no triangle has to look at its neighbours.
 
+use super::backs::Behind;
 use super::decide::Control;
 use super::quadtree::Place;
 use super::surface::{Ground, Spot};
@@ -15,7 +16,7 @@ use crate::certificate::{
 };
 use crate::criterion::Criteria;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{LimitPoint, Rules};
+use crate::patch::{LimitPoint, Patch, Rules};
 use crate::vector::DVec3;
 
 /// Halvings of a net before a triangle is given up: the bound is within some per cent of the truth then.
@@ -256,7 +257,8 @@ impl Judge<'_> {
         let seen = Seen::of(corners, level);
         let net = || ground.net(spot, part);
         if let Some(criteria) = self.criteria {
-            let test = Trial::of(criteria, self.limit, &seen, corners);
+            let behind = Behind::Regular(ground, spot);
+            let test = Trial::of(criteria, self.limit, &seen, corners, &behind);
             return test.regular(ground, net, cell, open, self.rules);
         }
         let heights = ground.jet().heights(cell, seen.frame.normal());
@@ -341,7 +343,9 @@ impl Judge<'_> {
     ) -> Verdict {
         let seen = Seen::of(corners, level);
         if let Some(criteria) = self.criteria {
-            return Trial::of(criteria, self.limit, &seen, corners).general(pieces, part, open, self.rules);
+            let behind = Behind::General(pieces.patch(), self.rules);
+            let test = Trial::of(criteria, self.limit, &seen, corners, &behind);
+            return test.general(pieces, part, open, self.rules);
         }
         self.by_pieces(&seen, pieces, part, open, allowance)
     }
@@ -430,12 +434,21 @@ impl Judge<'_> {
     }
 
     /// Whether a triangle may pass, as far as some points of its piece tell.
-    pub(super) fn may_pass(&self, corners: &[LimitPoint; 3], points: &[LimitPoint], level: u32) -> bool {
+    pub(super) fn may_pass(
+        &self,
+        patch: &Patch,
+        corners: &[LimitPoint; 3],
+        points: &[LimitPoint],
+        level: u32,
+    ) -> bool {
         let seen = Seen::of(corners, level);
         let height = seen.highest(points);
         match self.criteria {
             None => height <= self.limit,
-            Some(criteria) => !Trial::of(criteria, self.limit, &seen, corners).is_lost(height),
+            Some(criteria) => {
+                let behind = Behind::General(patch, self.rules);
+                !Trial::of(criteria, self.limit, &seen, corners, &behind).is_lost(height)
+            }
         }
     }
 

@@ -6,14 +6,17 @@
 
 use std::collections::HashSet;
 
+use smallvec::SmallVec;
+
+use super::backs::{Behind, looks_away};
 use super::changes::Changes;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
 use super::judge::{DIVISIONS, Goal, HALVINGS};
 use super::quadtree::Place;
-use super::settle::{beside, sharp_edges};
+use super::settle::{beside, neighbours, sharp_edges};
 use crate::certificate::{Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds};
-use crate::criterion::{Apart, Criteria, Region};
+use crate::criterion::{Apart, Backs, Criteria, Region, Viewpoint};
 use crate::patch::{LimitPoint, Rules};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
@@ -92,7 +95,17 @@ impl Beholder for Measuring<'_> {
         if self.changes.is_some_and(|changes| !changes.concern(self.emission, emitted.number)) {
             return;
         }
-        let among = Among::of(self.emission, self.sharp, emitted);
+        let mut among = Among::of(self.emission, self.sharp, emitted);
+        if let Some(criteria) = self.criteria.filter(|criteria| criteria.has_backs()) {
+            among.backs = among.looks_away(criteria, |viewpoint, rest| match &over {
+                Over::Regular(ground, cell, spot) => {
+                    Behind::Regular(ground, *spot).is_back(&ground.at(cell.0), viewpoint, rest)
+                }
+                Over::General(pieces, corners) => {
+                    Behind::General(pieces.patch(), rules).is_back(corners, viewpoint, rest)
+                }
+            });
+        }
         let cone = match (self.criteria.filter(|criteria| criteria.has_cones()), &over) {
             (None, _) => 0.0,
             (Some(criteria), Over::Regular(ground, cell, _)) => {
@@ -239,7 +252,7 @@ impl Measuring<'_> {
     fn effort(&self, among: &Among, emitted: &Emitted) -> Effort {
         let allowed = match self.criteria {
             None => self.limit,
-            Some(criteria) => self.limit * criteria.allowed_length(&among.region()),
+            Some(criteria) => self.limit * criteria.allowed_length(&among.region(), &among.backs),
         };
         Effort {
             target: allowed.min(self.length),
@@ -258,8 +271,8 @@ impl Measuring<'_> {
         let Some(criteria) = self.criteria else { return Value { bound, value: bound, pixels: 0.0 } };
         let apart: Apart = deviation.apart(among.chord, among.slopes);
         let region = among.region().grown(apart.own);
-        let value = criteria.distance_ratio(&apart, &region);
-        Value { bound, value, pixels: criteria.pixels(&apart, &region).unwrap_or(0.0) }
+        let value = criteria.distance_ratio(&apart, &region, &among.backs);
+        Value { bound, value, pixels: criteria.pixels(&apart, &region, &among.backs).unwrap_or(0.0) }
     }
 }
 
@@ -317,6 +330,10 @@ struct Among {
     moved: f64,
     /// How far within the plane.
     aside: f64,
+    /// The triangles beside it.
+    neighbours: [Option<[DVec3; 3]>; 3],
+    /// Who sees nothing but its back and theirs.
+    backs: Backs,
 }
 
 impl Among {
@@ -324,6 +341,7 @@ impl Among {
         let corners = emitted.vertices.map(|vertex| vector(emission.positions[vertex as usize]));
         let frame = TriangleFrame::new(corners);
         let (squared, slopes) = beside(emission, sharp, emitted.number);
+        let neighbours = neighbours(emission, sharp, emitted.number);
         // The emitted triangle may begin at another corner.
         let emitted_at = emission.triangles[emitted.number as usize];
         let first = emitted_at.iter().position(|&vertex| vertex == emitted.vertices[0]).unwrap_or(0);
@@ -336,7 +354,15 @@ impl Among {
             aside = aside.max((step - lift * frame.normal()).length());
             -lift
         });
-        Self { corners, frame, chord: squared.sqrt(), slopes, lifts, moved, aside }
+        let (chord, backs) = (squared.sqrt(), Backs::nobodys());
+        Self { corners, frame, chord, slopes, lifts, moved, aside, neighbours, backs }
+    }
+
+    /// Who sees nothing but the back of the triangle, of those beside it, and of its piece.
+    fn looks_away(&self, criteria: &Criteria, piece: impl Fn(&Viewpoint, f64) -> Option<f64>) -> Backs {
+        let own = core::iter::once(self.corners);
+        let triangles: SmallVec<[_; 4]> = own.chain(self.neighbours.into_iter().flatten()).collect();
+        looks_away(criteria, &self.region(), (&triangles, self.moved), piece)
     }
 
     fn region(&self) -> Region {
@@ -348,7 +374,7 @@ impl Among {
         let (normal, normals) = (self.frame.normal(), corners.map(|corner| corner.normal));
         let tilt = normals.iter().map(|corner| corner.distance(normal)).fold(0.0, f64::max);
         let region = Region::around(self.corners, normal).turned(2.0 * tilt);
-        let ratio = criteria.cone_ratio(normal, normals, &region);
+        let ratio = criteria.cone_ratio(normal, normals, &region, &self.backs);
         if place.level as usize >= criteria.deepest_cone() { ratio.min(1.0) } else { ratio }
     }
 }

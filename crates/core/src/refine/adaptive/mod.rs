@@ -20,6 +20,7 @@
 //! 11. `flat`: regions whose surface lies in a plane, triangulated from their rims.
 
 mod among;
+mod backs;
 mod balance;
 mod budget;
 mod chains;

@@ -1,5 +1,6 @@
 //! What is handed out: the emitted mesh with all that is known of it.
 
+use super::backs::shows_back;
 use super::emit::Emission;
 use super::flat::Assembled;
 use super::judge::Goal;
@@ -139,7 +140,9 @@ fn open_cones(exact: &Exact, criteria: &Criteria, watch: &SharedWatch<'_>) -> Re
         let frame = TriangleFrame::new(corners);
         let tilt = normals.iter().map(|normal| normal.distance(frame.normal())).fold(0.0, f64::max);
         let region = Region::around(corners, frame.normal()).turned(2.0 * tilt);
-        criteria.cone_ratio(frame.normal(), normals, &region) > 1.0 + CONE_ROUNDING
+        // By equation (11) it is the triangle that counts.
+        let backs = criteria.backs(&region, |viewpoint, _| shows_back(&corners, viewpoint).then_some(0.0));
+        criteria.cone_ratio(frame.normal(), normals, &region, &backs) > 1.0 + CONE_ROUNDING
     };
     let open =
         watch.pieces(exact.mesh.face_count(), BLOCK, |block| block.filter(|&face| is_open(face)).count());

@@ -13,7 +13,7 @@ use crate::certificate::{STEEP, around};
 use crate::mesh::NONE;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
-use crate::vector::vector;
+use crate::vector::{DVec3, vector};
 
 /// Leaves that one call takes together.
 const BLOCK: usize = 1024;
@@ -179,14 +179,31 @@ pub(super) fn sharp_edges(emission: &Emission, watch: &SharedWatch<'_>) -> Resul
 
 /// [`around`] of an emitted triangle. Sharp edges have nobody beyond.
 pub(super) fn beside(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -> (f64, [f64; 3]) {
-    let at = |vertex: u32| vector(emission.positions[vertex as usize]);
-    let opposite = [0, 1, 2].map(|edge| {
+    let opposite =
+        neighbours(emission, sharp, triangle).map(|corners| corners.map(|[.., opposite]| opposite));
+    around(corners(emission, triangle), &opposite)
+}
+
+/// By edge, the corners of the triangle beyond, the one opposite last. Sharp edges have nobody beyond.
+pub(super) fn neighbours(
+    emission: &Emission,
+    sharp: &HashSet<u32>,
+    triangle: u32,
+) -> [Option<[DVec3; 3]>; 3] {
+    [0, 1, 2].map(|edge| {
         let h = 3 * triangle + edge;
         let twin = emission.twins[h as usize];
         let is_open = twin == NONE || !sharp.is_empty() && sharp.contains(&h);
-        (!is_open).then(|| at(emission.triangles[twin as usize / 3][(twin as usize + 2) % 3]))
-    });
-    around(emission.triangles[triangle as usize].map(at), &opposite)
+        (!is_open).then(|| {
+            let mut corners = corners(emission, twin / 3);
+            corners.rotate_left(twin as usize % 3);
+            corners
+        })
+    })
+}
+
+fn corners(emission: &Emission, triangle: u32) -> [DVec3; 3] {
+    emission.triangles[triangle as usize].map(|vertex| vector(emission.positions[vertex as usize]))
 }
 
 #[cfg(test)]

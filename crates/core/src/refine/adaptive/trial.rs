@@ -1,12 +1,13 @@
 //! How a triangle fares by criteria that ask for more than distances: cones, pixels, and distances beside them.
 //!
-//! Neighbours are expected to be like the triangle itself; with those that are emitted it is looked at again
-//! ([`super::measure`]).
+//! Neighbours are expected to be like the triangle itself, or to look away if it does; with those that are emitted it is looked at
+//! again ([`super::measure`]).
 
+use super::backs::{Behind, looks_away};
 use super::judge::{DIVISIONS, Extent, HALVINGS, Outcome, Seen, Verdict};
 use super::surface::Ground;
 use crate::certificate::{Cell, Deviation, Effort, NetPart, Pieces, SubTriangle, exceeds};
-use crate::criterion::{Apart, Criteria, Region};
+use crate::criterion::{Apart, Backs, Criteria, Region};
 use crate::patch::{LimitPoint, Rules};
 
 /// A triangle under test.
@@ -16,32 +17,44 @@ pub(super) struct Trial<'a> {
     seen: &'a Seen,
     /// Where it lies, and the normals of it and its neighbours.
     region: Region,
+    /// Who sees nothing but its back.
+    backs: Backs,
     /// How many times over it leaves its cones; no more than the limit where these are given up.
     cone: f64,
 }
 
 impl<'a> Trial<'a> {
-    pub(super) fn of(criteria: &'a Criteria, limit: f64, seen: &'a Seen, corners: &[LimitPoint; 3]) -> Self {
+    pub(super) fn of(
+        criteria: &'a Criteria,
+        limit: f64,
+        seen: &'a Seen,
+        corners: &[LimitPoint; 3],
+        behind: &Behind<'_>,
+    ) -> Self {
         let (chord, _) = seen.expected();
         let normal = seen.frame.normal();
         let region = Region::around(corners.map(|corner| corner.position), normal).turned(chord);
-        let cone = criteria.cone_ratio(normal, corners.map(|corner| corner.normal), &region);
+        let triangle = corners.map(|corner| corner.position);
+        let backs = looks_away(criteria, &region, (&[triangle], 0.0), |viewpoint, rest| {
+            behind.is_back(corners, viewpoint, rest)
+        });
+        let cone = criteria.cone_ratio(normal, corners.map(|corner| corner.normal), &region, &backs);
         let is_given_up = seen.level as usize >= criteria.deepest_cone();
-        Self { criteria, limit, seen, region, cone: if is_given_up { cone.min(1.0) } else { cone } }
+        Self { criteria, limit, seen, region, backs, cone: if is_given_up { cone.min(1.0) } else { cone } }
     }
 
     /// Whether a triangle fails for sure with a point of its piece so high over it.
     pub(super) fn is_lost(&self, height: f64) -> bool {
         let least = Apart { own: height, height, across: 0.0 };
         exceeds(self.cone, self.limit)
-            || exceeds(self.criteria.distance_ratio(&least, &self.region), self.limit)
+            || exceeds(self.criteria.distance_ratio(&least, &self.region, &self.backs), self.limit)
     }
 
     /// What the triangle comes to with this deviation.
     fn value(&self, deviation: &Deviation) -> f64 {
         let (chord, slopes) = self.seen.expected();
         let apart = deviation.apart(chord, slopes);
-        let distance = self.criteria.distance_ratio(&apart, &self.region.grown(apart.own));
+        let distance = self.criteria.distance_ratio(&apart, &self.region.grown(apart.own), &self.backs);
         // What is not a number fails.
         if exceeds(distance, self.cone) { distance } else { self.cone }
     }
@@ -66,7 +79,11 @@ impl<'a> Trial<'a> {
         let (low, high) = heights.range();
         if self.is_lost(low) {
             let least = Apart { own: low, height: low, across: 0.0 };
-            return self.verdict(self.cone.max(self.criteria.distance_ratio(&least, &self.region)));
+            return self.verdict(self.cone.max(self.criteria.distance_ratio(
+                &least,
+                &self.region,
+                &self.backs,
+            )));
         }
         let beside = ground.jet().beside(cell, &self.seen.frame, open);
         let verdict = self.verdict(self.value(&beside.deviation(high)));
@@ -84,7 +101,7 @@ impl<'a> Trial<'a> {
     /// What is done for a bound.
     fn effort(&self, open: [bool; 3]) -> Effort {
         let (chord, slopes) = self.seen.expected();
-        let target = self.limit * self.criteria.allowed_length(&self.region);
+        let target = self.limit * self.criteria.allowed_length(&self.region, &self.backs);
         Effort { target, halvings: HALVINGS, open, chord, slopes, gives_up: false, least_chord: None }
     }
 
