@@ -21,7 +21,7 @@ impl Apart {
 }
 
 /// What is not certain of a piece that looks away from a viewer may be as near to a corner as this part of its triangle's radius.
-const VIEW_REST: f64 = 1.0 / 1024.0;
+const VIEW_REST: f64 = 1.0 / 64.0;
 
 /// The criteria that are to be met together; without any, ratios are plain distances.
 #[derive(Clone, Debug, Default)]
@@ -66,25 +66,26 @@ impl Criteria {
         self.cone.map_or(usize::MAX, |cone| cone.deepest())
     }
 
-    /// Who sees nothing but the back of a triangle and its piece in a region. `is_back` tells that of a place from which they are seen: how
+    /// How many there are that something may look away from without being seen: the cameras, then the viewer of angles.
+    pub(crate) fn viewers(&self) -> usize {
+        let view = self.cone.and_then(|cone| cone.view);
+        self.pixels.as_ref().map_or(0, Pixels::viewers) + usize::from(view.is_some())
+    }
+
+    /// Who sees nothing but the back of a triangle and its piece in a region. `is_back` tells that of one of the [viewers](Self::viewers) by number: how
     /// far from a corner of the triangle what is not certain is, if that is hardly more than the given length.
     pub(crate) fn backs(
         &self,
         region: &Region,
-        mut is_back: impl FnMut(&Viewpoint, f64) -> Option<f64>,
+        mut is_back: impl FnMut(usize, &Viewpoint, f64) -> Option<f64>,
     ) -> Backs {
         let cameras = self.pixels.as_ref();
         let mut backs = cameras.map_or(Backs::nobodys(), |pixels| pixels.backs(region, &mut is_back));
         if let Some(view) = self.cone.and_then(|cone| cone.view) {
-            backs.view = is_back(&view.viewpoint, VIEW_REST * region.radius).is_some();
+            let viewer = cameras.map_or(0, Pixels::viewers);
+            backs.view = is_back(viewer, &view.viewpoint, VIEW_REST * region.radius).is_some();
         }
         backs
-    }
-
-    /// Whether it matters what looks away.
-    pub(crate) fn has_backs(&self) -> bool {
-        self.cone.is_some_and(|cone| cone.view.is_some())
-            || self.pixels.as_ref().is_some_and(Pixels::has_backs)
     }
 
     /// The distance, in whatever direction, that is certainly good enough anywhere in a ball.
@@ -111,6 +112,12 @@ impl Criteria {
         let own = (apart.own + self.rounding) / allowed.length;
         let among = apart.height / allowed.height + (apart.across + self.rounding) / allowed.length;
         plain.max(own.min(among)).max(pixels.rest_ratio(backs))
+    }
+
+    /// Whether there are cameras and none sees more of a region than its back.
+    pub(crate) fn is_unseen(&self, region: &Region, backs: &Backs) -> bool {
+        let allowed = |pixels: &Pixels| pixels.allowed_length(region.centre, region.radius, backs);
+        self.pixels.as_ref().is_some_and(|pixels| allowed(pixels) == f64::INFINITY)
     }
 
     /// How many pixels a distance comes to at most; `None` without cameras.

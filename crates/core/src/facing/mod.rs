@@ -107,50 +107,52 @@ pub(crate) fn of_patch(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, 
 
 /// Whether all of a regular piece shows its back, by its own coefficients.
 pub(crate) fn is_back(net: &BezierTriangle, viewpoint: &Viewpoint) -> bool {
-    of_net(net, viewpoint) == Look::All(Side::Back)
+    let Some(normals) = NormalNet::of(net) else { return false };
+    match *viewpoint {
+        Viewpoint::Direction(sight) => normals.along(unit_or_zero(vector(sight))) == Look::All(Side::Back),
+        Viewpoint::Eye(eye) => normals.is_back_from(vector(eye)),
+    }
 }
 
-/// Whether all of a piece shows its back but for parts at irregular vertices of which nothing is known: these must be within
-/// `rest` of one of the given corners. Never for schemes outside the Loop family.
+/// Whether all of a piece shows its back but for parts at irregular vertices of which nothing is known, so many levels down: these must
+/// be within `rest` of one of the given corners. Never for schemes outside the Loop family.
 pub(crate) fn is_back_but_for(
-    patch: &Patch,
-    rules: &Rules<'_>,
-    viewpoint: &Viewpoint,
-    (corners, rest): (&[DVec3; 3], f64),
-) -> bool {
-    is_back_below(patch, rules, viewpoint, (corners, rest), DEEPEST)
-}
-
-fn is_back_below(
     patch: &Patch,
     rules: &Rules<'_>,
     viewpoint: &Viewpoint,
     (corners, rest): (&[DVec3; 3], f64),
     levels: u32,
 ) -> bool {
-    let (at_once, levels) = at_once(patch, rules, viewpoint, levels);
-    if at_once.is_known() || levels == 0 {
-        return at_once == Look::All(Side::Back);
-    }
-    if !matches!(patch, Patch::Regular(_)) {
-        let mut is_rest = [true; 3];
-        patch.for_each_hull_point(|point| {
-            (0..3).for_each(|corner| is_rest[corner] &= point.distance(corners[corner]) <= rest);
-        });
-        if is_rest.contains(&true) {
-            return true;
+    let look = match patch {
+        Patch::Regular(points) => return is_back(&BezierTriangle::of(points), viewpoint),
+        Patch::Mesh(_) => return false,
+        Patch::Extraordinary(patch) => {
+            tip::cone(patch, rules).map(|cone| cone.look(patch.points(), viewpoint))
         }
+        Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) => None,
+    };
+    if let Some(known) = look.filter(|look| look.is_known()) {
+        return known == Look::All(Side::Back);
+    }
+    let mut is_rest = [true; 3];
+    patch.for_each_hull_point(|point| {
+        (0..3).for_each(|corner| is_rest[corner] &= point.distance(corners[corner]) <= rest);
+    });
+    if is_rest.contains(&true) {
+        return true;
+    }
+    if levels == 0 {
+        return false;
     }
     let refined = patch.refined(rules);
     // Where the middle part is not known, nothing is.
     [3, 0, 1, 2]
         .into_iter()
-        .all(|part| is_back_below(&refined.part(part), rules, viewpoint, (corners, rest), levels - 1))
+        .all(|part| is_back_but_for(&refined.part(part), rules, viewpoint, (corners, rest), levels - 1))
 }
 
-/// What is known of a piece without dividing it, and how many levels down it is worth while to look.
-fn at_once(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) -> (Look, u32) {
-    match patch {
+fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) -> Look {
+    let (at_once, levels) = match patch {
         Patch::Regular(points) => (of_net(&BezierTriangle::of(points), viewpoint), levels.min(DIVISIONS)),
         Patch::Extraordinary(patch) => {
             let cone = tip::cone(patch, rules);
@@ -158,11 +160,7 @@ fn at_once(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32)
         }
         Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) => (Look::Unknown, levels),
         Patch::Mesh(_) => (Look::Unknown, 0),
-    }
-}
-
-fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) -> Look {
-    let (at_once, levels) = at_once(patch, rules, viewpoint, levels);
+    };
     if at_once.is_known() || levels == 0 {
         return at_once;
     }

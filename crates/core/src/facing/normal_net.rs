@@ -4,7 +4,7 @@
 //! front to one who looks along d if they are above 0. `(E − S)·N`, which says on which side of the tangent planes an eye E is, has a net
 //! of degree 10, of 66 coefficients that follow from those of S and of N.
 
-use super::Look;
+use super::{Look, Side};
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::normal_net::{SEXTIC, cross_products, products, size, tangents};
 use crate::vector::DVec3;
@@ -82,17 +82,33 @@ impl NormalNet {
                 sides[usize::from(at)] += part * sight.dot(*normal);
             }
         }
+        Look::by_signs(&sides, corners(10), self.rounding_of(eye, farthest.sqrt()))
+    }
+
+    /// Whether it shows its back to an eye, decided by a ball around its points where that is possible.
+    pub(super) fn is_back_from(&self, eye: DVec3) -> bool {
+        let scaled = self.scale * eye;
+        let sum: DVec3 = self.points.iter().sum();
+        let centre = sum / QUARTIC as f64;
+        let squared = |point: &DVec3| point.distance_squared(centre);
+        let radius = self.points.iter().map(squared).fold(0.0, f64::max).sqrt();
+        let sight = scaled - centre;
+        let rounding = self.rounding_of(scaled, sight.length() + radius);
+        let is_back = |normal: &DVec3| sight.dot(*normal) + radius * normal.length() < -rounding;
+        self.normals.iter().all(is_back) || self.from(eye) == Look::All(Side::Back)
+    }
+
+    /// What rounding may do to products of normals and vectors up to so long towards an eye.
+    fn rounding_of(&self, eye: DVec3, farthest: f64) -> f64 {
         let of_sight = self.point_rounding + 8.0 * f64::EPSILON * eye.abs().max_element();
         let of_normals = self.rounding + LONGEST * SUM_ROUNDING;
-        let rounding = 2.0 * (LONGEST * of_sight + farthest.sqrt() * of_normals);
-        Look::by_signs(&sides, corners(10), rounding)
+        2.0 * (LONGEST * of_sight + farthest * of_normals)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::facing::Side;
     use crate::facing::test_nets::{Numbers, piece};
     use crate::patch::Quartic;
     use crate::patch::normal_net::place;

@@ -16,40 +16,127 @@
 //! **Views** make angles depend on triangles (equation 11). One that looks away is not divided, and no part of the outline is missed, if all of
 //! its piece does.
 
+use super::decide::Control;
+use super::emitted::{Emitted, Over};
 use super::surface::{Ground, Spot};
 use crate::certificate::SubTriangle;
 use crate::criterion::{Backs, Criteria, Region, Viewpoint};
-use crate::facing::{is_back, is_back_but_for};
+use crate::facing::{DEEPEST, is_back, is_back_but_for};
+use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{LimitPoint, Patch, Rules};
+use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// What rounding may do to the side of a triangle's plane that a place is on, as a part of the product of the lengths.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// The surface behind a triangle: all over the leaf that it covers, or a part of which.
-pub(super) enum Behind<'a> {
-    /// A node of a regular piece.
+/// Control faces that one call takes together.
+const BLOCK: usize = 64;
+
+/// Control faces times viewers for which that is kept: where there are more, leaves are looked at one by one.
+const MOST_KEPT: usize = 1 << 23;
+
+/// The control faces whose pieces look away as a whole, by viewer: so do all parts of them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct BackFaces {
+    viewers: usize,
+    /// By control face and viewer, how far from its corners that is not certain; NaN where it does not look away.
+    rests: Vec<f64>,
+}
+
+impl BackFaces {
+    pub(super) fn of(control: &Control<'_>, watch: &SharedWatch<'_>) -> Result<Self, Cancelled> {
+        let Some(criteria) = &control.criteria else { return Ok(Self::default()) };
+        let viewers = criteria.viewers();
+        let faces = control.mesh.face_count();
+        if viewers == 0 || faces > MOST_KEPT / viewers || !control.rules.is_certified() {
+            return Ok(Self::default());
+        }
+        let nobody = Self::default();
+        let blocks = watch.long_pieces(faces, BLOCK, |block, _| {
+            let mut rests = vec![f64::NAN; block.len() * viewers];
+            for (face, rests) in block.zip(rests.chunks_mut(viewers)) {
+                let (corners, mut patch) = (control.corners(face as u32), None);
+                let triangle = corners.map(|corner| corner.position);
+                let mut look = |(viewer, viewpoint): (usize, &Viewpoint), rest| {
+                    let patch = patch.get_or_insert_with(|| control.patch(face as u32));
+                    let leaf = Leaf::General(patch, control.rules);
+                    let behind = Behind { faces: &nobody, face: face as u32, leaf };
+                    let found = behind.is_back(&corners, (viewer, viewpoint), rest);
+                    rests[viewer] = found.unwrap_or(f64::NAN);
+                    found
+                };
+                let region = Region::around(triangle, DVec3::ZERO);
+                looks_away(criteria, &region, (&[triangle], 0.0), &mut look);
+            }
+            rests
+        })?;
+        Ok(Self { viewers, rests: blocks.concat() })
+    }
+
+    fn rest(&self, face: u32, viewer: usize) -> Option<f64> {
+        let rest = self.rests.get(face as usize * self.viewers + viewer)?;
+        (!rest.is_nan()).then_some(*rest)
+    }
+}
+
+/// The surface over a leaf, behind a triangle that covers it or a part of it.
+pub(super) struct Behind<'a> {
+    pub(super) faces: &'a BackFaces,
+    /// The control face.
+    pub(super) face: u32,
+    pub(super) leaf: Leaf<'a>,
+}
+
+/// A leaf's piece.
+pub(super) enum Leaf<'a> {
+    /// A part of a regular piece.
     Regular(&'a Ground, Spot),
     /// Any other.
     General(&'a Patch, &'a Rules<'a>),
 }
 
-impl Behind<'_> {
-    /// How far from one of the triangle's corners what is not known to show its back is; `None` if that is more than `rest`.
-    pub(super) fn is_back(&self, corners: &[LimitPoint; 3], viewpoint: &Viewpoint, rest: f64) -> Option<f64> {
-        let sees_front = |corner: &LimitPoint| towards(viewpoint, corner.position).dot(corner.normal) > 0.0;
-        if corners.iter().any(sees_front) {
+impl<'a> Behind<'a> {
+    /// The surface behind an emitted triangle.
+    pub(super) fn of(
+        faces: &'a BackFaces,
+        emitted: &Emitted,
+        over: &'a Over<'_, '_>,
+        rules: &'a Rules<'a>,
+    ) -> Self {
+        let leaf = match over {
+            Over::Regular(ground, _, spot) => Leaf::Regular(ground, *spot),
+            Over::General(pieces, _) => Leaf::General(pieces.patch(), rules),
+        };
+        Self { faces, face: emitted.place.face, leaf }
+    }
+
+    /// How far from a vertex of the mesh what is not known to show a viewer its back is; `None` if that is more than
+    /// `rest`, or than it is allowed for its whole control face. The limits at the triangle's corners are given.
+    pub(super) fn is_back(
+        &self,
+        corners: &[LimitPoint; 3],
+        (viewer, viewpoint): (usize, &Viewpoint),
+        rest: f64,
+    ) -> Option<f64> {
+        if let Some(rest) = self.faces.rest(self.face, viewer) {
+            return Some(rest);
+        }
+        if shows_front(corners, viewpoint) {
             return None;
         }
-        match self {
-            Self::Regular(ground, spot) => {
-                is_back(ground.net(*spot, SubTriangle::Whole).net(), viewpoint).then_some(0.0)
+        match self.leaf {
+            Leaf::Regular(ground, spot) => {
+                is_back(ground.net(spot, SubTriangle::Whole).net(), viewpoint).then_some(0.0)
             }
             // Nothing of these is certain, distances neither.
-            Self::General(Patch::Mesh(_), _) => Some(0.0),
-            Self::General(patch, rules) => {
+            Leaf::General(Patch::Mesh(_), _) => Some(0.0),
+            Leaf::General(Patch::Regular(points), _) => {
+                is_back(&BezierTriangle::of(points), viewpoint).then_some(0.0)
+            }
+            Leaf::General(patch, rules) => {
                 let corners = corners.map(|corner| corner.position);
-                is_back_but_for(patch, rules, viewpoint, (&corners, rest)).then_some(rest)
+                is_back_but_for(patch, rules, viewpoint, (&corners, rest), DEEPEST).then_some(rest)
             }
         }
     }
@@ -61,18 +148,20 @@ pub(super) fn looks_away(
     criteria: &Criteria,
     region: &Region,
     (triangles, moved): (&[[DVec3; 3]], f64),
-    piece: impl Fn(&Viewpoint, f64) -> Option<f64>,
+    mut piece: impl FnMut((usize, &Viewpoint), f64) -> Option<f64>,
 ) -> Backs {
-    if !criteria.has_backs() {
-        return Backs::nobodys();
-    }
-    criteria.backs(region, |viewpoint, rest| {
+    criteria.backs(region, |viewer, viewpoint, rest| {
         if !triangles.iter().all(|triangle| shows_back(triangle, viewpoint)) {
             return None;
         }
-        let rest = piece(viewpoint, rest)?;
+        let rest = piece((viewer, viewpoint), rest)?;
         Some(if rest > 0.0 { rest + moved } else { 0.0 })
     })
+}
+
+/// Whether a viewer sees the front at some point.
+fn shows_front(points: &[LimitPoint], viewpoint: &Viewpoint) -> bool {
+    points.iter().any(|point| towards(viewpoint, point.position).dot(point.normal) > 0.0)
 }
 
 /// Whether a viewer is behind the plane of a triangle.

@@ -7,6 +7,7 @@
 mod allowances;
 mod even_parts;
 
+use super::backs::BackFaces;
 use super::demands::Demands;
 use super::flat::FlatRegions;
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
@@ -49,6 +50,8 @@ pub(super) struct Control<'a> {
     pub(super) flat: FlatRegions,
     /// What is asked; `None` where nothing but distances and numbers of triangles count.
     pub(super) criteria: Option<Criteria>,
+    /// What looks away from those who look.
+    pub(super) back_faces: BackFaces,
     /// What is divided in any case.
     pub(super) demands: &'a Demands,
 }

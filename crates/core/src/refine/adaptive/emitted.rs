@@ -39,6 +39,16 @@ pub(super) enum Over<'e, 'p> {
     General(&'e mut Pieces<'p>, [LimitPoint; 3]),
 }
 
+impl Over<'_, '_> {
+    /// The limits at the triangle's corners, normals on this side.
+    pub(super) fn corners(&self) -> [LimitPoint; 3] {
+        match self {
+            Self::Regular(ground, cell, _) => ground.at(cell.0),
+            Self::General(_, corners) => *corners,
+        }
+    }
+}
+
 /// Who looks at the triangles.
 pub(super) trait Beholder {
     /// Looks at one.

@@ -6,7 +6,7 @@
 //! [`Allowance`]: how far the triangles in it and beside it may be tilted, and how acute they may be. What is let pass is checked
 //! against it face by face, so no triangle has to look at its neighbours.
 
-use super::backs::Behind;
+use super::backs::{BackFaces, Behind, Leaf};
 use super::decide::Control;
 use super::quadtree::Place;
 use super::surface::{Ground, Spot};
@@ -126,7 +126,8 @@ impl Goal {
             Self::Even(..) => (0.0, true),
         };
         let (rules, criteria) = (control.rules, control.criteria.as_ref());
-        Judge { rules, criteria, max_levels, limit: distance, is_lenient }
+        let back_faces = &control.back_faces;
+        Judge { rules, criteria, back_faces, face, max_levels, limit: distance, is_lenient }
     }
 
     /// What bounds may come to once the neighbours are known.
@@ -146,6 +147,9 @@ pub(super) struct Judge<'a> {
     pub(super) rules: &'a Rules<'a>,
     /// What is asked beside distances.
     criteria: Option<&'a Criteria>,
+    back_faces: &'a BackFaces,
+    /// The control face.
+    face: u32,
     /// Levels from which on triangles are not divided, whatever they come to.
     max_levels: u32,
     /// Greatest value: a distance where nothing else counts.
@@ -257,7 +261,7 @@ impl Judge<'_> {
         let seen = Seen::of(corners, level);
         let net = || ground.net(spot, part);
         if let Some(criteria) = self.criteria {
-            let behind = Behind::Regular(ground, spot);
+            let behind = self.behind(Leaf::Regular(ground, spot));
             let test = Trial::of(criteria, self.limit, &seen, corners, &behind);
             return test.regular(ground, net, cell, open, self.rules);
         }
@@ -343,11 +347,15 @@ impl Judge<'_> {
     ) -> Verdict {
         let seen = Seen::of(corners, level);
         if let Some(criteria) = self.criteria {
-            let behind = Behind::General(pieces.patch(), self.rules);
+            let behind = self.behind(Leaf::General(pieces.patch(), self.rules));
             let test = Trial::of(criteria, self.limit, &seen, corners, &behind);
             return test.general(pieces, part, open, self.rules);
         }
         self.by_pieces(&seen, pieces, part, open, allowance)
+    }
+
+    fn behind<'p>(&'p self, leaf: Leaf<'p>) -> Behind<'p> {
+        Behind { faces: self.back_faces, face: self.face, leaf }
     }
 
     fn by_net(&self, seen: &Seen, net: &NetPart, open: [bool; 3], allowance: &Allowance) -> Verdict {
@@ -446,7 +454,7 @@ impl Judge<'_> {
         match self.criteria {
             None => height <= self.limit,
             Some(criteria) => {
-                let behind = Behind::General(patch, self.rules);
+                let behind = self.behind(Leaf::General(patch, self.rules));
                 !Trial::of(criteria, self.limit, &seen, corners, &behind).is_lost(height)
             }
         }

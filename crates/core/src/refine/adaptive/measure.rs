@@ -8,7 +8,7 @@ use std::collections::HashSet;
 
 use smallvec::SmallVec;
 
-use super::backs::{Behind, looks_away};
+use super::backs::{BackFaces, Behind, looks_away};
 use super::changes::Changes;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
@@ -62,6 +62,7 @@ pub(super) fn measure(
             let mut measuring = Measuring {
                 emission: sources.emission,
                 criteria: sources.control.criteria.as_ref(),
+                back_faces: &sources.control.back_faces,
                 sharp: &sharp,
                 changes: changes.filter(|changes| !changes.is_touched(face)),
                 limit: goal.allowed(face),
@@ -81,6 +82,7 @@ pub(super) fn measure(
 struct Measuring<'a> {
     emission: &'a Emission,
     criteria: Option<&'a Criteria>,
+    back_faces: &'a BackFaces,
     sharp: &'a HashSet<u32>,
     /// Others need not be looked at.
     changes: Option<&'a Changes>,
@@ -96,22 +98,14 @@ impl Beholder for Measuring<'_> {
             return;
         }
         let mut among = Among::of(self.emission, self.sharp, emitted);
-        if let Some(criteria) = self.criteria.filter(|criteria| criteria.has_backs()) {
-            among.backs = among.looks_away(criteria, |viewpoint, rest| match &over {
-                Over::Regular(ground, cell, spot) => {
-                    Behind::Regular(ground, *spot).is_back(&ground.at(cell.0), viewpoint, rest)
-                }
-                Over::General(pieces, corners) => {
-                    Behind::General(pieces.patch(), rules).is_back(corners, viewpoint, rest)
-                }
+        if let Some(criteria) = self.criteria {
+            among.backs = among.looks_away(criteria, |viewer, rest| {
+                Behind::of(self.back_faces, emitted, &over, rules).is_back(&over.corners(), viewer, rest)
             });
         }
-        let cone = match (self.criteria.filter(|criteria| criteria.has_cones()), &over) {
-            (None, _) => 0.0,
-            (Some(criteria), Over::Regular(ground, cell, _)) => {
-                among.cone(criteria, emitted.place, &ground.at(cell.0))
-            }
-            (Some(criteria), Over::General(_, corners)) => among.cone(criteria, emitted.place, corners),
+        let cone = match self.criteria.filter(|criteria| criteria.has_cones()) {
+            None => 0.0,
+            Some(criteria) => among.cone(criteria, emitted.place, &over.corners()),
         };
         // Heights that are met, and about the greatest.
         let height = match &mut over {
@@ -359,7 +353,11 @@ impl Among {
     }
 
     /// Who sees nothing but the back of the triangle, of those beside it, and of its piece.
-    fn looks_away(&self, criteria: &Criteria, piece: impl Fn(&Viewpoint, f64) -> Option<f64>) -> Backs {
+    fn looks_away(
+        &self,
+        criteria: &Criteria,
+        piece: impl Fn((usize, &Viewpoint), f64) -> Option<f64>,
+    ) -> Backs {
         let own = core::iter::once(self.corners);
         let triangles: SmallVec<[_; 4]> = own.chain(self.neighbours.into_iter().flatten()).collect();
         looks_away(criteria, &self.region(), (&triangles, self.moved), piece)

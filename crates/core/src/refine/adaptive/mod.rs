@@ -64,6 +64,7 @@ use crate::patch::Rules;
 use crate::patch::large_rings::LargeRings;
 use crate::progress::{Observer, SharedWatch, Stage};
 use crate::scheme::Scheme;
+use backs::BackFaces;
 use balance::{Pending, balance};
 use chains::{Chains, first_of};
 use close::close;
@@ -247,6 +248,7 @@ fn with_engine<T>(
         rules: &rules,
         flat: FlatRegions::default(),
         criteria: None,
+        back_faces: BackFaces::default(),
         demands,
     };
     if options.flat_regions && !options.balance && options.attributes.is_empty() {
@@ -254,6 +256,7 @@ fn with_engine<T>(
     }
     let rounding = probe::rounding(mesh, options.max_levels, &watch)? + 2.0 * control.flat.off_planes();
     control.criteria = criteria(mesh, options, rounding)?;
+    control.back_faces = BackFaces::of(&control, &watch)?;
     let engine = Engine {
         control: &control,
         edges,

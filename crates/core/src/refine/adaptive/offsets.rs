@@ -6,17 +6,20 @@
 //! between these for all triangles around it stays so when some of them are divided: then the ranges shrink. Else a division would
 //! make the triangles beside fail, these those beside them, and so on, one a round.
 //!
-//! Where a surface bends both ways in the same way, and on boundaries and sharp edges, vertices stay.
+//! Where a surface bends both ways in the same way, and on boundaries and sharp edges, vertices stay. Triangles that no camera sees have no
+//! say: they may be much coarser than those beside them, which would not stand what these want.
 
+use super::backs::{Behind, looks_away};
 use super::decide::Control;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
 use super::measure::fail;
 use super::quadtree::Place;
 use crate::certificate::TriangleFrame;
+use crate::criterion::Region;
 use crate::patch::Rules;
 use crate::progress::{Cancelled, SharedWatch};
-use crate::vector::{unit_or_zero, vector};
+use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// Levels below a leaf whose vertices are sampled where a piece is not regular.
 const SAMPLED_LEVELS: usize = 2;
@@ -40,7 +43,8 @@ pub(super) struct Bulges(Vec<Bulge>);
 /// Those of a control face.
 #[derive(Clone, Default)]
 struct Bulge {
-    ranges: Vec<(f64, f64)>,
+    /// Nothing where nobody looks.
+    ranges: Vec<Option<(f64, f64)>>,
     /// Leaves whose triangles bulge too far, and half of that.
     failing: Vec<(Place, f64)>,
 }
@@ -60,9 +64,10 @@ impl Bulges {
         let found = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
             let found = faces[block].iter().map(|&face| {
                 let triangles = emission.triangles_of(face);
-                let ranges = vec![(0.0, 0.0); triangles.len()];
+                let ranges = vec![None; triangles.len()];
                 let found = Bulge { ranges, failing: Vec::new() };
-                let mut looking = Looking { emission, first: triangles.start as u32, hopeless, found };
+                let (control, first) = (sources.control, triangles.start as u32);
+                let mut looking = Looking { control, emission, first, hopeless, found };
                 sources.show(face, is_stopped, &mut looking);
                 looking.found
             });
@@ -90,7 +95,9 @@ impl Bulges {
         let mut around = vec![Around::default(); emission.positions.len()];
         let ranges = self.0.iter().flat_map(|face| &face.ranges);
         watch.each(emission.triangles.iter().zip(ranges), |(triangle, range)| {
-            triangle.iter().for_each(|&vertex| around[vertex as usize].add(range));
+            for (&vertex, range) in triangle.iter().zip([range; 3]) {
+                range.iter().for_each(|range| around[vertex as usize].add(range));
+            }
         })?;
         let mut offsets = Vec::with_capacity(around.len());
         watch.each(around, |around| offsets.push(around.offset(EASY * allowed)))?;
@@ -141,6 +148,7 @@ impl Around {
 
 /// Looks at the triangles of a control face.
 struct Looking<'a> {
+    control: &'a Control<'a>,
     emission: &'a Emission,
     first: u32,
     hopeless: f64,
@@ -150,6 +158,9 @@ struct Looking<'a> {
 impl Beholder for Looking<'_> {
     fn triangle<'p>(&mut self, emitted: &Emitted, over: Over<'_, 'p>, rules: &'p Rules<'p>) {
         let corners = emitted.vertices.map(|vertex| vector(self.emission.positions[vertex as usize]));
+        if self.is_unseen(emitted, corners, &over, rules) {
+            return;
+        }
         let (low, high) = match over {
             Over::Regular(ground, cell, _) => {
                 let [a, b, c] = corners;
@@ -166,9 +177,27 @@ impl Beholder for Looking<'_> {
                 heights.fold((0.0f64, 0.0f64), |(low, high), height| (low.min(height), high.max(height)))
             }
         };
-        self.found.ranges[(emitted.number - self.first) as usize] = (low, high);
+        self.found.ranges[(emitted.number - self.first) as usize] = Some((low, high));
         if high - low > self.hopeless {
             fail(&mut self.found.failing, emitted.place, 0.5 * (high - low));
         }
+    }
+}
+
+impl Looking<'_> {
+    /// Whether no camera sees more of a triangle than its back, as far as the triangle and its piece tell.
+    fn is_unseen(
+        &self,
+        emitted: &Emitted,
+        corners: [DVec3; 3],
+        over: &Over<'_, '_>,
+        rules: &Rules<'_>,
+    ) -> bool {
+        let Control { criteria: Some(criteria), back_faces, .. } = self.control else { return false };
+        let region = Region::around(corners, DVec3::ZERO);
+        let backs = looks_away(criteria, &region, (&[corners], 0.0), |viewer, rest| {
+            Behind::of(back_faces, emitted, over, rules).is_back(&over.corners(), viewer, rest)
+        });
+        criteria.is_unseen(&region, &backs)
     }
 }

@@ -141,7 +141,7 @@ fn open_cones(exact: &Exact, criteria: &Criteria, watch: &SharedWatch<'_>) -> Re
         let tilt = normals.iter().map(|normal| normal.distance(frame.normal())).fold(0.0, f64::max);
         let region = Region::around(corners, frame.normal()).turned(2.0 * tilt);
         // By equation (11) it is the triangle that counts.
-        let backs = criteria.backs(&region, |viewpoint, _| shows_back(&corners, viewpoint).then_some(0.0));
+        let backs = criteria.backs(&region, |_, viewpoint, _| shows_back(&corners, viewpoint).then_some(0.0));
         criteria.cone_ratio(frame.normal(), normals, &region, &backs) > 1.0 + CONE_ROUNDING
     };
     let open =

@@ -35,8 +35,8 @@ impl<'a> Trial<'a> {
         let normal = seen.frame.normal();
         let region = Region::around(corners.map(|corner| corner.position), normal).turned(chord);
         let triangle = corners.map(|corner| corner.position);
-        let backs = looks_away(criteria, &region, (&[triangle], 0.0), |viewpoint, rest| {
-            behind.is_back(corners, viewpoint, rest)
+        let backs = looks_away(criteria, &region, (&[triangle], 0.0), |viewer, rest| {
+            behind.is_back(corners, viewer, rest)
         });
         let cone = criteria.cone_ratio(normal, corners.map(|corner| corner.normal), &region, &backs);
         let is_given_up = seen.level as usize >= criteria.deepest_cone();
