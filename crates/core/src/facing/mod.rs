@@ -114,41 +114,44 @@ pub(crate) fn is_back(net: &BezierTriangle, viewpoint: &Viewpoint) -> bool {
     }
 }
 
-/// Whether all of a piece shows its back but for parts at irregular vertices of which nothing is known, so many levels down: these must
-/// be within `rest` of one of the given corners. Never for schemes outside the Loop family.
-pub(crate) fn is_back_but_for(
+/// How far from one of the given corners those parts of a piece are that are not known to show their back, so many levels down; `None` if that is
+/// more than `rest`, and for schemes outside the Loop family.
+pub(crate) fn back_but_for(
     patch: &Patch,
     rules: &Rules<'_>,
     viewpoint: &Viewpoint,
     (corners, rest): (&[DVec3; 3], f64),
     levels: u32,
-) -> bool {
+) -> Option<f64> {
     let look = match patch {
-        Patch::Regular(points) => return is_back(&BezierTriangle::of(points), viewpoint),
-        Patch::Mesh(_) => return false,
+        Patch::Regular(points) => return is_back(&BezierTriangle::of(points), viewpoint).then_some(0.0),
+        Patch::Mesh(_) => return None,
         Patch::Extraordinary(patch) => {
             tip::cone(patch, rules).map(|cone| cone.look(patch.points(), viewpoint))
         }
         Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) => None,
     };
     if let Some(known) = look.filter(|look| look.is_known()) {
-        return known == Look::All(Side::Back);
+        return (known == Look::All(Side::Back)).then_some(0.0);
     }
-    let mut is_rest = [true; 3];
+    let mut is_near = [true; 3];
     patch.for_each_hull_point(|point| {
-        (0..3).for_each(|corner| is_rest[corner] &= point.distance(corners[corner]) <= rest);
+        (0..3).for_each(|corner| is_near[corner] &= point.distance(corners[corner]) <= rest);
     });
-    if is_rest.contains(&true) {
-        return true;
+    if is_near.contains(&true) {
+        return Some(rest);
     }
     if levels == 0 {
-        return false;
+        return None;
     }
     let refined = patch.refined(rules);
+    let mut left = 0.0f64;
     // Where the middle part is not known, nothing is.
-    [3, 0, 1, 2]
-        .into_iter()
-        .all(|part| is_back_but_for(&refined.part(part), rules, viewpoint, (corners, rest), levels - 1))
+    for part in [3, 0, 1, 2] {
+        let own = back_but_for(&refined.part(part), rules, viewpoint, (corners, rest), levels - 1)?;
+        left = left.max(own);
+    }
+    Some(left)
 }
 
 fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) -> Look {

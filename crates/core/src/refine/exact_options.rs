@@ -22,10 +22,11 @@ pub struct ExactOptions {
     pub angle: Option<f64>,
     /// Makes the angle depend on where the viewer stands, as in the paper's equation 11, but never smaller than
     /// [`Self::angle`], so that silhouettes come to an end and a viewer asks for no more than none: what looks away is not
-    /// divided, and with a dilatation above 1 what looks at the viewer has greater angles. Default: none.
+    /// divided for its own sake, and with a dilatation above 1 what looks at the viewer has greater angles. Default: none.
     pub view: Option<View>,
     /// Greatest distance between mesh and limit surface as the cameras see it, in pixels: of each point of one that is in a
-    /// picture from the other. Of closed surfaces what looks away from a camera is not seen. Default: none.
+    /// picture from the other. Of closed surfaces what looks away from a camera is not seen, and where it certainly does it is not divided for its
+    /// own sake. Default: none.
     pub pixels: Option<f64>,
     /// The cameras that the distance in pixels is for; one mesh serves them all. Default: none.
     pub cameras: Vec<Camera>,

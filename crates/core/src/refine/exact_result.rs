@@ -99,7 +99,7 @@ pub struct Exact {
     /// How far mesh and limit surface can be from each other.
     pub error: ErrorBounds,
     /// The greatest distance between mesh and limit surface as the cameras see it, in pixels at most: each point of one
-    /// that is in a picture has a point of the other that near. `None` without cameras; infinite where it is not bounded.
+    /// that is in a picture, and on closed surfaces faces the camera, has a point of the other that near. `None` without cameras; infinite where it is not bounded.
     pub pixels: Option<f64>,
     /// By goal of [`ExactOptions::attributes`](super::ExactOptions::attributes), how far values or surfaces are from what the triangles
     /// hold at most: proven where [`ErrorBounds::certified`] says so of the distance.

@@ -21,8 +21,7 @@ use super::emitted::{Emitted, Over};
 use super::surface::{Ground, Spot};
 use crate::certificate::SubTriangle;
 use crate::criterion::{Backs, Criteria, Region, Viewpoint};
-use crate::facing::{DEEPEST, is_back, is_back_but_for};
-use crate::patch::bezier_triangle::BezierTriangle;
+use crate::facing::{DEEPEST, back_but_for, is_back};
 use crate::patch::{LimitPoint, Patch, Rules};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, unit_or_zero, vector};
@@ -45,7 +44,12 @@ pub(super) struct BackFaces {
 }
 
 impl BackFaces {
-    pub(super) fn of(control: &Control<'_>, watch: &SharedWatch<'_>) -> Result<Self, Cancelled> {
+    /// Where vertices move, only what is certain all over: nobody knows how far a control face's corners do.
+    pub(super) fn of(
+        control: &Control<'_>,
+        is_balanced: bool,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Self, Cancelled> {
         let Some(criteria) = &control.criteria else { return Ok(Self::default()) };
         let viewers = criteria.viewers();
         let faces = control.mesh.face_count();
@@ -53,9 +57,12 @@ impl BackFaces {
             return Ok(Self::default());
         }
         let nobody = Self::default();
-        let blocks = watch.long_pieces(faces, BLOCK, |block, _| {
+        let blocks = watch.long_pieces(faces, BLOCK, |block, is_stopped| {
             let mut rests = vec![f64::NAN; block.len() * viewers];
             for (face, rests) in block.zip(rests.chunks_mut(viewers)) {
+                if is_stopped() {
+                    break;
+                }
                 let (corners, mut patch) = (control.corners(face as u32), None);
                 let triangle = corners.map(|corner| corner.position);
                 let mut look = |(viewer, viewpoint): (usize, &Viewpoint), rest| {
@@ -63,7 +70,7 @@ impl BackFaces {
                     let leaf = Leaf::General(patch, control.rules);
                     let behind = Behind { faces: &nobody, face: face as u32, leaf };
                     let found = behind.is_back(&corners, (viewer, viewpoint), rest);
-                    rests[viewer] = found.unwrap_or(f64::NAN);
+                    rests[viewer] = found.filter(|&rest| !is_balanced || rest == 0.0).unwrap_or(f64::NAN);
                     found
                 };
                 let region = Region::around(triangle, DVec3::ZERO);
@@ -131,12 +138,9 @@ impl<'a> Behind<'a> {
             }
             // Nothing of these is certain, distances neither.
             Leaf::General(Patch::Mesh(_), _) => Some(0.0),
-            Leaf::General(Patch::Regular(points), _) => {
-                is_back(&BezierTriangle::of(points), viewpoint).then_some(0.0)
-            }
             Leaf::General(patch, rules) => {
                 let corners = corners.map(|corner| corner.position);
-                is_back_but_for(patch, rules, viewpoint, (&corners, rest), DEEPEST).then_some(rest)
+                back_but_for(patch, rules, viewpoint, (&corners, rest), DEEPEST)
             }
         }
     }

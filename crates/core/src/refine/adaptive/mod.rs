@@ -256,7 +256,7 @@ fn with_engine<T>(
     }
     let rounding = probe::rounding(mesh, options.max_levels, &watch)? + 2.0 * control.flat.off_planes();
     control.criteria = criteria(mesh, options, rounding)?;
-    control.back_faces = BackFaces::of(&control, &watch)?;
+    control.back_faces = BackFaces::of(&control, options.balance, &watch)?;
     let engine = Engine {
         control: &control,
         edges,
