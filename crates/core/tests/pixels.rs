@@ -152,7 +152,7 @@ impl Model {
     }
 
     /// A camera that has all of the model in its picture, half of which looks away.
-    fn from_outside(&self, random: &mut Random) -> Camera {
+    fn outside(&self, random: &mut Random) -> Camera {
         let [low, high] = self.limit.as_triangles().bounding_box().unwrap();
         let target = [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]));
         let mut any = || unit([0, 1, 2].map(|_| random.signed()));
@@ -277,7 +277,7 @@ fn seen_from_outside() -> Vec<Model> {
 fn what_looks_away_does_not_show() {
     for (model, seed) in seen_from_outside().iter().zip(40..) {
         assert!(model.is_closed);
-        let share = model.check_with(6, [0.5, 2.0, 8.0], seed, Model::from_outside);
+        let share = model.check_with(6, [0.5, 2.0, 8.0], seed, Model::outside);
         assert!(share > 0.1, "{}: {share}", model.name);
     }
 }
@@ -290,7 +290,7 @@ fn no_view_of_many_shows_more_than_the_limit() {
         println!("{}: {:.3} of the limit", model.name, model.check(160, seed));
     }
     for (model, seed) in seen_from_outside().iter().zip(200..) {
-        let share = model.check_with(160, [0.5, 2.0, 8.0], seed, Model::from_outside);
+        let share = model.check_with(160, [0.5, 2.0, 8.0], seed, Model::outside);
         println!("{} from outside: {share:.3} of the limit", model.name);
     }
 }

@@ -270,3 +270,83 @@ mod test_nets {
         BezierTriangle::of(&points)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::test_nets::{Numbers, piece};
+    use super::*;
+    use crate::index::FaceId;
+    use crate::limit_surface::LimitSurface;
+    use crate::mesh::Sharpness;
+    use crate::models::stirred;
+    use crate::patch::large_rings::LargeRings;
+    use crate::patch::{Quartic, root_patch};
+    use crate::scheme::Loop;
+
+    /// Places over a triangle, its corners and edges among them.
+    fn places() -> impl Iterator<Item = (f64, f64)> {
+        (0..=12).flat_map(|i| (0..=12 - i).map(move |j| (f64::from(i) / 12.0, f64::from(j) / 12.0)))
+    }
+
+    /// How far a viewer is before a point's tangent plane, the normal having any length.
+    fn before(viewpoint: &Viewpoint, point: DVec3, normal: DVec3) -> f64 {
+        match *viewpoint {
+            Viewpoint::Direction(sight) => -vector(sight).dot(normal),
+            Viewpoint::Eye(eye) => (vector(eye) - point).dot(normal),
+        }
+    }
+
+    fn viewpoint(numbers: &mut Numbers, size: f64) -> Viewpoint {
+        let place = (size * numbers.vector()).to_array();
+        if numbers.next() > 0.3 { Viewpoint::Direction(place) } else { Viewpoint::Eye(place) }
+    }
+
+    #[test]
+    fn backs_of_regular_pieces_are_backs_and_found_as_often() {
+        let mut numbers = Numbers::new(23);
+        let (mut found, mut all) = (0, 0);
+        for _ in 0..4000 {
+            let net = piece(&mut numbers, 0.15);
+            let viewpoint = viewpoint(&mut numbers, 6.0);
+            let quartic = Quartic::of(&net, 0);
+            let at = |(u, v)| before(&viewpoint, quartic.point(u, v), quartic.normal(u, v)) < 0.0;
+            let is_known = is_back(&net, &viewpoint);
+            assert!(!is_known || places().all(at));
+            assert!(is_known || of_net(&net, &viewpoint) != Look::All(Side::Back));
+            found += usize::from(is_known);
+            all += usize::from(places().all(at));
+        }
+        assert!(found > 800 && 20 * found > 17 * all, "{found} of {all}");
+    }
+
+    /// All that is seen from the front of what is said to be a back is as near to a corner as is said, beside creases, boundaries and darts.
+    #[test]
+    fn backs_but_for_corners_are_backs_elsewhere() {
+        let mut numbers = Numbers::new(29);
+        let (mut certain, mut but_for) = (0, 0);
+        for (name, degrees) in [("cup", 40.0), ("head", 35.0), ("bunny", 50.0), ("torus", 170.0)] {
+            let mesh = stirred(name, 3).with_creases_above(f64::to_radians(degrees)).unwrap();
+            let surface = LimitSurface::new(&mesh, &Loop).unwrap();
+            let (sharpness, rules) = (Sharpness::of(&mesh), Rules::of(&Loop));
+            let large = LargeRings::of(&mesh);
+            for face in 0..mesh.face_count() as u32 {
+                let patch = root_patch(&mesh, &sharpness, &large, FaceId(face), &rules);
+                let viewpoint = viewpoint(&mut numbers, 3.0 * mesh.diagonal());
+                let rest = 1e-3 * mesh.diagonal() * numbers.below_one();
+                let at = |u: f64, v: f64| surface.at(FaceId(face), [1.0 - u - v, u, v]);
+                let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(u, v)| vector(at(u, v).position));
+                let left = back_but_for(&patch, &rules, &viewpoint, (&corners, rest), DEEPEST);
+                let Some(left) = left else { continue };
+                assert!(left <= rest);
+                (certain, but_for) = (certain + usize::from(left == 0.0), but_for + usize::from(left > 0.0));
+                for (u, v) in places() {
+                    let point = at(u, v);
+                    let (position, normal) = (vector(point.position), vector(point.normal));
+                    let is_near = corners.iter().any(|corner| corner.distance(position) <= left);
+                    assert!(is_near || before(&viewpoint, position, normal) < 0.0, "{name}, face {face}");
+                }
+            }
+        }
+        assert!(certain > 10 && but_for > 50, "{certain} {but_for}");
+    }
+}
