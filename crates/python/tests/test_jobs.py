@@ -49,6 +49,8 @@ def test_interrupts_end_the_call():
     program = textwrap.dedent(
         """
         import os, signal, threading, time, limitmesh
+        # In the background of a shell it is ignored from the start.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         def interrupt():
             global sent
             sent = time.perf_counter()
