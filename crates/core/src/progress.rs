@@ -72,6 +72,8 @@ pub enum Stage {
     Matching,
     /// Rays are being followed to a surface; the units are rays.
     Casting,
+    /// It is being found which way faces look; the units are faces.
+    Looking,
 }
 
 impl fmt::Display for Stage {
@@ -87,6 +89,7 @@ impl fmt::Display for Stage {
             Self::Bounding => "bounding the distance",
             Self::Matching => "matching edges",
             Self::Casting => "following rays",
+            Self::Looking => "finding which way faces look",
         })
     }
 }

@@ -4,6 +4,8 @@
 
 mod support;
 
+use std::ops::ControlFlow;
+
 use limitmesh::criterion::Viewpoint;
 use limitmesh::mesh::{CreaseTag, Tags};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly};
@@ -110,6 +112,23 @@ fn facing_is_never_wrong_and_seldom_undecided() {
         // Beside creases and boundaries irregular vertices stay undecided.
         let is_smooth = !["sheet", "creased"].contains(&name);
         assert!(!is_smooth || undecided <= mixed / 5, "{name}: {undecided} undecided, {decided:?} {mixed}");
+    }
+}
+
+#[test]
+fn all_faces_at_once_are_each_one_by_one() {
+    for (name, mesh) in models() {
+        let surface = LimitSurface::new(&mesh, &Loop).unwrap();
+        let viewpoint = Viewpoint::Eye([2.0, -7.0, 3.0]);
+        let each = (0..mesh.face_count() as u32).map(|face| surface.facing(FaceId(face), &viewpoint));
+        assert_eq!(surface.facing_of_all(&viewpoint), each.collect::<Vec<_>>(), "{name}");
+        let mut told = 0;
+        let found = surface.facing_of_all_observed(&viewpoint, &mut |progress| {
+            told = progress.done;
+            ControlFlow::Continue(())
+        });
+        assert!(found.is_ok() && told == mesh.face_count(), "{name}: {told}");
+        assert!(surface.facing_of_all_observed(&viewpoint, &mut |_| ControlFlow::Break(())).is_err());
     }
 }
 

@@ -4,6 +4,8 @@
 
 mod support;
 
+use std::ops::ControlFlow;
+
 use limitmesh::mesh::{CreaseTag, Tags};
 use limitmesh::refine::limit_reference;
 use limitmesh::scheme::{Loop, ModifiedButterfly};
@@ -310,6 +312,26 @@ fn what_is_grazed_is_told() {
     let hits = rays.intersections(&Ray { origin, direction }, &RayOptions::default().tolerance(1e-8));
     let grazes = hits.iter().any(|hit| hit.crossing == Crossing::Grazing && (hit.t - 1.0).abs() < 1e-3);
     assert!(grazes, "{hits:?}");
+}
+
+#[test]
+fn many_rays_at_once_are_each_one_by_one() {
+    let mesh = lumpy(9, 5);
+    let surface = LimitSurface::new(&mesh, &Loop).unwrap();
+    let rays = RayCaster::new(&surface).unwrap();
+    let (mut random, options) = (Random::new(2), RayOptions::default());
+    let many: Vec<Ray> = (0..300).map(|_| random_ray(&mut random, ([0.0; 3], 1.0))).collect();
+    let all = rays.intersections_of_all(&many, &options);
+    assert!(all.iter().any(|hits| hits.is_empty()) && all.iter().any(|hits| hits.len() > 1));
+    assert_eq!(all, many.iter().map(|ray| rays.intersections(ray, &options)).collect::<Vec<_>>());
+    let mut told = 0;
+    let found = rays.intersections_of_all_observed(&many, &options, &mut |progress| {
+        told = progress.done;
+        ControlFlow::Continue(())
+    });
+    assert!(found.is_ok() && told == many.len(), "{told}");
+    let stopped = rays.intersections_of_all_observed(&many, &options, &mut |_| ControlFlow::Break(()));
+    assert!(stopped.is_err());
 }
 
 #[test]

@@ -1,13 +1,14 @@
 //! What can go wrong, as Python's exceptions.
 
-use limitmesh::ProximityError;
 use limitmesh::criterion::CriterionError;
 use limitmesh::interpolate::InterpolateError;
 use limitmesh::limit::LimitError;
 use limitmesh::measure::MeasureError;
 use limitmesh::mesh::{ChannelError, MeshError as CoreMeshError};
+use limitmesh::progress::Cancelled;
 use limitmesh::refine::RefineError;
 use limitmesh::simplify::SimplifyError;
+use limitmesh::{ProximityError, RayError};
 use limitmesh_io::{ReadError as CoreReadError, WriteError};
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
@@ -84,6 +85,21 @@ impl From<ProximityError> for Failure {
             }
             error => Self::Mesh(error.to_string()),
         }
+    }
+}
+
+impl From<RayError> for Failure {
+    fn from(error: RayError) -> Self {
+        match error {
+            RayError::Limit(error) => error.into(),
+            error => Self::Option(error.to_string()),
+        }
+    }
+}
+
+impl From<Cancelled> for Failure {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
     }
 }
 

@@ -16,6 +16,7 @@ mod picture;
 mod pool;
 mod program;
 mod project;
+mod rays;
 mod refine;
 mod run;
 mod simplify;
@@ -47,11 +48,13 @@ mod _limitmesh {
     #[pymodule_export]
     use super::project::project;
     #[pymodule_export]
+    use super::rays::intersect;
+    #[pymodule_export]
     use super::refine::{estimate, refine};
     #[pymodule_export]
     use super::simplify::{repair, simplify};
     #[pymodule_export]
-    use super::surface::limit_surface;
+    use super::surface::{facing, limit_surface};
 
     use pyo3::prelude::*;
     use pyo3::types::PyTuple;

@@ -1,6 +1,7 @@
-//! Points, derivatives and curvature of the limit surface at places of its control faces.
+//! Points, derivatives and curvature of the limit surface at places of its control faces; which way it looks over whole faces.
 
-use limitmesh::{FaceId, LimitSurface, PolygonSoup};
+use limitmesh::criterion::Viewpoint;
+use limitmesh::{FaceId, Facing, LimitSurface, PolygonSoup};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -93,6 +94,39 @@ fn places(faces: &[i64], weights: &[f64], count: usize) -> PyResult<Vec<(FaceId,
         ))),
     };
     faces.iter().zip(weights.as_chunks::<3>().0).enumerate().map(place).collect()
+}
+
+/// Which side of the surface over each triangle of the input is seen from an eye, or along a direction: 1 for the front, −1 for the
+/// back, 0 where both are, or where it is not known.
+#[pyfunction]
+pub(crate) fn facing<'py>(
+    py: Python<'py>,
+    mesh: MeshIn<'py>,
+    control: ControlOptions,
+    eye: Option<[f64; 3]>,
+    view: [f64; 3],
+    threads: usize,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyArray1<i8>>> {
+    let (soup, recipe) = (mesh.soup()?, Recipe::new(control)?);
+    let viewpoint = eye.map_or(Viewpoint::Direction(view), Viewpoint::Eye);
+    let sides = run(py, threads, progress, move |observer| {
+        let corners = triangles(&soup);
+        let control = recipe.control(soup, observer)?;
+        check(&control, corners.as_deref())?;
+        let surface = LimitSurface::new(&control.mesh, recipe.scheme)?;
+        let found = surface.facing_of_all_observed(&viewpoint, observer)?;
+        if let Some(error) = surface.failure() {
+            return Err(Failure::Mesh(error.to_string()));
+        }
+        let side = |facing: Facing| match facing {
+            Facing::Front => 1,
+            Facing::Back => -1,
+            Facing::Undecided => 0,
+        };
+        Ok(found.into_iter().map(side).collect())
+    })?;
+    Ok(PyArray1::from_vec(py, sides))
 }
 
 /// The corners of all faces, if these are triangles.

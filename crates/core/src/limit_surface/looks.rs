@@ -4,7 +4,12 @@ use super::LimitSurface;
 use crate::criterion::Viewpoint;
 use crate::facing::{self, Facing, NormalCone};
 use crate::index::FaceId;
+use crate::parallel::Cancelled;
 use crate::patch::root_patch;
+use crate::progress::{Observer, SharedWatch, Stage, uncancelled};
+
+/// Faces that are looked at together.
+const BLOCK: usize = 64;
 
 impl LimitSurface<'_> {
     /// Whether all of the surface over a control face shows its front to a viewer, or its back: never wrong, and
@@ -31,6 +36,30 @@ impl LimitSurface<'_> {
         }
         let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
         facing::of_patch(&patch, &self.rules, viewpoint, facing::DEEPEST)
+    }
+
+    /// [`Self::facing`] of all control faces, in order, on all threads.
+    pub fn facing_of_all(&self, viewpoint: &Viewpoint) -> Vec<Facing> {
+        uncancelled(|observer| self.facing_of_all_observed(viewpoint, observer))
+    }
+
+    /// [`Self::facing_of_all`], telling how it goes on.
+    ///
+    /// # Errors
+    /// It was cancelled.
+    pub fn facing_of_all_observed(
+        &self,
+        viewpoint: &Viewpoint,
+        observer: &mut Observer<'_>,
+    ) -> Result<Vec<Facing>, Cancelled> {
+        let faces = self.mesh.face_count();
+        let watch = SharedWatch::new(observer, Stage::Looking);
+        watch.triangles(faces);
+        watch.stage(Stage::Looking, Some(faces))?;
+        let of_face = |face: usize| self.facing(FaceId(face as u32), viewpoint);
+        let blocks = watch.pieces(faces, BLOCK, |block| block.map(of_face).collect::<Vec<_>>())?;
+        watch.done(faces)?;
+        Ok(blocks.concat())
     }
 
     /// A cone that holds all normals of the surface over a control face, with the apexes by which one product tells how it looks from

@@ -190,14 +190,43 @@ impl<'a> RayCaster<'a> {
         options: &RayOptions,
         observer: &mut Observer<'_>,
     ) -> Result<Vec<Option<Hit>>, Cancelled> {
+        let blocks = self.of_all(rays, observer, |ray| self.first(ray, options))?;
+        Ok(blocks.concat())
+    }
+
+    /// [`Self::intersections`] of many rays, in order, on all threads.
+    pub fn intersections_of_all(&self, rays: &[Ray], options: &RayOptions) -> Vec<Vec<Hit>> {
+        uncancelled(|observer| self.intersections_of_all_observed(rays, options, observer))
+    }
+
+    /// [`Self::intersections_of_all`], telling how it goes on.
+    ///
+    /// # Errors
+    /// It was cancelled.
+    pub fn intersections_of_all_observed(
+        &self,
+        rays: &[Ray],
+        options: &RayOptions,
+        observer: &mut Observer<'_>,
+    ) -> Result<Vec<Vec<Hit>>, Cancelled> {
+        let blocks = self.of_all(rays, observer, |ray| self.intersections(ray, options))?;
+        Ok(blocks.into_iter().flatten().collect())
+    }
+
+    /// What there is of each ray, in blocks of rays.
+    fn of_all<T: Send>(
+        &self,
+        rays: &[Ray],
+        observer: &mut Observer<'_>,
+        of: impl Fn(&Ray) -> T + Sync,
+    ) -> Result<Vec<Vec<T>>, Cancelled> {
         let watch = SharedWatch::new(observer, Stage::Casting);
         watch.triangles(self.surface.control().face_count());
         watch.stage(Stage::Casting, Some(rays.len()))?;
-        let blocks = watch.pieces(rays.len(), BLOCK, |block| {
-            rays[block].iter().map(|ray| self.first(ray, options)).collect::<Vec<_>>()
-        })?;
+        let blocks =
+            watch.pieces(rays.len(), BLOCK, |block| rays[block].iter().map(&of).collect::<Vec<_>>())?;
         watch.done(rays.len())?;
-        Ok(blocks.concat())
+        Ok(blocks)
     }
 
     fn searched(

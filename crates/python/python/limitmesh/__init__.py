@@ -32,7 +32,8 @@ from ._refine import Estimate, estimate, refine
 from ._refined import Diagnosis, ErrorBounds, Finding, Refined, Split
 from ._simplify import Repaired, Simplified, repair, simplify
 from ._project import Projected, project
-from ._surface import SurfacePoints, limit_surface
+from ._rays import Intersections, intersect
+from ._surface import SurfacePoints, facing, limit_surface
 
 if hasattr(_os, "register_at_fork"):
     # The child would have none of the threads that are kept for the next call.
@@ -47,6 +48,7 @@ __all__ = [
     "ErrorBounds",
     "Estimate",
     "Finding",
+    "Intersections",
     "Limit",
     "Mesh",
     "MeshError",
@@ -64,11 +66,13 @@ __all__ = [
     "ToleranceNotMet",
     "__version__",
     "estimate",
+    "facing",
     "from_meshio",
     "from_open3d",
     "from_pyvista",
     "from_trimesh",
     "info",
+    "intersect",
     "limit",
     "limit_surface",
     "load",

@@ -15,6 +15,8 @@ __all__ = [
     "end_threads",
     "estimate",
     "examine",
+    "facing",
+    "intersect",
     "limit",
     "limit_surface",
     "load",
@@ -86,6 +88,31 @@ def limit_surface(
     npt.NDArray[np.float64],
     npt.NDArray[np.float64],
     npt.NDArray[np.float64],
+]: ...
+def facing(
+    mesh: Any,
+    control: dict[str, Any],
+    eye: list[float] | None,
+    view: list[float],
+    threads: int,
+    progress: _Callback,
+) -> npt.NDArray[np.int8]: ...
+def intersect(
+    origins: npt.NDArray[np.float64],
+    directions: npt.NDArray[np.float64],
+    mesh: Any,
+    control: dict[str, Any],
+    casting: dict[str, Any],
+    threads: int,
+    progress: _Callback,
+) -> tuple[
+    npt.NDArray[np.int64],
+    npt.NDArray[np.float64],
+    npt.NDArray[np.int64],
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float64],
+    npt.NDArray[np.int8],
 ]: ...
 def project(
     points: npt.NDArray[np.float64],

@@ -129,6 +129,23 @@ def point(value: Any, name: str) -> list[float]:
     return [float(x) for x in array]
 
 
+def points_of(points: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
+    """Rows of three finite numbers, (n, 3) and C-contiguous."""
+    try:
+        rows = np.ascontiguousarray(points, dtype=np.float64)
+    except (ValueError, TypeError):
+        raise OptionError(f"{name} is no array of numbers, expected (n, 3)") from None
+    if not rows.size:
+        rows = rows.reshape(-1, 3)
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise OptionError(f"{name} has the shape {rows.shape}, expected (n, 3)")
+    is_finite = np.isfinite(rows).all(axis=1)
+    if not is_finite.all():
+        row = int(np.argmin(is_finite))
+        raise OptionError(f"{name}[{row}] is {rows[row]}, expected finite numbers")
+    return rows
+
+
 _UNITS = {"": 1, "B": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
 
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
 
 from . import _limitmesh, _options
-from ._arrays import Floats
-from ._limitmesh import OptionError
+from ._arrays import Floats, Integers
 from ._mesh import MeshLike
 from ._options import Boundary, Length, ProgressCallback, Scheme
 from ._refine import _mesh_of
@@ -37,7 +35,7 @@ class Projected:
     distances: Floats
     lower: Floats
     signed: Floats
-    faces: npt.NDArray[np.int64]
+    faces: Integers
     barycentric: Floats
 
 
@@ -100,29 +98,13 @@ def project(
         weld=weld,
         repair=True,
     )
-    rows = _points_of(points)
+    rows = _options.points_of(points, "points")
     within = _options.extent(tolerance, "tolerance")
     native = _mesh_of(vertices, faces, None, creases, corners)._native()
     workers, callback = _options.threads_of(threads), _options.callback_of(progress)
     found = _limitmesh.project(rows, native, control, within, workers, callback)
     closest, normals, barycentric, triangles, distances, lower, signed = found
     return Projected(closest, normals, distances, lower, signed, triangles, barycentric)
-
-
-def _points_of(points: npt.ArrayLike) -> Floats:
-    try:
-        rows = np.ascontiguousarray(points, dtype=np.float64)
-    except (ValueError, TypeError):
-        raise OptionError("points is no array of numbers, expected (n, 3)") from None
-    if not rows.size:
-        rows = rows.reshape(-1, 3)
-    if rows.ndim != 2 or rows.shape[1] != 3:
-        raise OptionError(f"points has the shape {rows.shape}, expected (n, 3)")
-    is_finite = np.isfinite(rows).all(axis=1)
-    if not is_finite.all():
-        row = int(np.argmin(is_finite))
-        raise OptionError(f"points[{row}] is {rows[row]}, expected finite numbers")
-    return rows
 
 
 __all__ = ["Projected", "project"]

@@ -1,4 +1,4 @@
-"""The limit surface itself, at places of its control faces."""
+"""The limit surface itself: at places of its control faces, and which way it looks over each."""
 
 from __future__ import annotations
 
@@ -119,6 +119,76 @@ def limit_surface(
     )
 
 
+def facing(
+    vertices: npt.ArrayLike | MeshLike,
+    faces: Any = None,
+    *,
+    view: npt.ArrayLike | None = None,
+    eye: npt.ArrayLike | None = None,
+    interpolate: bool | Length = False,
+    crease_angle: float | None = None,
+    creases: Any = None,
+    corners: Any = None,
+    boundary: Boundary = "smooth",
+    concave_corners: str | None = None,
+    scheme: Scheme = "loop",
+    weld: float | None = 0.0,
+    threads: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> npt.NDArray[np.int8]:
+    """Which side of the limit surface over each control face is seen, for certain: (m,) int8.
+
+    1 where every point over the face shows its front, -1 where every one shows its back; 0 where both are seen, where it is a close
+    thing, at vertices without a tangent plane, and for schemes other than ``"loop"`` and ``"loop-warren"``.
+
+    Parameters
+    ----------
+    vertices, faces
+        A mesh of triangles, as for `refine`; one that needs no repair, such as `repair` gives.
+    view
+        The direction of sight of a parallel projection, from the viewer into the scene, of any length but 0.
+    eye
+        Or where the viewer stands, in the mesh's unit. One of both is needed.
+    interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, weld
+        What the limit surface is, as for `refine`.
+    threads, progress
+        As for `refine`.
+
+    Raises
+    ------
+    MeshError
+        As `refine`, and where the control mesh's triangles would not be ``faces``.
+    OptionError
+        A viewpoint that is none, or as `refine`.
+
+    Examples
+    --------
+    >>> import limitmesh
+    >>> vertices = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    >>> faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]
+    >>> limitmesh.facing(vertices, faces, eye=[9, 9, -9]).tolist()
+    [1, 0, 0, 0]
+    """
+    control = _options.control_of(
+        interpolate=interpolate,
+        crease_angle=crease_angle,
+        boundary=boundary,
+        concave_corners=concave_corners,
+        scheme=scheme,
+        weld=weld,
+        repair=True,
+    )
+    if (view is None) == (eye is None):
+        raise OptionError("view and eye: one of them says where the viewer is")
+    stands = None if eye is None else _options.point(eye, "eye")
+    sight = [0.0, 0.0, 0.0] if view is None else _options.point(view, "view")
+    if view is not None and not any(sight):
+        raise OptionError(f"view is {view!r}, expected a direction: it is 0")
+    native = _mesh_of(vertices, faces, None, creases, corners)._native()
+    workers, callback = _options.threads_of(threads), _options.callback_of(progress)
+    return _limitmesh.facing(native, control, stands, sight, workers, callback)
+
+
 def _places_of(
     at: npt.ArrayLike, barycentric: npt.ArrayLike
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64]]:
@@ -140,4 +210,4 @@ def _places_of(
     return np.ascontiguousarray(faces, dtype=np.int64), weights
 
 
-__all__ = ["SurfacePoints", "limit_surface"]
+__all__ = ["SurfacePoints", "facing", "limit_surface"]
