@@ -83,23 +83,25 @@ impl Recipe {
             true => channels,
             false => channels.iter().map(|channel| channel.on_parts(&concave.parts, &mesh)).collect(),
         };
-        Ok(Control {
-            mesh,
-            parts: concave.parts,
-            diagnosis,
-            faces: trace.faces,
-            corners,
-            vertices,
-            channels,
-            diagonal,
-            interpolated,
-        })
+        let tables = Tables { parts: concave.parts, diagnosis, faces: trace.faces, corners, interpolated };
+        Ok(Control { mesh, tables, vertices, channels, diagonal })
     }
 }
 
 /// A control mesh and where it came from.
 pub(crate) struct Control {
     pub(crate) mesh: Mesh,
+    pub(crate) tables: Tables,
+    /// By vertex of the input, the mesh's; none where no face of it was kept, the first of copies.
+    pub(crate) vertices: Vec<Option<u32>>,
+    pub(crate) channels: Vec<Channel>,
+    /// What lengths are given in parts of.
+    pub(crate) diagonal: f64,
+}
+
+/// What stays of a control mesh with each result of it.
+#[derive(Clone)]
+pub(crate) struct Tables {
     /// Where faces were divided.
     pub(crate) parts: FaceParts,
     pub(crate) diagnosis: Diagnosis,
@@ -107,11 +109,6 @@ pub(crate) struct Control {
     pub(crate) faces: Vec<u32>,
     /// By corner of the same, the input's vertex.
     pub(crate) corners: Vec<u32>,
-    /// By vertex of the input, the mesh's; none where no face of it was kept, the first of copies.
-    pub(crate) vertices: Vec<Option<u32>>,
-    pub(crate) channels: Vec<Channel>,
-    /// What lengths are given in parts of.
-    pub(crate) diagonal: f64,
     pub(crate) interpolated: Option<InterpolatedTold>,
 }
 
@@ -123,7 +120,9 @@ impl Control {
         };
         !self.channels.iter().all(is_one)
     }
+}
 
+impl Tables {
     /// The input's faces that control faces are from; none where nothing is told of them.
     pub(crate) fn input_faces(&self, mut faces: Vec<u32>) -> Option<Vec<u32>> {
         for face in &mut faces {
@@ -134,6 +133,7 @@ impl Control {
 }
 
 /// How control points were found.
+#[derive(Clone, Copy)]
 pub(crate) struct InterpolatedTold {
     method: InterpolationMethod,
     residual: f64,

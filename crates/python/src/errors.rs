@@ -1,6 +1,7 @@
 //! What can go wrong, as Python's exceptions.
 
 use limitmesh::criterion::CriterionError;
+use limitmesh::front::FrontError;
 use limitmesh::interpolate::InterpolateError;
 use limitmesh::limit::LimitError;
 use limitmesh::measure::MeasureError;
@@ -100,6 +101,17 @@ impl From<RayError> for Failure {
 impl From<Cancelled> for Failure {
     fn from(_: Cancelled) -> Self {
         Self::Cancelled
+    }
+}
+
+impl From<FrontError> for Failure {
+    fn from(error: FrontError) -> Self {
+        match error {
+            FrontError::Limit(error) => error.into(),
+            FrontError::Demand(error) => error.into(),
+            FrontError::Mesh(error) => error.into(),
+            error => Self::Mesh(error.to_string()),
+        }
     }
 }
 

@@ -80,6 +80,8 @@ type CameraIn = ([f64; 3], [f64; 3], [f64; 3], f64, u32, u32);
 #[pyo3(from_item_all)]
 pub(crate) struct Goals {
     pub(crate) method: String,
+    /// Whether √3-subdivision divides, in place of the control mesh's scheme.
+    pub(crate) sqrt3: bool,
     /// Steps of the stepwise methods.
     pub(crate) levels: usize,
     pub(crate) tolerance: Option<Extent>,
@@ -97,7 +99,7 @@ pub(crate) struct Goals {
     flat_regions: bool,
     pub(crate) origins: bool,
     max_triangles: Option<usize>,
-    max_levels: Option<usize>,
+    pub(crate) max_levels: Option<usize>,
     max_memory: Option<usize>,
 }
 
@@ -108,12 +110,15 @@ impl Goals {
         Some(View { viewpoint, dilatation: self.dilatation })
     }
 
-    /// Triangles that a stepwise method must not exceed, by number or memory.
-    pub(crate) fn cap(&self) -> Option<usize> {
-        /// A mesh with what refining it takes besides, measured for uniform refinement, rounded up.
-        const BYTES_PER_TRIANGLE: usize = 200;
-        let by_memory = self.max_memory.map(|bytes| bytes / BYTES_PER_TRIANGLE);
+    /// Triangles that a method without a cap of its own on memory must not exceed, by number or at so many bytes each.
+    pub(crate) fn cap(&self, bytes_per_triangle: usize) -> Option<usize> {
+        let by_memory = self.max_memory.map(|bytes| bytes / bytes_per_triangle);
         self.max_triangles.into_iter().chain(by_memory).min()
+    }
+
+    /// What such a cap is called where it ended a refinement.
+    pub(crate) fn cap_name(&self, bytes_per_triangle: usize) -> &'static str {
+        if self.cap(bytes_per_triangle) == self.max_triangles { "triangle-cap" } else { "memory-cap" }
     }
 
     /// As exact refinement has them, for a mesh with this diagonal. Triangles stay within one face where faces are to be told apart.

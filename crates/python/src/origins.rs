@@ -5,7 +5,7 @@ use limitmesh::refine::Origin;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::control::Control;
+use crate::control::Tables;
 use crate::tell;
 
 /// Where vertices are on the control mesh, and what that was made of.
@@ -21,14 +21,10 @@ pub(crate) struct Origins {
 type Rows<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray2<i64>>, Bound<'py, PyArray2<f64>>);
 
 impl Origins {
-    /// None where the library tells of none. Takes the control mesh's tables of the input.
-    pub(crate) fn new(control: &mut Control, origins: Vec<Origin>) -> Option<Self> {
-        (!origins.is_empty()).then(|| Self {
-            origins,
-            parts: std::mem::take(&mut control.parts),
-            faces: std::mem::take(&mut control.faces),
-            corners: std::mem::take(&mut control.corners),
-        })
+    /// None where the library tells of none.
+    pub(crate) fn new(tables: Tables, origins: Vec<Origin>) -> Option<Self> {
+        let Tables { parts, faces, corners, .. } = tables;
+        (!origins.is_empty()).then_some(Self { origins, parts, faces, corners })
     }
 }
 

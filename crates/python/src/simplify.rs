@@ -46,13 +46,13 @@ pub(crate) fn simplify<'py>(
             }
         }
         // Copies of cut vertices are found through their corners.
-        for (own, &input) in control.mesh.triangles().as_flattened().iter().zip(&control.corners) {
+        for (own, &input) in control.mesh.triangles().as_flattened().iter().zip(&control.tables.corners) {
             if inputs[*own as usize] == u32::MAX {
                 inputs[*own as usize] = input;
             }
         }
         let inputs: Vec<u32> = found.vertices.iter().map(|&v| inputs[v as usize]).collect();
-        Ok((found, inputs, control.diagnosis))
+        Ok((found, inputs, control.tables.diagnosis))
     })?;
     let dict = PyDict::new(py);
     dict.set_item("diagnosis", tell::diagnosis(py, &diagnosis)?)?;
@@ -96,12 +96,12 @@ pub(crate) fn repair<'py>(
         Ok(Mended {
             positions,
             triangles,
-            faces: control.faces,
-            corners: control.corners,
+            faces: control.tables.faces,
+            corners: control.tables.corners,
             channels: control.channels,
             creases,
             corner_tags,
-            diagnosis: control.diagnosis,
+            diagnosis: control.tables.diagnosis,
         })
     })?;
     let dict = PyDict::new(py);

@@ -136,8 +136,9 @@ fn triangles(soup: &PolygonSoup) -> Option<Vec<u32>> {
 
 /// That the control mesh's triangles are the input's, corner by corner.
 fn check(control: &Control, corners: Option<&[u32]>) -> Result<(), Failure> {
-    let is_whole = control.parts.is_empty() && corners.is_some_and(|corners| control.corners == corners);
-    let is_in_order = control.faces.iter().zip(0..).all(|(&face, own)| face == own);
+    let is_whole =
+        control.tables.parts.is_empty() && corners.is_some_and(|corners| control.tables.corners == corners);
+    let is_in_order = control.tables.faces.iter().zip(0..).all(|(&face, own)| face == own);
     match is_whole && is_in_order {
         true => Ok(()),
         false => Err(Failure::Mesh(

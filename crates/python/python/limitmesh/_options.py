@@ -19,7 +19,8 @@ Length: TypeAlias = float | str
 
 Boundary: TypeAlias = Literal["smooth", "corners", "fixed"]
 Scheme: TypeAlias = Literal["loop", "loop-warren", "butterfly"]
-Method: TypeAlias = Literal["exact", "limit-normal", "amresh", "uniform"]
+RefiningScheme: TypeAlias = Literal["loop", "loop-warren", "butterfly", "sqrt3"]
+Method: TypeAlias = Literal["exact", "limit-normal", "amresh", "uniform", "planarity", "vertex-error"]
 
 
 @dataclass(frozen=True)
@@ -300,16 +301,21 @@ def of_refinement(
     **goals: Any,
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """How the control mesh comes about, and the goals."""
+    one_of(scheme, "scheme", ("loop", "loop-warren", "butterfly", "sqrt3"))
+    sqrt3 = scheme == "sqrt3"
+    if sqrt3 and interpolate not in (False, None):
+        raise OptionError("interpolate does not go with scheme='sqrt3'; it is for the schemes that divide triangles in four")
     control = control_of(
         interpolate=interpolate,
         crease_angle=crease_angle,
         boundary=boundary,
         concave_corners=concave_corners,
-        scheme=scheme,
+        # Nothing but what is refused above asks for the control mesh's scheme.
+        scheme="loop" if sqrt3 else scheme,
         weld=weld,
         repair=repair,
     )
-    return control, goals_of(**goals)
+    return control, goals_of(sqrt3=sqrt3, **goals)
 
 
 def remembered(make: Callable[..., _Made], **options: Any) -> _Made:
@@ -328,9 +334,40 @@ def _remembered(make: Callable[..., object], **options: Any) -> object:
     return make(**options)
 
 
+_STEPS = ("limit-normal", "amresh", "uniform")
+_QUADTREE = ("planarity", "vertex-error")
+
+
+def _refuse(method: str, sqrt3: bool, given: dict[str, bool]) -> None:
+    """Refuses options that a method has no answer to."""
+    refused: tuple[str, ...]
+    if sqrt3:
+        if method not in ("exact", "uniform"):
+            raise OptionError(f"method is {method!r}, expected 'exact' or 'uniform' with scheme='sqrt3', which has criteria of its own")
+        how, refused = "scheme='sqrt3'", ("pixels", "optimize", "balance", "view", "eye")
+    else:
+        how, refused = f"method={method!r}", ()
+    if method in _STEPS:
+        for name in ("tolerance", "triangles", "pixels", "optimize", "balance"):
+            if given[name]:
+                raise OptionError(f"{name} is a goal of method='exact', not of {method!r}")
+    elif given["levels"]:
+        raise OptionError(f"levels are steps of the other methods; with method={method!r} they follow from the goals")
+    if method in _QUADTREE:
+        refused = ("pixels", "optimize", "balance", "view", "eye")
+        if method == "vertex-error":
+            refused = (*refused, "angle")
+        elif given["angle"] and given["tolerance"]:
+            raise OptionError("angle and tolerance: method='planarity' goes by one of them")
+    for name in refused:
+        if given[name]:
+            raise OptionError(f"{name} does not go with {how}")
+
+
 def goals_of(
     *,
     method: str,
+    sqrt3: bool = False,
     levels: int | None,
     tolerance: Length | None,
     triangles: int | None,
@@ -349,29 +386,32 @@ def goals_of(
     max_memory: float | str | None,
 ) -> dict[str, Any]:
     """Goals and caps."""
-    one_of(method, "method", ("exact", "limit-normal", "amresh", "uniform"))
+    one_of(method, "method", ("exact", *_STEPS, *_QUADTREE))
     looking = [] if cameras is None else cameras_of([cameras] if isinstance(cameras, Camera) else cameras)
     if looking and pixels is None:
         pixels = 1.0
-    exact = method == "exact"
-    if not exact:
-        for name, value in (
-            ("tolerance", tolerance),
-            ("triangles", triangles),
-            ("pixels", pixels),
-            ("optimize", optimize or None),
-            ("balance", balance or None),
-        ):
-            if value is not None:
-                raise OptionError(f"{name} is a goal of method='exact', not of {method!r}")
-    elif levels is not None:
-        raise OptionError("levels are steps of the other methods; with method='exact' they follow from the goals")
-    if exact and tolerance is None and triangles is None and angle is None and pixels is None:
-        tolerance = "0.1%"
+    given = {
+        "levels": levels is not None,
+        "tolerance": tolerance is not None,
+        "triangles": triangles is not None,
+        "angle": angle is not None,
+        "pixels": pixels is not None,
+        "optimize": bool(optimize),
+        "balance": bool(balance),
+        "view": view is not None,
+        "eye": eye is not None,
+    }
+    _refuse(method, sqrt3, given)
+    if not any(given[name] for name in ("tolerance", "triangles", "angle", "pixels")):
+        if method in ("exact", "vertex-error"):
+            tolerance = "0.1%"
+        elif method == "planarity":
+            angle = 10.0
     if view is not None and eye is not None:
         raise OptionError("view and eye: one of them says where the viewer is")
     return {
         "method": method,
+        "sqrt3": sqrt3,
         "levels": 3 if levels is None else whole(levels, "levels", 0),
         "tolerance": None if tolerance is None else extent(tolerance, "tolerance"),
         "triangles": None if triangles is None else whole(triangles, "triangles", 1),

@@ -14,7 +14,7 @@ from . import _limitmesh, _options
 from ._errors import StoppedShort, ToleranceNotMet
 from ._limitmesh import OptionError
 from ._mesh import Channel, Mesh, MeshLike, as_mesh
-from ._options import Boundary, Camera, Length, Method, ProgressCallback, Scheme
+from ._options import Boundary, Camera, Length, Method, ProgressCallback, RefiningScheme, Scheme
 from ._refined import Diagnosis, ErrorBounds, Refined
 
 
@@ -33,7 +33,7 @@ def refine(
     corners: Any = None,
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
-    scheme: Scheme = "loop",
+    scheme: RefiningScheme = "loop",
     method: Method = "exact",
     levels: int | None = None,
     view: npt.ArrayLike | None = None,
@@ -87,10 +87,13 @@ def refine(
         Corners of 180° and more between sharp edges: "divided", so that flat faces stay flat, or "as-tagged". Default: divided
         with ``crease_angle`` and with boundaries that are not smooth.
     scheme
-        "loop", "loop-warren" or "butterfly"; distances are proven for the first two, and estimated for the last.
+        "loop", "loop-warren", "butterfly" or "sqrt3"; distances are proven for the first two, and estimated for the others. The last
+        divides triangles by their centres, to tolerance, angle and triangles, or uniformly; it carries no channels.
     method
         "exact"; or, with ``levels`` steps (default 3), "limit-normal" (the paper's) or "amresh" with ``angle`` (default 10), or
-        "uniform".
+        "uniform". To be compared with, over restricted quadtrees: "planarity", to ``angle`` (default 10) between triangles and limit
+        normals, or to ``tolerance`` in height, at samples; "vertex-error", to ``tolerance`` between control points and their limits
+        (default "0.1%"); both with at most ``triangles``. Nothing but "exact" says how far the result is from the limit surface.
     view, eye, dilatation
         Let ``angle`` depend on where the viewer looks along, or stands.
     optimize
@@ -138,6 +141,9 @@ def refine(
     (3, dtype('int64'))
     """
     mesh = _mesh_of(vertices, faces, channels, creases, corners)
+    if scheme == "sqrt3" and mesh.channels:
+        names = ", ".join(map(repr, mesh.channels))
+        raise OptionError(f"channels do not go with scheme='sqrt3', which carries none: {names}")
     control, goals = _options.remembered(
         _options.of_refinement,
         interpolate=interpolate,
@@ -229,7 +235,8 @@ def _short(result: Refined, goals: dict[str, Any]) -> str | None:
     if result.stop == "rounding":
         return f"the tolerance is finer than rounding leaves certain: {reached}"
     if result.stop == "triangles" and goals["triangles"] is not None and count > goals["triangles"]:
-        return f"the control mesh has more than the {goals['triangles']} triangles asked for; optimize=True goes below: {reached}"
+        below = "; optimize=True goes below" if goals["method"] == "exact" and not goals["sqrt3"] else ""
+        return f"the control mesh has more than the {goals['triangles']} triangles asked for{below}: {reached}"
     return None
 
 

@@ -107,7 +107,7 @@ class Refined:
     channels
         What was carried along, by name; with corners as domain, so that seams stay seams.
     error
-        How near the mesh is to the limit surface; None for methods that do not say.
+        How near the mesh is to the limit surface, of √3-subdivision an estimate; None for methods that do not say.
     stop
         Why it ended: "met"; "triangles" where their number was a goal; "triangle-cap", "level-cap", "memory-cap" or "rounding"
         where that was before the goals; "cones" where triangles stay outside the angle that no division brings nearer;

@@ -1,0 +1,70 @@
+//! Exact refinement: within a proven distance, an angle, pixels, or with a number of triangles.
+
+use limitmesh::carry::{borders, carried};
+use limitmesh::progress::Observer;
+use limitmesh::refine::{Exact, ExactStop, exact_observed};
+
+use super::{Indices, Refined};
+use crate::control::{Control, Recipe, Tables};
+use crate::errors::Failure;
+use crate::options::Goals;
+
+/// Refines a control mesh to goals.
+pub(super) fn refined(
+    control: Control,
+    recipe: &Recipe,
+    goals: &Goals,
+    observer: &mut Observer<'_>,
+) -> Result<Refined, Failure> {
+    let options = goals
+        .exact(control.diagonal, control.tells_faces_apart(), recipe.unfolds())
+        .kept_edges(borders(&control.channels, &control.mesh));
+    let found = exact_observed(&control.mesh, recipe.scheme, &options, observer)?;
+    let channels = match control.channels.is_empty() {
+        true => Vec::new(),
+        false => carried(&control.channels, &control.mesh, recipe.scheme, &found)?,
+    };
+    Ok(Refined { channels, ..Refined::of_exact(found, control.tables) })
+}
+
+impl Refined {
+    /// What is told of an exact refinement, but for channels.
+    pub(crate) fn of_exact(found: Exact, tables: Tables) -> Self {
+        let (error, stop, inverted) = (found.error, stop_name(found.stop), found.inverted_triangles());
+        let (side_corners, side_normals) = found.sides.into_iter().unzip();
+        let (positions, triangles) = found.mesh.into_positions_and_triangles();
+        Self {
+            parents: tables.input_faces(found.parents),
+            tables,
+            positions,
+            triangles: Indices::Narrow(triangles),
+            normals: found.normals,
+            side_corners,
+            side_normals,
+            origins: found.origins,
+            channels: Vec::new(),
+            error: Some((error.lower, error.upper, error.certified, error.at.into())),
+            stop,
+            levels: found.levels,
+            pixels: found.pixels,
+            open_cones: found.open_cones,
+            unfolded: found.unfolded,
+            inverted: Some(inverted),
+            seconds: 0.0,
+        }
+    }
+}
+
+/// Why a refinement ended, as Python has it.
+pub(super) fn stop_name(stop: ExactStop) -> &'static str {
+    match stop {
+        ExactStop::Met => "met",
+        ExactStop::Triangles => "triangles",
+        ExactStop::TriangleCap => "triangle-cap",
+        ExactStop::LevelCap => "level-cap",
+        ExactStop::MemoryCap => "memory-cap",
+        ExactStop::Rounding => "rounding",
+        ExactStop::Cones => "cones",
+        _ => "other",
+    }
+}
