@@ -8,6 +8,7 @@ mod channels;
 mod control;
 mod errors;
 mod files;
+mod levels;
 mod limit;
 mod measure;
 mod options;
@@ -33,6 +34,8 @@ mod _limitmesh {
     use super::errors::{Error, MeshError, OptionError, ReadError};
     #[pymodule_export]
     use super::files::{load, models, save};
+    #[pymodule_export]
+    use super::levels::{levels_of_detail, switching_distance};
     #[pymodule_export]
     use super::limit::limit;
     #[pymodule_export]

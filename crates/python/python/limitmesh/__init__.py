@@ -24,6 +24,7 @@ from ._interop import (
     to_pyvista,
     to_trimesh,
 )
+from ._levels import Level, levels_of_detail
 from ._limitmesh import __version__
 from ._measure import Distance, Limit, OneSided, info, limit, measure
 from ._mesh import Channel, Mesh
@@ -49,6 +50,7 @@ __all__ = [
     "Estimate",
     "Finding",
     "Intersections",
+    "Level",
     "Limit",
     "Mesh",
     "MeshError",
@@ -73,6 +75,7 @@ __all__ = [
     "from_trimesh",
     "info",
     "intersect",
+    "levels_of_detail",
     "limit",
     "limit_surface",
     "load",

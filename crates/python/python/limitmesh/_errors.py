@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ._limitmesh import Error, MeshError, OptionError, ReadError
 
 if TYPE_CHECKING:
+    from ._levels import Level
     from ._refined import Refined
 
 __all__ = ["Error", "MeshError", "OptionError", "ReadError", "StoppedShort", "ToleranceNotMet"]
@@ -18,12 +19,12 @@ class ToleranceNotMet(Error):
     Attributes
     ----------
     result
-        What was reached by then: a `Refined`, free of cracks; of `refine_file` the report.
+        What was reached by then: a `Refined`, free of cracks; of `levels_of_detail` the levels, of `refine_file` the report.
     """
 
-    result: Refined | dict[str, Any]
+    result: Refined | list[Level] | dict[str, Any]
 
-    def __init__(self, message: str, result: Refined | dict[str, Any]) -> None:
+    def __init__(self, message: str, result: Refined | list[Level] | dict[str, Any]) -> None:
         super().__init__(message)
         self.result = result
 

@@ -17,6 +17,7 @@ __all__ = [
     "examine",
     "facing",
     "intersect",
+    "levels_of_detail",
     "limit",
     "limit_surface",
     "load",
@@ -31,6 +32,7 @@ __all__ = [
     "repair",
     "save",
     "simplify",
+    "switching_distance",
 ]
 FINDINGS: tuple[str, ...]
 __version__: str
@@ -71,6 +73,17 @@ def measure_limit(
     threads: int,
     progress: _Callback,
 ) -> dict[str, Any]: ...
+def levels_of_detail(
+    mesh: Any,
+    control: dict[str, Any],
+    detail: dict[str, Any],
+    has_wide_indices: bool,
+    threads: int,
+    progress: _Callback,
+) -> list[dict[str, Any]]: ...
+def switching_distance(
+    deviation: float, pixels: float, height: float, fov_degrees: float
+) -> float: ...
 def limit(
     mesh: Any, control: dict[str, Any], threads: int, progress: _Callback
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...

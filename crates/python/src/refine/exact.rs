@@ -24,7 +24,7 @@ pub(super) fn refined(
         true => Vec::new(),
         false => carried(&control.channels, &control.mesh, recipe.scheme, &found)?,
     };
-    Ok(Refined { channels, ..Refined::of_exact(found, control.tables) })
+    Ok(Refined::of_exact(found, control.tables).with_channels(channels))
 }
 
 impl Refined {

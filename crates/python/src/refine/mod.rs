@@ -90,9 +90,9 @@ pub(crate) fn refine<'py>(
                 stepwise::refined(control, &recipe, (method, &goals), observer)?
             }
         };
-        let seconds = start.elapsed().as_secs_f64();
-        let triangles = if has_wide_indices { refined.triangles.widened() } else { refined.triangles };
-        Ok(Refined { seconds, triangles, ..refined })
+        let mut refined = if has_wide_indices { refined.widened() } else { refined };
+        refined.took(start.elapsed().as_secs_f64());
+        Ok(refined)
     })?;
     refined.told(py)
 }
@@ -172,6 +172,21 @@ impl Refined {
             inverted: None,
             seconds: 0.0,
         }
+    }
+
+    /// With what was carried along.
+    pub(crate) fn with_channels(self, channels: Vec<Channel>) -> Self {
+        Self { channels, ..self }
+    }
+
+    /// With vertex numbers of 64 bits.
+    pub(crate) fn widened(self) -> Self {
+        Self { triangles: self.triangles.widened(), ..self }
+    }
+
+    /// Puts down how long it took.
+    pub(crate) fn took(&mut self, seconds: f64) {
+        self.seconds = seconds;
     }
 
     /// A dictionary of its parts, by their names in Python.
