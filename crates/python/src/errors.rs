@@ -7,7 +7,7 @@ use limitmesh::limit::LimitError;
 use limitmesh::measure::MeasureError;
 use limitmesh::mesh::{ChannelError, MeshError as CoreMeshError};
 use limitmesh::progress::Cancelled;
-use limitmesh::refine::RefineError;
+use limitmesh::refine::{RefineError, ReplayError};
 use limitmesh::simplify::SimplifyError;
 use limitmesh::{ProximityError, RayError};
 use limitmesh_io::{ReadError as CoreReadError, WriteError};
@@ -146,6 +146,18 @@ impl From<RefineError> for Failure {
             RefineError::Cancelled(_) => Self::Cancelled,
             RefineError::Criterion(error) => error.into(),
             RefineError::Mesh(error) => error.into(),
+            RefineError::Replay(error) => error.into(),
+            error => Self::Mesh(error.to_string()),
+        }
+    }
+}
+
+impl From<ReplayError> for Failure {
+    fn from(error: ReplayError) -> Self {
+        match error {
+            ReplayError::Mesh(error) => error.into(),
+            ReplayError::Limit(error) => error.into(),
+            ReplayError::Scheme { .. } | ReplayError::TooMany { .. } => Self::Option(error.to_string()),
             error => Self::Mesh(error.to_string()),
         }
     }

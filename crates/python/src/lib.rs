@@ -19,6 +19,7 @@ mod program;
 mod project;
 mod rays;
 mod refine;
+mod replay;
 mod run;
 mod simplify;
 mod soup;
@@ -54,6 +55,8 @@ mod _limitmesh {
     use super::rays::intersect;
     #[pymodule_export]
     use super::refine::{estimate, refine};
+    #[pymodule_export]
+    use super::replay::{Replay, refine_frames, replay};
     #[pymodule_export]
     use super::simplify::{repair, simplify};
     #[pymodule_export]

@@ -15,6 +15,7 @@ import os as _os
 from . import _limitmesh
 from ._errors import Error, MeshError, OptionError, ReadError, StoppedShort, ToleranceNotMet
 from ._files import load, models, refine_file, save
+from ._frames import RefinedFrames, Replay, refine_frames, replay
 from ._interop import (
     from_meshio,
     from_open3d,
@@ -60,7 +61,9 @@ __all__ = [
     "Projected",
     "ReadError",
     "Refined",
+    "RefinedFrames",
     "Repaired",
+    "Replay",
     "Simplified",
     "Split",
     "StoppedShort",
@@ -84,7 +87,9 @@ __all__ = [
     "project",
     "refine",
     "refine_file",
+    "refine_frames",
     "repair",
+    "replay",
     "save",
     "simplify",
     "to_meshio",

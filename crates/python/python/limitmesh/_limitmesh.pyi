@@ -11,6 +11,7 @@ __all__ = [
     "OptionError",
     "Origins",
     "ReadError",
+    "Replay",
     "__version__",
     "end_threads",
     "estimate",
@@ -29,7 +30,9 @@ __all__ = [
     "project",
     "refine",
     "refine_file",
+    "refine_frames",
     "repair",
+    "replay",
     "save",
     "simplify",
     "switching_distance",
@@ -50,6 +53,29 @@ class Origins:
         self,
     ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], npt.NDArray[np.float64]]: ...
 
+@final
+class Replay:
+    def at(
+        self, positions: npt.NDArray[np.float64], threads: int
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+
+def replay(
+    mesh: Any,
+    control: dict[str, Any],
+    goals: dict[str, Any],
+    has_wide_indices: bool,
+    threads: int,
+    progress: _Callback,
+) -> tuple[dict[str, Any], Replay]: ...
+def refine_frames(
+    mesh: Any,
+    frames: npt.NDArray[np.float64],
+    control: dict[str, Any],
+    goals: dict[str, Any],
+    has_wide_indices: bool,
+    threads: int,
+    progress: _Callback,
+) -> tuple[dict[str, Any], list[tuple[float, float, bool, tuple[float, float, float]]], Replay]: ...
 def refine(
     mesh: Any,
     control: dict[str, Any],
