@@ -8,6 +8,7 @@ mod channels;
 mod control;
 mod errors;
 mod files;
+mod front;
 mod levels;
 mod limit;
 mod measure;
@@ -35,6 +36,8 @@ mod _limitmesh {
     use super::errors::{Error, MeshError, OptionError, ReadError};
     #[pymodule_export]
     use super::files::{load, models, save};
+    #[pymodule_export]
+    use super::front::Front;
     #[pymodule_export]
     use super::levels::{levels_of_detail, switching_distance};
     #[pymodule_export]

@@ -73,7 +73,12 @@ impl ControlOptions {
 }
 
 /// A camera: eye, target, up, vertical angle of view in degrees, width and height in pixels.
-type CameraIn = ([f64; 3], [f64; 3], [f64; 3], f64, u32, u32);
+pub(crate) type CameraIn = ([f64; 3], [f64; 3], [f64; 3], f64, u32, u32);
+
+/// As the library has it.
+pub(crate) fn camera(&(eye, target, up, fov_degrees, width, height): &CameraIn) -> Camera {
+    Camera { eye, target, up, fov_degrees, width, height }
+}
 
 /// Goals and caps of a refinement.
 #[derive(FromPyObject, Clone)]
@@ -146,14 +151,6 @@ impl Goals {
             options = options.view(view);
         }
         if let Some(pixels) = self.pixels {
-            let camera = |&(eye, target, up, fov_degrees, width, height): &CameraIn| Camera {
-                eye,
-                target,
-                up,
-                fov_degrees,
-                width,
-                height,
-            };
             options = options.pixels(pixels, self.cameras.iter().map(camera).collect());
         }
         if let Some(count) = self.triangles {

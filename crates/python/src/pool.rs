@@ -11,6 +11,8 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use crate::front;
+
 /// The pool that was used last, while nobody uses it.
 static KEPT: Mutex<Option<Pool>> = Mutex::new(None);
 
@@ -34,7 +36,11 @@ impl Pool {
         }
     }
 
-    fn new(count: usize) -> PyResult<Self> {
+    /// A new pool.
+    ///
+    /// # Errors
+    /// So many threads cannot be started.
+    pub(crate) fn new(count: usize) -> PyResult<Self> {
         let mut threads = Vec::with_capacity(count);
         let pool = ThreadPoolBuilder::new()
             .num_threads(count)
@@ -53,6 +59,24 @@ impl Pool {
         self.pool.spawn(job);
     }
 
+    /// Ends its threads, which are idle, and returns when they are gone; those of another process are not there.
+    pub(crate) fn end(self) {
+        if self.process != std::process::id() {
+            std::mem::forget(self);
+            return;
+        }
+        drop(self.pool);
+        for thread in self.threads {
+            // Jobs' panics are caught before they come here.
+            let _ = thread.join();
+        }
+    }
+
+    /// Whether its threads are this process's.
+    pub(crate) fn is_here(&self) -> bool {
+        self.process == std::process::id()
+    }
+
     /// Keeps it for the next call, in place of another.
     pub(crate) fn keep(self) {
         if let Ok(mut kept) = KEPT.try_lock() {
@@ -65,20 +89,18 @@ impl Pool {
 fn taken() -> Option<Pool> {
     // Not waited for: in a forked process nobody may be left to unlock it.
     let pool = KEPT.try_lock().ok()?.take()?;
-    if pool.process == std::process::id() {
+    if pool.is_here() {
         return Some(pool);
     }
     std::mem::forget(pool);
     None
 }
 
-/// Ends the threads that are kept, and returns when they are gone.
+/// Ends the threads that are kept, those of fronts with them, and returns when they are gone.
 #[pyfunction]
 pub(crate) fn end_threads() {
-    let Some(Pool { pool, threads, .. }) = taken() else { return };
-    drop(pool);
-    for thread in threads {
-        // Jobs' panics are caught before they come here.
-        let _ = thread.join();
+    if let Some(pool) = taken() {
+        pool.end();
     }
+    front::end_idle();
 }

@@ -5,7 +5,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -41,24 +41,57 @@ pub(crate) fn run<T: Send + 'static>(
     job: impl FnOnce(&mut Observer<'_>) -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<T> {
     let pool = Pool::take(threads)?;
-    let line = Arc::new(Line::default());
-    let (sender, receiver) = sync_channel(1);
-    let (ears, is_heard) = (Arc::clone(&line), progress.is_some());
-    pool.start(move || {
-        let mut observer = |at: &Progress| {
-            if is_heard {
-                *ears.latest.lock().unwrap_or_else(PoisonError::into_inner) = Some(*at);
-            }
-            if ears.is_stopped.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        };
-        // Nobody listens any more if the caller went on.
-        let _ = sender.send(job(&mut observer));
-    });
-    let (result, is_idle) = py.detach(move || wait(&receiver, &line, progress.as_ref()));
+    let (worker, caller) = ends(progress);
+    pool.start(move || worker.finish(job));
+    let (result, is_idle) = caller.wait(py);
     if is_idle {
         pool.keep();
     }
     Ok(result??)
+}
+
+/// Both ends of a line: of whoever does a job, and of the caller who waits for it.
+pub(crate) fn ends<T>(progress: Option<Py<PyAny>>) -> (WorkerEnd<T>, CallerEnd<T>) {
+    let line = Arc::new(Line::default());
+    let (sender, receiver) = sync_channel(1);
+    let worker = WorkerEnd { line: Arc::clone(&line), is_heard: progress.is_some(), sender };
+    (worker, CallerEnd { line, receiver, progress })
+}
+
+/// The end of whoever does a job.
+pub(crate) struct WorkerEnd<T> {
+    line: Arc<Line>,
+    is_heard: bool,
+    sender: SyncSender<Result<T, Failure>>,
+}
+
+impl<T> WorkerEnd<T> {
+    /// Does the job, and sends what came of it.
+    pub(crate) fn finish(self, job: impl FnOnce(&mut Observer<'_>) -> Result<T, Failure>) {
+        let Self { line, is_heard, sender } = self;
+        let mut observer = |at: &Progress| {
+            if is_heard {
+                *line.latest.lock().unwrap_or_else(PoisonError::into_inner) = Some(*at);
+            }
+            if line.is_stopped.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        // Nobody listens any more if the caller went on.
+        let _ = sender.send(job(&mut observer));
+    }
+}
+
+/// The end of the caller.
+pub(crate) struct CallerEnd<T> {
+    line: Arc<Line>,
+    receiver: Receiver<Result<T, Failure>>,
+    progress: Option<Py<PyAny>>,
+}
+
+impl<T: Send> CallerEnd<T> {
+    /// Waits for the job; what came of it, or what a signal's handler or `progress` raised, and whether it has come to its end.
+    pub(crate) fn wait(self, py: Python<'_>) -> (PyResult<Result<T, Failure>>, bool) {
+        py.detach(move || wait(&self.receiver, &self.line, self.progress.as_ref()))
+    }
 }
 
 /// Waits for the job, waking now and then; what came of it, and whether it has come to its end.

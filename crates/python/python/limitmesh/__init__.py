@@ -15,6 +15,7 @@ import os as _os
 from . import _limitmesh
 from ._errors import Error, MeshError, OptionError, ReadError, StoppedShort, ToleranceNotMet
 from ._files import load, models, refine_file, save
+from ._front import Changes, Front
 from ._frames import RefinedFrames, Replay, refine_frames, replay
 from ._interop import (
     from_meshio,
@@ -43,6 +44,7 @@ if hasattr(_os, "register_at_fork"):
 
 __all__ = [
     "Camera",
+    "Changes",
     "Channel",
     "Diagnosis",
     "Distance",
@@ -50,6 +52,7 @@ __all__ = [
     "ErrorBounds",
     "Estimate",
     "Finding",
+    "Front",
     "Intersections",
     "Level",
     "Limit",

@@ -7,6 +7,7 @@ import numpy.typing as npt
 __all__ = [
     "FINDINGS",
     "Error",
+    "Front",
     "MeshError",
     "OptionError",
     "Origins",
@@ -46,6 +47,23 @@ class OptionError(Error): ...
 class ReadError(Error): ...
 
 _Callback = Callable[[str, int, int | None, int], object] | None
+
+@final
+class Front:
+    def __new__(
+        cls, mesh: Any, control: dict[str, Any], threads: int, progress: _Callback
+    ) -> Front: ...
+    def update(
+        self, demand: dict[str, Any] | None
+    ) -> tuple[
+        int,
+        npt.NDArray[np.uint32],
+        npt.NDArray[np.float64],
+        int,
+        npt.NDArray[np.uint32],
+        npt.NDArray[np.uint32],
+        tuple[int, int, float, bool, float | None, int],
+    ]: ...
 
 @final
 class Origins:

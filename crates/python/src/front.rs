@@ -1,0 +1,228 @@
+//! A front that Python keeps: a thread of its own has it and the mesh that it borrows, and answers one demand after the other.
+//!
+//! Threads do not live on in a forked process, so they end before Python forks, and where somebody interrupts an update its thread is
+//! left to itself. The next update then begins with a fresh front, and names all there is as changed: what a front is for a demand does
+//! not depend on those before.
+
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
+use limitmesh::Mesh;
+use limitmesh::front::{Demand, Front as CoreFront, FrontError};
+use limitmesh::scheme::Scheme;
+use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+use crate::control::Recipe;
+use crate::errors::Failure;
+use crate::options::{CameraIn, ControlOptions, Extent, camera};
+use crate::pool::Pool;
+use crate::run::{ends, run};
+use crate::soup::MeshIn;
+use crate::tell;
+
+/// What the thread of a front is given.
+type Job = Box<dyn FnOnce(Result<&mut CoreFront<'_>, FrontError>) + Send>;
+
+/// The thread of a front that waits for its next job, and where to send that.
+struct Worker {
+    jobs: Sender<Job>,
+    pool: Pool,
+}
+
+impl Worker {
+    fn start(control: Arc<Mesh>, scheme: &'static dyn Scheme, threads: usize) -> PyResult<Self> {
+        let pool = Pool::new(threads)?;
+        let (jobs, received) = channel();
+        pool.start(move || serve(&control, scheme, &received));
+        Ok(Self { jobs, pool })
+    }
+
+    fn end(self) {
+        drop(self.jobs);
+        self.pool.end();
+    }
+}
+
+/// Does jobs until nobody can send any more.
+fn serve(control: &Mesh, scheme: &'static dyn Scheme, jobs: &Receiver<Job>) {
+    let mut front = CoreFront::new(control, scheme);
+    for job in jobs {
+        job(front.as_mut().map_err(|why| why.clone()));
+    }
+}
+
+/// Where a worker is between two jobs.
+type Place = Mutex<Option<Worker>>;
+
+/// The places of all fronts.
+static PLACES: Mutex<Vec<Weak<Place>>> = Mutex::new(Vec::new());
+
+fn taken(place: &Place) -> Option<Worker> {
+    // Not waited for: in a forked process nobody may be left to unlock it.
+    place.try_lock().ok()?.take()
+}
+
+/// Ends the threads of fronts that wait for a job.
+pub(crate) fn end_idle() {
+    let Ok(mut places) = PLACES.try_lock() else { return };
+    places.retain(|place| place.strong_count() > 0);
+    places.iter().filter_map(Weak::upgrade).filter_map(|place| taken(&place)).for_each(Worker::end);
+}
+
+/// What is asked of a front.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct DemandIn {
+    tolerance: Option<Extent>,
+    pixels: Option<f64>,
+    cameras: Vec<CameraIn>,
+    triangles: Option<usize>,
+    max_levels: Option<usize>,
+}
+
+impl DemandIn {
+    fn demand(&self, diagonal: f64) -> Result<Demand, Failure> {
+        let cameras: Vec<_> = self.cameras.iter().map(camera).collect();
+        let demand = match (self.pixels, self.tolerance) {
+            (Some(pixels), _) => Demand::pixels(pixels, &cameras),
+            (None, tolerance) => Demand::tolerance(tolerance.map_or(0.0, |length| length.of(diagonal))),
+        };
+        let demand = self.triangles.map_or(demand.clone(), |most| demand.triangles(most));
+        let levels = self.max_levels.map(|levels| levels.min(u32::MAX as usize) as u32);
+        let demand = levels.map_or(demand.clone(), |levels| demand.max_levels(levels));
+        demand.check()?;
+        Ok(demand)
+    }
+}
+
+/// A front of a mesh.
+#[pyclass]
+pub(crate) struct Front {
+    control: Arc<Mesh>,
+    diagonal: f64,
+    scheme: &'static dyn Scheme,
+    threads: usize,
+    place: Arc<Place>,
+}
+
+/// How many vertices there are, which are new, and their positions; the same of triangles.
+type Told<'py> = (
+    usize,
+    Bound<'py, PyArray1<u32>>,
+    Bound<'py, PyArray2<f64>>,
+    usize,
+    Bound<'py, PyArray1<u32>>,
+    Bound<'py, PyArray2<u32>>,
+    Numbers,
+);
+
+/// Nodes that were divided and merged; the bound of the distance, whether it is proven, that in pixels, and the levels.
+type Numbers = (usize, usize, f64, bool, Option<f64>, u32);
+
+/// What an update changed.
+struct News {
+    counts: [usize; 2],
+    vertices: Vec<u32>,
+    positions: Vec<[f64; 3]>,
+    triangles: Vec<u32>,
+    corners: Vec<[u32; 3]>,
+    numbers: Numbers,
+}
+
+impl News {
+    fn of(front: &CoreFront<'_>, is_fresh: bool) -> Self {
+        let (positions, triangles) = (front.positions(), front.triangles());
+        let changes = front.changes();
+        let (vertices, slots) = match is_fresh {
+            true => ((0..positions.len() as u32).collect(), (0..triangles.len() as u32).collect()),
+            false => (changes.vertices.clone(), changes.triangles.clone()),
+        };
+        Self {
+            counts: [positions.len(), triangles.len()],
+            positions: vertices.iter().map(|&v: &u32| positions[v as usize]).collect(),
+            corners: slots.iter().map(|&slot: &u32| triangles[slot as usize]).collect(),
+            vertices,
+            triangles: slots,
+            numbers: (
+                changes.divided,
+                changes.merged,
+                front.bound(),
+                front.is_certified(),
+                front.pixels(),
+                front.depth(),
+            ),
+        }
+    }
+}
+
+#[pymethods]
+impl Front {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        mesh: MeshIn<'_>,
+        control: ControlOptions,
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Self> {
+        let (soup, recipe) = (mesh.soup()?, Recipe::new(control)?);
+        let scheme = recipe.scheme;
+        let (control, diagonal) = run(py, threads, progress, move |observer| {
+            let control = recipe.control(soup, observer)?;
+            Ok((control.mesh, control.diagonal))
+        })?;
+        let place = Arc::default();
+        PLACES.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::downgrade(&place));
+        Ok(Self { control: Arc::new(control), diagonal, scheme, threads, place })
+    }
+
+    /// Brings the front to a demand; without one, to the control mesh's own triangles if it is fresh.
+    fn update<'py>(&mut self, py: Python<'py>, demand: Option<DemandIn>) -> PyResult<Told<'py>> {
+        let demand = demand.map(|demand| demand.demand(self.diagonal)).transpose()?;
+        let (worker, is_fresh) = match taken(&self.place) {
+            Some(worker) if worker.pool.is_here() => (worker, false),
+            other => {
+                // The copy of a thread in a forked process is none.
+                if let Some(copy) = other {
+                    copy.end();
+                }
+                (Worker::start(Arc::clone(&self.control), self.scheme, self.threads)?, true)
+            }
+        };
+        let (end, caller) = ends(None);
+        let job: Job = Box::new(move |front| {
+            end.finish(|_| {
+                let front = front?;
+                if let Some(demand) = demand {
+                    front.update(&demand)?;
+                }
+                Ok(News::of(front, is_fresh))
+            });
+        });
+        worker.jobs.send(job).map_err(|_| PyRuntimeError::new_err("the front's thread has ended"))?;
+        let (result, is_idle) = caller.wait(py);
+        let news = result??;
+        if is_idle {
+            *self.place.lock().unwrap_or_else(PoisonError::into_inner) = Some(worker);
+        }
+        Ok((
+            news.counts[0],
+            PyArray1::from_vec(py, news.vertices),
+            tell::rows(py, news.positions)?,
+            news.counts[1],
+            PyArray1::from_vec(py, news.triangles),
+            tell::rows(py, news.corners)?,
+            news.numbers,
+        ))
+    }
+}
+
+impl Drop for Front {
+    fn drop(&mut self) {
+        if let Some(worker) = taken(&self.place) {
+            worker.end();
+        }
+    }
+}
