@@ -163,6 +163,78 @@ def test_random_soups_give_a_mesh_or_an_error(soup, crease_angle, boundary, inte
     limitmesh.repair(vertices, faces)
 
 
+def of_rays(vertices, faces, **how):
+    directions = np.random.default_rng(0).normal(size=(10, 3))
+    found = limitmesh.intersect(-directions, directions, vertices, faces, between=(-np.inf, np.inf), **how)
+    return found.points, found.t
+
+
+def of_levels(vertices, faces, **how):
+    options = {"tolerances": ["10%", "3%"], "morph": True, "max_triangles": 300}
+    levels = limitmesh.levels_of_detail(vertices, faces, **options, **how)
+    return [level.vertices if level.coarser is None else level.at(0.5) for level in levels]
+
+
+def of_a_replay(vertices, faces, **how):
+    moving = limitmesh.replay(vertices, faces, tolerance="5%", max_triangles=300, **how)
+    positions, normals = moving(vertices)
+    np.testing.assert_allclose(positions, moving.refined.vertices, atol=1e-9 * np.abs(positions).max())
+    return positions, normals
+
+
+def of_frames(vertices, faces, **how):
+    found = limitmesh.refine_frames([vertices, 0.5 * vertices], faces, tolerance="5%", max_triangles=1000, **how)
+    return found.vertices, found.normals
+
+
+def of_a_front(vertices, faces, **how):
+    front = limitmesh.Front(vertices, faces, **how)
+    for tolerance in ("10%", "3%", "10%"):
+        front.update(tolerance=tolerance, triangles=300)
+    return [front.vertices[front.faces]]
+
+
+def of_refinement(**options):
+    def of(vertices, faces, **how):
+        found = limitmesh.refine(vertices, faces, max_triangles=300, **options, **how)
+        return found.vertices, found.normals, found.corner_normals
+
+    return of
+
+
+OF_SOUPS = [
+    of_rays,
+    of_levels,
+    of_a_replay,
+    of_frames,
+    of_a_front,
+    of_refinement(scheme="sqrt3"),
+    of_refinement(scheme="sqrt3", method="uniform"),
+    of_refinement(method="planarity"),
+    of_refinement(method="vertex-error"),
+]
+
+
+@settings(max_examples=400, deadline=None, suppress_health_check=list(HealthCheck))
+@given(
+    soup=SOUPS,
+    of=st.sampled_from(OF_SOUPS),
+    crease_angle=st.sampled_from([None, 30.0]),
+    boundary=st.sampled_from(["smooth", "corners", "fixed"]),
+    repair=st.booleans(),
+)
+@pytest.mark.filterwarnings("ignore")
+def test_random_soups_give_finite_numbers_or_an_error(soup, of, crease_angle, boundary, repair):
+    how = {"crease_angle": crease_angle, "boundary": boundary, "threads": 1}
+    if of is not of_rays:
+        how["repair"] = repair
+    try:
+        found = of(*soup, **how)
+    except limitmesh.Error:
+        return
+    assert all(np.isfinite(array).all() for array in found)
+
+
 def test_options_that_are_equal_but_not_the_same(octahedron):
     # What was made of options is remembered: True is 1, and an array may be changed in place.
     with pytest.warns(limitmesh.StoppedShort):
