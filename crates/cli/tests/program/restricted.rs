@@ -30,8 +30,10 @@ fn smaller_limits_take_more_triangles() {
     let words = "refine builtin:head -o {} --method planarity --angle 20 --max-levels 5";
     run(words, &[&output]).expect(3).saying("--max-levels");
     // There are never fewer than the control mesh has.
-    let words = "refine builtin:head -o {} --method vertex-error --triangles 100";
-    run(words, &[&output]).expect(3).saying("has 142 already");
+    for method in ["--method vertex-error", "--scheme sqrt3"] {
+        let words = format!("refine builtin:head -o {{}} {method} --triangles 100");
+        run(&words, &[&output]).expect(3).saying("has 142 already");
+    }
 }
 
 #[test]

@@ -38,7 +38,7 @@ use crate::arguments::{CreasesFrom, Method, RefineArguments, RefiningScheme, Uni
 use crate::bulk::Bulk;
 use crate::creases::Hints;
 use crate::failure::Outcome;
-use crate::format::{counted, number, seconds};
+use crate::format::{counted, number, seconds, thousands};
 use crate::input::{self, Input};
 use crate::output;
 use crate::progress::Progress;
@@ -224,6 +224,16 @@ fn refine(
         picture::draw(path, surface, normals, view, &style, picture::SIZE)?;
     }
     Ok(outcome)
+}
+
+/// How methods end that take no triangles away, where there are more than asked: so many the control mesh had.
+fn has_more(mesh: &Mesh, arguments: &RefineArguments) -> Option<Outcome> {
+    let asked = arguments.exact.triangles.filter(|&asked| mesh.face_count() > asked)?;
+    Some(Outcome::StoppedShort(format!(
+        "the control mesh has {} already, more than --triangles {}; --method exact --optimize goes below",
+        thousands(mesh.face_count()),
+        thousands(asked),
+    )))
 }
 
 /// Tells about normals that say that edges are sharp, where nothing says what to do about that.

@@ -8,16 +8,16 @@ use limitmesh::scheme::Scheme;
 use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
 use limitmesh_io::Format;
 
-use super::Refined;
 use super::carried::Trail;
 use super::channels::Channels;
 use super::exact::Before;
 use super::normals::Normals;
 use super::provenance::Provenance;
 use super::stepwise;
+use super::{Refined, has_more};
 use crate::arguments::{Extent, Featured, Method, RefineArguments};
 use crate::failure::{Outcome, usage};
-use crate::format::{counted, number, thousands};
+use crate::format::{counted, number};
 use crate::progress::Progress;
 use crate::report::refinement::{ExactParametersReport, exact_stop_name};
 use crate::report::{MethodReport, ParametersReport};
@@ -216,14 +216,9 @@ pub(super) fn run(
     let places = (&before.faces[..], &control.concave.parts);
     let provenance = arguments.exact.provenance.then(|| Provenance::new(&origins, parents, places));
     let unit = arguments.build.unit.map_or(String::new(), |unit| format!(" {}", unit.name()));
-    let asked = arguments.exact.triangles.unwrap_or(usize::MAX);
-    let outcome = match stop {
-        _ if mesh.face_count() > asked => Outcome::StoppedShort(format!(
-            "the control mesh has {} already, more than --triangles {}; --method exact --optimize goes below",
-            thousands(mesh.face_count()),
-            thousands(asked),
-        )),
-        ExactStop::Met | ExactStop::Triangles => Outcome::Done,
+    let outcome = match (has_more(&mesh, arguments), stop) {
+        (Some(short), _) => short,
+        (None, ExactStop::Met | ExactStop::Triangles) => Outcome::Done,
         _ => Outcome::StoppedShort(format!(
             "a cap on {} was reached before what was asked for; {} was written with {}",
             if stop == ExactStop::LevelCap { "levels (--max-levels)" } else { "triangles (--max-triangles)" },

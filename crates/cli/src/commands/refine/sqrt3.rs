@@ -6,13 +6,13 @@ use limitmesh::refine::{ExactStop, Refinement, Stop, UniformOptions};
 use limitmesh::sqrt3::{Sqrt3, Sqrt3Options, adaptive_observed, uniform_observed};
 use limitmesh_io::Format;
 
-use super::Refined;
 use super::carried::Trail;
 use super::channels::Channels;
 use super::exact::Before;
 use super::normals::Normals;
 use super::provenance::Provenance;
 use super::stepwise;
+use super::{Refined, has_more};
 use crate::arguments::{Extent, Featured, Method, RefineArguments, RefiningScheme};
 use crate::failure::{Outcome, usage};
 use crate::format::counted;
@@ -155,8 +155,9 @@ fn to_goals(
     let places = (&before.faces[..], &control.concave.parts);
     let provenance = arguments.exact.provenance.then(|| Provenance::new(&origins, parents, places));
     let wanted = Normals::are_held(format) || arguments.picture.is_some();
-    let outcome = match stop {
-        ExactStop::Met | ExactStop::Triangles => Outcome::Done,
+    let outcome = match (has_more(&mesh, arguments), stop) {
+        (Some(short), _) => short,
+        (None, ExactStop::Met | ExactStop::Triangles) => Outcome::Done,
         _ => Outcome::StoppedShort(format!(
             "a cap on {} was reached before what was asked for; {} was written with {}",
             if stop == ExactStop::LevelCap { "levels (--max-levels)" } else { "triangles (--max-triangles)" },
