@@ -9,7 +9,7 @@ use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, point, table};
 use crate::progress::Progress;
-use crate::report::measurement::Whole;
+use crate::report::Whole;
 
 /// Rounding to six digits changes a number by at most this share of it.
 const SIX_DIGITS: f64 = 5e-6;

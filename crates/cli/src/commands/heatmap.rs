@@ -14,7 +14,7 @@ use crate::arguments::Size;
 use crate::failure::usage;
 use crate::output;
 use crate::progress::Progress;
-use crate::report::measurement::Whole;
+use crate::report::Whole;
 
 /// A picture is drawn from about so many triangles: enough that one is a few pixels large.
 const PICTURE_TRIANGLES: usize = 300_000;

@@ -15,7 +15,8 @@ use crate::input::{self, Input};
 use crate::output;
 use crate::progress::Progress;
 use crate::reference::{self, USUAL_LEVELS};
-use crate::report::measurement::{HausdorffReport, MeasureSeconds, Whole};
+use crate::report::Whole;
+use crate::report::measurement::{HausdorffReport, MeasureSeconds};
 use crate::report::{CertifiedReport, DistanceReport, LimitReport, MeasureReport, SurfaceReport, VERSION};
 
 /// Measures one surface against another.

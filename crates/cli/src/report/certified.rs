@@ -3,7 +3,7 @@
 use limitmesh::measure::{Bounds, CertifiedHausdorff};
 use serde::Serialize;
 
-use super::measurement::Whole;
+use super::whole::Whole;
 
 /// Both directions, and the symmetric distance. Lengths are in the meshes' units.
 #[derive(Debug, Serialize)]

@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use super::certified::CertifiedReport;
 use super::diagnosis::DiagnosisReport;
+use super::whole::Whole;
 use crate::arguments::{Boundary, ConcaveCorners, CreasesFrom, RefiningScheme};
-use crate::format::number;
 
 /// What a sampled distance is, in every report of one.
 pub(crate) const KIND: &str = "sampled lower bound";
@@ -63,27 +63,6 @@ pub(crate) struct LimitReport {
     /// How near it passes to the vertices of the control mesh; null where these are its control points.
     pub(crate) interpolate_within: Option<f64>,
     pub(crate) concave_corners: ConcaveCorners,
-}
-
-/// What lengths are given in per cent of: the diagonal of the bounding box of the control mesh where one is known, of the
-/// mesh that is measured against else.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Whole {
-    pub(crate) diagonal: f64,
-    /// Whose diagonal it is.
-    pub(crate) of: &'static str,
-}
-
-impl Whole {
-    /// The share of a length; none where the mesh has no extent.
-    pub(crate) fn percent(self, length: f64) -> Option<f64> {
-        Some(100.0 * length / self.diagonal).filter(|percent| percent.is_finite())
-    }
-
-    /// `the control mesh's diagonal 2.5`.
-    pub(crate) fn in_words(self) -> String {
-        format!("the {}'s diagonal {}", self.of, number(self.diagonal))
-    }
 }
 
 /// The distances. Lengths are in the meshes' units.

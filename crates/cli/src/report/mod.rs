@@ -13,6 +13,7 @@ mod lod;
 pub(crate) mod measurement;
 pub(crate) mod projection;
 pub(crate) mod refinement;
+mod whole;
 
 pub(crate) use certified::CertifiedReport;
 pub(crate) use channel::ChannelReport;
@@ -29,6 +30,7 @@ pub(crate) use refinement::{
     ExactParametersReport, InputDistanceReport, MethodReport, OutputReport, ParametersReport,
     PredictionReport, RefineReport, RoundEntry, SecondsReport, SizeReport, StepEntry, ViewReport,
 };
+pub(crate) use whole::Whole;
 
 use serde::Serialize;
 

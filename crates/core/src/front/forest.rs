@@ -8,7 +8,6 @@ use std::collections::HashMap;
 
 use smallvec::SmallVec;
 
-use super::demand::Question;
 use super::halt::Halt;
 use super::measure::Measure;
 use super::pieces::{Ground, Pieces};
@@ -198,10 +197,10 @@ impl<'a> Forest<'a> {
         leaves.map(|(_, extent)| measure(extent)).fold(0.0, f64::max)
     }
 
-    /// The greatest answer of a control face.
-    pub(super) fn greatest(&self, question: &Question) -> f64 {
+    /// The greatest measure of a control face.
+    pub(super) fn greatest(&self, measure: impl Fn(&Extent) -> f64) -> f64 {
         let faces = self.surface().control().face_count();
-        self.extents[..faces].iter().map(|extent| question.measure(extent)).fold(0.0, f64::max)
+        self.extents[..faces].iter().map(measure).fold(0.0, f64::max)
     }
 
     pub(super) fn is_divided(&self, node: u32) -> bool {

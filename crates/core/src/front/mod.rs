@@ -13,7 +13,7 @@
 //! Data flows from `pieces` (the surface over a node, its *value*: how far it is from the node's triangle, whatever the neighbours
 //! are; by another `measure`, what that sees) to `forest` (nodes, neighbours, vertices), which `least` brings from one least set of divided nodes to the next, where the proof
 //! is; `demand` says which nodes want to be divided and for how long that is certain while cameras move, `agenda` keeps nodes by
-//! when they are to be asked again; `buffers` has the triangles, `snapshot` the mesh with where it came from.
+//! when they are to be asked again, `asking` asks new ones; `buffers` has the triangles, `snapshot` the mesh with where it came from.
 //!
 //! ```
 //! use limitmesh::front::{Demand, Front};
@@ -37,6 +37,7 @@
 //! ```
 
 mod agenda;
+mod asking;
 mod buffers;
 mod demand;
 mod forest;
@@ -47,13 +48,14 @@ mod pieces;
 mod snapshot;
 
 use agenda::Agenda;
+use asking::Asking;
 use buffers::Buffers;
 pub use buffers::Changes;
 pub use demand::{Demand, MOST_LEVELS};
 use demand::{Goal, Question};
 use forest::Forest;
 use halt::Halt;
-use least::{Watch, extend, loosen};
+use least::{Watch as _, extend, loosen};
 pub use measure::Measure;
 pub use snapshot::Snapshot;
 
@@ -221,7 +223,7 @@ impl<'a> Front<'a> {
         let most = demand.most.unwrap_or(demand::MOST_TRIANGLES);
         // What is asked for is mostly near what there is; what nobody asked for begins with the coarsest mesh.
         if demand.most.is_some() || !self.ask(question.clone(), most, &mut counts, &mut halt) {
-            let greatest = self.forest.greatest(&question);
+            let greatest = self.forest.greatest(|extent| question.measure(extent));
             let is_near = demand.most.is_some() && self.question.eyes.is_some() == question.eyes.is_some();
             let start = if is_near { self.question.limit.min(greatest) } else { greatest };
             self.fit(question, start, (most, &mut counts, &mut halt));
@@ -342,7 +344,8 @@ impl<'a> Front<'a> {
             && question.max_levels == self.question.max_levels
             && question.eyes == self.question.eyes;
         if !is_known {
-            self.agenda = Agenda::ladder(self.forest.greatest(&question).min(f64::MAX));
+            self.agenda =
+                Agenda::ladder(self.forest.greatest(|extent| question.measure(extent)).min(f64::MAX));
             self.turning = Agenda::ring(self.length);
             let (lost, gained) = self.ask_all(question, halt);
             return self.settle(lost, gained, (most, counts, halt));
@@ -505,38 +508,5 @@ impl<'a> Front<'a> {
     /// Whether the distance is proven.
     pub fn is_certified(&self) -> bool {
         self.forest.measure() == Measure::Distance && self.forest.surface().rules().is_certified()
-    }
-}
-
-/// Asks nodes, and keeps them for later.
-struct Asking<'q, 'o> {
-    question: &'q Question,
-    agendas: [&'q mut Agenda; 2],
-    clocks: [f64; 2],
-    length: f64,
-    most: usize,
-    halt: Option<&'q mut Halt<'o>>,
-}
-
-impl Watch for Asking<'_, '_> {
-    fn arrived(&mut self, forest: &Forest<'_>, node: u32) -> bool {
-        let extent = &forest.extents[node as usize];
-        if u32::from(extent.level) >= self.question.max_levels {
-            return false;
-        }
-        if self.agendas[0].is_ring() {
-            let answer = self.question.answer(extent, self.length);
-            let clock = usize::from(answer.turns);
-            self.agendas[clock].put(self.clocks[clock] + answer.margin, node, extent.stamp);
-            return answer.wants;
-        }
-        let measure = self.question.measure(extent);
-        self.agendas[0].put(measure, node, extent.stamp);
-        measure > self.question.limit
-    }
-
-    fn goes_on(&mut self, forest: &Forest<'_>) -> bool {
-        let is_allowed = self.halt.as_mut().is_none_or(|halt| halt.goes_on(forest.triangles));
-        is_allowed && forest.triangles <= self.most
     }
 }
