@@ -337,3 +337,19 @@ fn cameras_go_with_distances_alone() {
     assert!(refused.to_string().contains("does not go by distances"), "{refused}");
     assert_eq!(front.triangles().len(), control.face_count());
 }
+
+#[test]
+fn sizes_that_cannot_be_computed_with_are_refused() {
+    for size in [1e-160, 1e160] {
+        let control = octahedron();
+        let positions = control.positions().iter().map(|p| p.map(|x| size * x)).collect();
+        let control = Mesh::from_triangles(positions, control.triangles().to_vec()).unwrap();
+        for measure in MEASURES.into_iter().chain([Measure::Distance]) {
+            let refused = Front::measured_by(&control, &Loop, measure).map(drop).unwrap_err();
+            assert!(refused.to_string().contains("diagonal"), "{refused}");
+        }
+        let options = limitmesh::sqrt3::Sqrt3Options::default().tolerance(Some(0.1 * size));
+        let refused = limitmesh::sqrt3::adaptive(&control, &options).map(drop).unwrap_err();
+        assert!(refused.to_string().contains("diagonal"), "{refused}");
+    }
+}

@@ -314,3 +314,16 @@ fn observers_are_asked_and_can_stop_it() {
         Err(ProximityError::Cancelled(_))
     ));
 }
+
+#[test]
+fn points_whose_distance_is_no_number_are_named() {
+    for (size, far) in [(1.0, 1e300), (1e-200, 1.0)] {
+        let control = octahedron();
+        let positions = control.positions().iter().map(|p| p.map(|x| size * x)).collect();
+        let control = Mesh::from_triangles(positions, control.triangles().to_vec()).unwrap();
+        let surface = LimitSurface::new(&control, &Loop).unwrap();
+        let proximity = Proximity::new(&surface).unwrap();
+        let found = proximity.closest(&[[0.0; 3], [far, 0.0, 0.0]], 1e-6 * size);
+        assert!(matches!(found, Err(ProximityError::TooFar { index: 1, .. })), "{found:?}");
+    }
+}

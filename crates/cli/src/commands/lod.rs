@@ -75,7 +75,9 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
         .geomorphs(arguments.morph)
         .max_triangles(Some(arguments.max_triangles.unwrap_or(MOST_EXACT)));
     let wanted = asked.tolerances.len();
-    let levels = levels_of_detail_observed(&mesh, scheme, &asked, &mut progress.observer())?;
+    let mut levels = levels_of_detail_observed(&mesh, scheme, &asked, &mut progress.observer())?;
+    let found = levels.len();
+    leave_out_needless(&mut levels, progress);
     let written = levels.iter().rev().map(|level| written(level, &mesh, &channels, arguments));
     let written = written.collect::<anyhow::Result<Vec<_>>>()?;
     let reports = reports(&levels, &mesh, arguments, format);
@@ -96,7 +98,7 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
         ExactStop::Met => Outcome::Done,
         stop => Outcome::StoppedShort(format!(
             "level {} of {wanted}, counted from the coarsest, could not be reached ({})",
-            levels.len(),
+            found,
             exact_stop_name(stop)
         )),
     })
@@ -117,6 +119,22 @@ fn tolerances(arguments: &LodArguments, diagonal: f64) -> anyhow::Result<Vec<f64
         return usage("--tolerances are from coarse to fine: each is below the one before");
     }
     Ok(lengths)
+}
+
+/// Leaves out coarsest levels that are as near as the next finer one, or nearer: no level is coarser than the control mesh.
+fn leave_out_needless(levels: &mut Vec<Level>, progress: &Progress) {
+    while let [coarsest, finer, ..] = levels.as_mut_slice()
+        && (finer.parametric >= coarsest.parametric
+            || finer.exact.mesh.face_count() == coarsest.exact.mesh.face_count())
+    {
+        progress.note(format!(
+            "the level within {} is left out: the next finer one, of {}, is as coarse as the control mesh allows",
+            number(coarsest.tolerance),
+            counted(finer.exact.mesh.face_count(), "triangle", "triangles"),
+        ));
+        finer.geomorph = None;
+        levels.remove(0);
+    }
 }
 
 fn input_report(input: &Input, arguments: &LodArguments) -> InputReport {
@@ -163,13 +181,14 @@ fn reports(levels: &[Level], control: &Mesh, arguments: &LodArguments, format: F
         upper if upper.is_finite() && !arguments.morph => upper,
         _ => level.parametric,
     };
+    // Where a level is farther off than a coarser one, that waits for it.
+    let shown = |at: usize| levels[at..].iter().map(shown).fold(0.0, f64::max);
     let report = |(lod, (i, level)): (usize, (usize, &Level))| {
         let exact = &level.exact;
         // Where the coarser level takes over: it is good enough from there on.
-        let coarser = i.checked_sub(1).map(|i| &levels[i]);
-        let start =
-            level.geomorph.as_ref().zip(coarser).map(|(morph, coarser)| morph.start.max(coarser.parametric));
-        let ends = start.or(coarser.map(shown));
+        let coarser = i.checked_sub(1).map(shown);
+        let start = level.geomorph.as_ref().zip(coarser).map(|(morph, coarser)| morph.start.max(coarser));
+        let ends = start.or(coarser);
         LevelReport {
             lod,
             path: path(&arguments.output, format, lod).display().to_string(),
@@ -179,11 +198,11 @@ fn reports(levels: &[Level], control: &Mesh, arguments: &LodArguments, format: F
             lower: exact.error.lower,
             upper: Some(exact.error.upper).filter(|upper| upper.is_finite()),
             parametric: level.parametric,
-            switching_distance: distance(shown(level)),
+            switching_distance: distance(shown(i)),
             least_coverage: ends.map_or(0.0, |deviation| coverage(distance(deviation))),
             morph: start.map(|start| MorphReport {
                 start_parametric: start,
-                from_distance: distance(level.parametric),
+                from_distance: distance(shown(i)),
                 to_distance: distance(start),
             }),
             stop: exact_stop_name(exact.stop),

@@ -90,3 +90,37 @@ fn what_cannot_be_is_told() {
     run("lod builtin:cup -o {} --levels 0", &[&out]).expect(2);
     run("lod builtin:none -o {}", &[&out]).expect(1).saying("none");
 }
+
+/// Levels that would be as coarse as the control mesh allows are told and left out, and whoever goes away meets levels in order.
+#[test]
+fn distances_grow_from_level_to_level() {
+    for words in [
+        "builtin:cup -o {}",
+        "builtin:cup -o {} --tolerances 20%,10%,1%,0.5%,0.1% --morph",
+        "builtin:head -o {} --levels 5",
+    ] {
+        let folder = folder();
+        let output = folder.path().join("out.glb");
+        let found = run(&format!("lod {words} --report -"), &[&output]).expect(0);
+        let report = found.json();
+        let levels = report["levels"].as_array().expect("a list");
+        let numbers = |key: &str| -> Vec<f64> {
+            levels.iter().map(|level| level[key].as_f64().expect("a number")).collect()
+        };
+        let (triangles, distances, coverage) =
+            (numbers("triangles"), numbers("switching_distance"), numbers("least_coverage"));
+        assert!(triangles.windows(2).all(|pair| pair[0] > pair[1]), "{words}: {triangles:?}");
+        assert!(distances.windows(2).all(|pair| pair[0] < pair[1]), "{words}: {distances:?}");
+        assert!(coverage.windows(2).all(|pair| pair[0] > pair[1]), "{words}: {coverage:?}");
+        for level in levels.iter().filter(|level| !level["morph"].is_null()) {
+            assert!(
+                level["morph"]["from_distance"].as_f64() < level["morph"]["to_distance"].as_f64(),
+                "{level}"
+            );
+        }
+    }
+    let folder = folder();
+    run("lod builtin:cup -o {} --tolerances 20%,10%,1%", &[&folder.path().join("out.glb")])
+        .expect(0)
+        .saying("left out: the next finer one");
+}

@@ -62,7 +62,7 @@ pub use snapshot::Snapshot;
 use crate::criterion::CriterionError;
 use crate::limit::LimitError;
 use crate::limit_surface::LimitSurface;
-use crate::mesh::{Mesh, MeshError};
+use crate::mesh::{Mesh, MeshError, check_size};
 use crate::progress::{Cancelled, Observer, unobserved};
 use crate::scheme::Scheme;
 
@@ -122,7 +122,7 @@ impl<'a> Front<'a> {
     /// The control mesh's own triangles, with their corners on the limit surface.
     ///
     /// # Errors
-    /// The scheme has no limit at the shape of some ring.
+    /// The scheme has no limit at the shape of some ring, or the mesh's diagonal is not within 1e-70 to 1e70.
     pub fn new(control: &'a Mesh, scheme: &'a dyn Scheme) -> Result<Self, FrontError> {
         Self::measured_by(control, scheme, Measure::Distance)
     }
@@ -150,6 +150,7 @@ impl<'a> Front<'a> {
         measure: Measure,
         observer: &mut Observer<'_>,
     ) -> Result<Self, FrontError> {
+        check_size(control)?;
         let mut halt = Halt::new(observer);
         let surface = match measure {
             Measure::PlanarityAngle => LimitSurface::new(control, scheme)?,

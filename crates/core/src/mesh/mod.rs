@@ -385,3 +385,15 @@ pub(crate) fn check_finite(positions: &[[f64; 3]]) -> Result<(), MeshError> {
         }
     }
 }
+
+/// Sizes of control meshes at which squares of areas neither vanish nor overflow, for what does not scale its input.
+const SAFE_DIAGONALS: core::ops::RangeInclusive<f64> = 1e-70..=1e70;
+
+/// Refuses a mesh that is too large or too small to be computed with as it is.
+pub(crate) fn check_size(mesh: &Mesh) -> Result<(), MeshError> {
+    let value = mesh.diagonal();
+    if SAFE_DIAGONALS.contains(&value) {
+        return Ok(());
+    }
+    Err(MeshError::BadOption { name: "the diagonal of the control mesh", value, expected: "1e-70 to 1e70" })
+}

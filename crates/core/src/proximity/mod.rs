@@ -67,6 +67,17 @@ pub enum ProximityError {
         /// Its coordinates.
         point: [f64; 3],
     },
+    /// A point whose distance is no number any more.
+    #[error(
+        "point {index} at ({}, {}, {}) is too far from the surface for its distance, by the surface's size, to be squared",
+        .point[0], .point[1], .point[2]
+    )]
+    TooFar {
+        /// Which of those that were given.
+        index: usize,
+        /// Its coordinates.
+        point: [f64; 3],
+    },
     /// A tolerance that is none.
     #[error("the tolerance is {tolerance}, a length above 0 is expected")]
     Tolerance {
@@ -227,7 +238,11 @@ impl<'a> Proximity<'a> {
             let mut query = Query::new(self, tolerance, is_stopped);
             points[block].iter().map(|&point| query.closest(point)).collect::<Vec<_>>()
         })?;
-        Ok(found.concat())
+        let found = found.concat();
+        match found.iter().position(|closest| !closest.distance.is_finite()) {
+            Some(index) => Err(ProximityError::TooFar { index, point: points[index] }),
+            None => Ok(found),
+        }
     }
 
     /// How often a closed surface winds around a point, counter-clockwise as seen from outside; `None` where the point is too near to say.

@@ -7,7 +7,7 @@ use super::Sqrt3Options;
 use super::criteria::{Found, Goals};
 use super::forest::{Emitted, Forest, Triangle};
 use crate::limit::SidedNormals;
-use crate::mesh::{MAX_FACES, Mesh};
+use crate::mesh::{MAX_FACES, Mesh, check_size};
 use crate::progress::{Observer, Stage, Watch, unobserved};
 use crate::refine::{ExactStop, Origin, RefineError, Traced};
 
@@ -59,7 +59,7 @@ impl Traced for Sqrt3 {
 /// divided ones is flipped. Where goals are met the result is the least such mesh, whatever the order of the divisions.
 ///
 /// # Errors
-/// A goal that is no positive number, a tag that fades ([`RefineError::FadingTag`]), a vertex without a limit, or more
+/// A goal that is no positive number, a mesh whose diagonal is not within 1e-70 to 1e70, a tag that fades ([`RefineError::FadingTag`]), a vertex without a limit, or more
 /// elements than can be numbered.
 pub fn adaptive(control: &Mesh, options: &Sqrt3Options) -> Result<Sqrt3, RefineError> {
     adaptive_observed(control, options, &mut unobserved)
@@ -75,6 +75,7 @@ pub fn adaptive_observed(
     observer: &mut Observer<'_>,
 ) -> Result<Sqrt3, RefineError> {
     options.check()?;
+    check_size(control)?;
     let mut watch = Watch::new(observer, Stage::Refining);
     watch.triangles(control.face_count());
     watch.poll()?;

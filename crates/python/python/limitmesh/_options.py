@@ -276,6 +276,8 @@ def angle_of(value: float, name: str) -> float:
 def cameras_of(cameras: Iterable[Camera]) -> list[tuple[Any, ...]]:
     """Cameras for the native half."""
     found = []
+    if not isinstance(cameras, Iterable):
+        raise OptionError(f"cameras is {cameras!r}, expected limitmesh.Camera objects in a list")
     for row, camera in enumerate(cameras):
         if not isinstance(camera, Camera):
             raise OptionError(f"cameras[{row}] is {camera!r}, expected a limitmesh.Camera")
