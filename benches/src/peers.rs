@@ -38,8 +38,13 @@ pub(crate) fn opensubdiv(
     Ok(seconds.reduce(f64::min))
 }
 
-/// The program that does it, built unless it is there; `None` where that is not possible.
+/// The program that does it, for this processor, built unless it is there; `None` where that is not possible.
 pub(crate) fn program(what: OpenSubdiv) -> Result<Option<PathBuf>> {
+    program_for(what, "native")
+}
+
+/// The same for the given kind of processor, as the compiler names it.
+pub(crate) fn program_for(what: OpenSubdiv, processor: &str) -> Result<Option<PathBuf>> {
     let build = folder().join("build");
     std::fs::create_dir_all(&build)?;
     let name = match what {
@@ -47,10 +52,10 @@ pub(crate) fn program(what: OpenSubdiv) -> Result<Option<PathBuf>> {
         OpenSubdiv::Bfr => "opensubdiv_bfr",
         OpenSubdiv::Stencils => "opensubdiv_stencils",
     };
-    let program = build.join(name);
+    let program = build.join(format!("{name}_{processor}"));
     if !program.exists() {
         let compiler = Command::new("g++")
-            .args(["-O3", "-march=native", "-o"])
+            .args(["-O3", &format!("-march={processor}"), "-o"])
             .arg(&program)
             .arg(folder().join(name).with_extension("cpp"))
             .arg("-losdCPU")

@@ -12,7 +12,7 @@ use limitmesh::scheme::Loop;
 
 use crate::clock::one_thread;
 use crate::mesh;
-use crate::peers::{OpenSubdiv, program};
+use crate::peers::{OpenSubdiv, program_for};
 
 /// Rounds in which each evaluates some frames, of so many vertices together: the clock of a thread knows milliseconds.
 const ROUNDS: usize = 25;
@@ -24,6 +24,10 @@ const FRAMES: usize = 16;
 /// Tolerances in per cent of the diagonal.
 const TOLERANCES: [f64; 3] = [0.1, 0.02, 0.004];
 
+/// The precisions of the peer, and the processors that it is compiled for: the one that all this runs on, and any.
+const PEERS: [(&str, &str); 4] =
+    [("double", "native"), ("float", "native"), ("double", "x86-64"), ("float", "x86-64")];
+
 /// Replay of a refined model, warm, one thread, in turns with OpenSubdiv.
 pub(crate) fn replay(model: &Path) -> Result<()> {
     let control = mesh(model)?;
@@ -32,7 +36,7 @@ pub(crate) fn replay(model: &Path) -> Result<()> {
         "\nreplay of {name}, nanoseconds a vertex, least of {ROUNDS} warm rounds in turns; bytes a vertex"
     );
     println!(
-        "tolerance  vertices           positions  and normals  bytes  made in ms  greatest distance apart"
+        "tolerance  vertices                      positions  and normals  bytes  made in ms  greatest distance apart"
     );
     for percent in TOLERANCES {
         let tolerance = 0.01 * percent * control.diagonal();
@@ -71,8 +75,10 @@ fn compare(model: &Path, control: &Mesh, refined: &Exact, percent: f64) -> Resul
         writeln!(text, "{} {s} {t}", refined.origins[vertex].face)?;
     }
     std::fs::write(&places, text)?;
-    let peers = [Peer::of("double", model, &places)?, Peer::of("float", model, &places)?];
-    let mut peers: Vec<Peer> = peers.into_iter().flatten().collect();
+    let mut peers = Vec::new();
+    for (precision, processor) in PEERS {
+        peers.extend(Peer::of((precision, processor), model, &places)?);
+    }
     let mut best = [f64::MAX; 2];
     let count = refined.mesh.vertex_count();
     let several = (VERTICES / count).max(1);
@@ -90,7 +96,7 @@ fn compare(model: &Path, control: &Mesh, refined: &Exact, percent: f64) -> Resul
     let each = |seconds: f64| 1e9 * seconds / count as f64;
     let bytes = replay.table_bytes() as f64 / count as f64;
     println!(
-        "{percent:7} %  {count:8}  ours      {:9.1}  {:11.1}  {bytes:5.0}  {:10.1}",
+        "{percent:7} %  {count:8}  ours                 {:9.1}  {:11.1}  {bytes:5.0}  {:10.1}",
         each(best[0]),
         each(best[1]),
         1e3 * built.all
@@ -101,8 +107,9 @@ fn compare(model: &Path, control: &Mesh, refined: &Exact, percent: f64) -> Resul
         let apart = peer.apart(&order, &frame.positions, &folder.path().join("positions"))?;
         let times = [peer.best[0] / best[0], peer.best[1] / best[1]];
         println!(
-            "           OpenSubdiv, {:6}  {:9.1}  {:11.1}  {:5.0}              {:.1e} %, ours {:.2} and {:.2} times as fast, {:.2} of the bytes",
+            "           OpenSubdiv, {:6} for {:6}  {:9.1}  {:11.1}  {:5.0}              {:.1e} %, ours {:.2} and {:.2} times as fast, {:.2} of the bytes",
             peer.precision,
+            peer.processor,
             each(peer.best[0]),
             each(peer.best[1]),
             peer.bytes as f64 / count as f64,
@@ -121,6 +128,7 @@ fn compare(model: &Path, control: &Mesh, refined: &Exact, percent: f64) -> Resul
 /// OpenSubdiv's program, with its stencils made.
 struct Peer {
     precision: &'static str,
+    processor: &'static str,
     process: Child,
     input: ChildStdin,
     output: BufReader<ChildStdout>,
@@ -130,8 +138,12 @@ struct Peer {
 }
 
 impl Peer {
-    fn of(precision: &'static str, model: &Path, places: &Path) -> Result<Option<Self>> {
-        let Some(program) = program(OpenSubdiv::Stencils)? else { return Ok(None) };
+    fn of(
+        (precision, processor): (&'static str, &'static str),
+        model: &Path,
+        places: &Path,
+    ) -> Result<Option<Self>> {
+        let Some(program) = program_for(OpenSubdiv::Stencils, processor)? else { return Ok(None) };
         let mut process = Command::new(program)
             .arg(precision)
             .args([model, places])
@@ -142,6 +154,7 @@ impl Peer {
         let output = process.stdout.take().context("no output of OpenSubdiv's program")?;
         let mut peer = Self {
             precision,
+            processor,
             process,
             input,
             output: BufReader::new(output),

@@ -74,6 +74,8 @@ pub enum Stage {
     Casting,
     /// It is being found which way faces look; the units are faces.
     Looking,
+    /// Weights of control points are being found; the units are kinds of faces.
+    Weighing,
 }
 
 impl fmt::Display for Stage {
@@ -90,6 +92,7 @@ impl fmt::Display for Stage {
             Self::Matching => "matching edges",
             Self::Casting => "following rays",
             Self::Looking => "finding which way faces look",
+            Self::Weighing => "weighing control points",
         })
     }
 }

@@ -12,8 +12,9 @@ use limitmesh::interpolate::{InterpolateError, InterpolateOptions, interpolate, 
 use limitmesh::measure::*;
 use limitmesh::progress::{Observer, Progress, Stage};
 use limitmesh::refine::{
-    ExactOptions, RefineError, StepwiseOptions, UniformOptions, exact, exact_estimate,
-    exact_estimate_observed, exact_observed, stepwise, stepwise_observed, uniform, uniform_observed,
+    ExactOptions, Frame, RefineError, Replay, ReplayError, StepwiseOptions, UniformOptions, exact,
+    exact_estimate, exact_estimate_observed, exact_observed, stepwise, stepwise_observed, uniform,
+    uniform_observed,
 };
 use limitmesh::scheme::Loop;
 use limitmesh::{Mesh, Triangles};
@@ -70,6 +71,22 @@ fn refinement_is_observed() {
     let plain = points(stepwise(&octahedron(), &Loop, &criterion, &options).unwrap());
     watch("stepwise", plain, cancelled, |o| {
         stepwise_observed(&octahedron(), &Loop, &criterion, &options, o).map(points)
+    });
+}
+
+#[test]
+fn replays_are_observed() {
+    let cancelled = |error: &ReplayError| matches!(error, ReplayError::Cancelled(_));
+    let control = model("bunny");
+    let options = ExactOptions::default().tolerance(1e-3 * control.diagonal()).flat_regions(false);
+    let refined = exact(&control, &Loop, &options).unwrap();
+    let points = |replay: Replay| {
+        let mut frame = Frame::default();
+        replay.frame(control.positions(), &mut frame).map(|()| frame)
+    };
+    let plain = Replay::new(&control, &Loop, &refined).and_then(points).unwrap();
+    watch("replay", plain, cancelled, |o| {
+        Replay::new_observed(&control, &Loop, &refined, o).and_then(points)
     });
 }
 

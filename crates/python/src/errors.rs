@@ -157,6 +157,7 @@ impl From<ReplayError> for Failure {
         match error {
             ReplayError::Mesh(error) => error.into(),
             ReplayError::Limit(error) => error.into(),
+            ReplayError::Cancelled(error) => error.into(),
             ReplayError::Scheme { .. } | ReplayError::TooMany { .. } => Self::Option(error.to_string()),
             error => Self::Mesh(error.to_string()),
         }

@@ -125,7 +125,7 @@ pub(crate) fn replay<'py>(
             .flat_regions(false)
             .origins(true);
         let found = exact_observed(&control.mesh, recipe.scheme, &options, observer)?;
-        let own = limitmesh::refine::Replay::new(&control.mesh, recipe.scheme, &found)?;
+        let own = limitmesh::refine::Replay::new_observed(&control.mesh, recipe.scheme, &found, observer)?;
         let channels = match control.channels.is_empty() {
             true => Vec::new(),
             false => carried(&control.channels, &control.mesh, recipe.scheme, &found)?,

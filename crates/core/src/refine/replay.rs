@@ -13,12 +13,14 @@ mod weights;
 use super::exact_result::Exact;
 use crate::limit::LimitError;
 use crate::mesh::{Groups, Mesh, MeshError, Sharpness, check_finite};
+use crate::parallel::Cancelled;
 use crate::patch::Rules;
 use crate::patch::large_rings::LargeRings;
+use crate::progress::{Observer, Stage, Watch, unobserved};
 use crate::scheme::Scheme;
 use crate::vector::{DVec3, vector};
 use build::{Control, build};
-use table::{Inputs, Table, average};
+use table::{LANES, Table, average};
 use wanted::Wants;
 
 /// Why there is no replay.
@@ -78,6 +80,9 @@ pub enum ReplayError {
     /// A limit position does not exist.
     #[error(transparent)]
     Limit(#[from] LimitError),
+    /// The observer asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// What it takes to give a refinement's vertices for other positions of the control vertices.
@@ -128,6 +133,7 @@ pub struct Frame {
     pub sides: Vec<(u32, [f64; 3])>,
     /// What is kept from one use to the next.
     slots: [Vec<[f64; 3]>; 2],
+    inputs: Vec<[f64; LANES]>,
 }
 
 impl Replay {
@@ -139,6 +145,19 @@ impl Replay {
     /// # Errors
     /// A scheme outside the Loop family, a refinement whose vertices have no place in the control mesh, or a vertex without a limit.
     pub fn new(control: &Mesh, scheme: &dyn Scheme, refined: &Exact) -> Result<Self, ReplayError> {
+        Self::new_observed(control, scheme, refined, &mut unobserved)
+    }
+
+    /// [`Self::new`], telling an observer how it goes on.
+    ///
+    /// # Errors
+    /// As for [`Self::new`], or the observer asked to stop.
+    pub fn new_observed(
+        control: &Mesh,
+        scheme: &dyn Scheme,
+        refined: &Exact,
+        observer: &mut Observer<'_>,
+    ) -> Result<Self, ReplayError> {
         let rules = Rules::of(scheme);
         if !rules.is_certified() {
             return Err(ReplayError::Scheme { scheme: scheme.name().to_owned() });
@@ -153,7 +172,9 @@ impl Replay {
             rules: &rules,
             stencils: &stencils,
         };
-        let (mut table, slots) = build(&known, &wants)?;
+        let mut watch = Watch::new(observer, Stage::Weighing);
+        watch.triangles(refined.mesh.face_count());
+        let (mut table, slots) = build(&known, &wants, &mut watch)?;
         let count = refined.mesh.vertex_count();
         let slot = |spot: u32| slots[spot as usize];
         table.slots = slots[..count].to_vec();
@@ -207,12 +228,14 @@ impl Replay {
             .into());
         }
         check_finite(control)?;
-        let means: Vec<[f64; 3]> = self.rings.iter().map(|ring| mean(ring, control)).collect();
+        let means = self.rings.iter().map(|ring| mean(ring, control));
+        frame.inputs.clear();
+        frame.inputs.extend(control.iter().copied().chain(means).map(|[x, y, z]| [x, y, z, 0.0]));
         let [positions, normals] = &mut frame.slots;
         positions.resize(self.table.slot_count(), [0.0; 3]);
         normals.resize(self.table.slot_count(), [0.0; 3]);
         let normals = if with_normals { &mut normals[..] } else { &mut [] };
-        self.table.fill(&Inputs { positions: control, means: &means }, positions, normals);
+        self.table.fill(&frame.inputs, positions, normals);
         frame.positions.resize(self.table.slots.len(), [0.0; 3]);
         self.table.take(positions, &mut frame.positions);
         super::junctions::join_copies(&mut frame.positions, &self.copies);
@@ -238,19 +261,24 @@ fn mean(ring: &[u32], positions: &[[f64; 3]]) -> [f64; 3] {
 }
 
 impl Exact {
-    /// The same triangles with the vertices of a frame, of which nothing is proven.
+    /// The same triangles with the vertices of a frame. Nothing is proven of them: the bounds are infinite, and what is told of other goals
+    /// is that of the refinement.
     ///
     /// # Errors
     /// The frame is that of another mesh, or a coordinate is not finite.
-    pub fn moved_to(&self, frame: &Frame) -> Result<Self, MeshError> {
-        let mesh = self.mesh.clone().with_positions(frame.positions.clone())?;
+    pub fn moved_to(mut self, frame: &Frame) -> Result<Self, MeshError> {
         if frame.normals.len() != self.normals.len() || frame.sides.len() != self.sides.len() {
             return Err(MeshError::Broken {
                 place: format!("{} normals and {} on sides", frame.normals.len(), frame.sides.len()),
                 what: "a frame has the normals of the mesh that it was made from",
             });
         }
-        let error = super::ErrorBounds { lower: 0.0, upper: f64::INFINITY, certified: false, at: [0.0; 3] };
-        Ok(Self { mesh, normals: frame.normals.clone(), sides: frame.sides.clone(), error, ..self.clone() })
+        self.mesh = self.mesh.with_positions(frame.positions.clone())?;
+        self.normals.clone_from(&frame.normals);
+        self.sides.clone_from(&frame.sides);
+        self.error = super::ErrorBounds { lower: 0.0, upper: f64::INFINITY, certified: false, at: [0.0; 3] };
+        self.pixels = self.pixels.map(|_| f64::INFINITY);
+        self.attribute_bounds.fill(f64::INFINITY);
+        Ok(self)
     }
 }

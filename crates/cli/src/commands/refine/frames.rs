@@ -279,7 +279,7 @@ fn write_all(
         let (Some(path), &Some(format)) = (&job.output, format) else { continue };
         progress.stage(format!("writing {}", job.output_name()));
         found.replay.frame(&frames[number], &mut frame)?;
-        let mut moved = found.refined.moved_to(&frame)?;
+        let mut moved = found.refined.clone().moved_to(&frame)?;
         let options = WriteOptions::default().ascii(job.ascii);
         let rounding = limitmesh_io::rounding(format, &options, moved.mesh.positions());
         let mut error = found.errors[number];

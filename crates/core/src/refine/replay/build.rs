@@ -6,23 +6,27 @@
 use std::collections::HashMap;
 
 use super::ReplayError;
-use super::table::{COEFFICIENTS, Job, LANES, Piece, SUMS, Table, WHOLE};
+use super::table::{COEFFICIENTS, Job, LANES, Piece, SUMS, Table, WHOLE, groups};
 use super::wanted::{Spot, Wants};
-use super::weights::{Place, Probe, Standing, Wanted, groups};
+use super::weights::{Place, Probe, Standing, Wanted};
 use crate::index::{FaceId, VertexId};
 use crate::limit::{VertexStencil, VertexStencils};
 use crate::mesh::{Mesh, Sharpness};
-use crate::parallel;
+use crate::parallel::{self, Cancelled};
 use crate::patch::large_rings::LargeRings;
 use crate::patch::{Rules, Support};
+use crate::progress::{Stage, Watch};
 
-/// Places on one polynomial from which its coefficients are worth while: they take as long as those of five places, and each place on
-/// it half as long then.
-const MANY: usize = 10;
+/// Places on one polynomial from which its coefficients are worth while, by measurement: they take as long as five places by rows,
+/// and with them a place takes half as long, but where there are fewer, rows are shared by more faces.
+const MANY: usize = 20;
 
-/// Faces whose supports are found together, and shapes whose weights are.
+/// Faces whose supports are found together.
 const FACES: usize = 256;
+
+/// Shapes whose weights are found together, and blocks of these at most: each probes a mesh of its own.
 const SHAPES: usize = 16;
+const MOST_BLOCKS: usize = 64;
 
 /// The control mesh, and all that is known of it.
 pub(super) struct Control<'a> {
@@ -79,15 +83,29 @@ struct MemberPiece {
 }
 
 /// The table, but for vertices' slots, and the slots of all spots.
-pub(super) fn build(control: &Control<'_>, wants: &Wants) -> Result<(Table, Vec<u32>), ReplayError> {
-    let (corners, faces) = groups_of(&wants.spots);
+pub(super) fn build(
+    control: &Control<'_>,
+    wants: &Wants,
+    watch: &mut Watch<'_>,
+) -> Result<(Table, Vec<u32>), ReplayError> {
+    let (mut corners, faces) = groups_of(&wants.spots);
+    // Those of the same stencil follow each other: the same weights, the same number of points.
+    corners.sort_by_key(|corner| control.stencils.by_vertex[corner.of as usize]);
     let mut building = Building { table: Table::default(), slots: vec![0; wants.spots.len()], next: 0 };
     building.corners(control, &corners, &wants.spots)?;
-    let shapes = shapes(control, &faces, &wants.spots);
-    let weighed = parallel::pieces_of(shapes.len(), SHAPES, |block| {
-        let mut probe = Probe::new(control.mesh, control.sharpness, control.large, control.rules);
-        block.map(|shape| weigh(&mut probe, &shapes[shape], &faces)).collect::<Vec<_>>()
-    });
+    let shapes = shapes(control, &faces, &wants.spots, watch)?;
+    watch.stage(Stage::Weighing, Some(shapes.len()))?;
+    let length = shapes.len().div_ceil(MOST_BLOCKS).max(SHAPES);
+    let weighed = parallel::long_pieces_polled(
+        shapes.len(),
+        length,
+        &mut |done| watch.done(done),
+        |block, is_stopped| {
+            let mut probe = Probe::new(control.mesh, control.sharpness, control.large, control.rules);
+            let weigh = |shape: usize| weigh(&mut probe, &shapes[shape], &faces);
+            block.take_while(|_| !is_stopped()).map(weigh).collect::<Vec<_>>()
+        },
+    )?;
     for (shape, weighed) in shapes.iter().zip(weighed.into_iter().flatten()) {
         let face = || shape.members.first().map_or(0, |member| faces[member.group].of);
         building.shape(shape, weighed.ok_or_else(|| ReplayError::NoPolynomial { face: face() })?)?;
@@ -117,12 +135,17 @@ fn groups_of(spots: &[Spot]) -> (Vec<Group>, Vec<Group>) {
 }
 
 /// The faces by the shape of what their surface depends on, shapes in the order in which they come first.
-fn shapes(control: &Control<'_>, faces: &[Group], spots: &[Spot]) -> Vec<Shape> {
-    let supports = parallel::pieces_of(faces.len(), FACES, |block| {
+fn shapes(
+    control: &Control<'_>,
+    faces: &[Group],
+    spots: &[Spot],
+    watch: &mut Watch<'_>,
+) -> Result<Vec<Shape>, Cancelled> {
+    let supports = parallel::pieces_polled(faces.len(), FACES, &mut |_| watch.poll(), |block| {
         let of =
             |face: usize| Support::of(control.mesh, control.sharpness, control.large, FaceId(faces[face].of));
         block.map(of).collect::<Vec<_>>()
-    });
+    })?;
     let mut shapes: Vec<Shape> = Vec::new();
     let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
     let mut numbers: Vec<HashMap<[u64; 2], u32>> = Vec::new();
@@ -146,7 +169,7 @@ fn shapes(control: &Control<'_>, faces: &[Group], spots: &[Spot]) -> Vec<Shape> 
         let places = places.collect();
         shape.members.push(Member { group, support, places });
     }
-    shapes
+    Ok(shapes)
 }
 
 /// The weights of a shape; `None` where a place comes to no polynomial.
@@ -229,6 +252,9 @@ impl Building {
 
     fn points(&mut self, points: &[u32]) -> Result<u32, ReplayError> {
         self.table.points.extend_from_slice(points);
+        let Some(&first) = points.first() else { return Ok(0) };
+        let full = 1 + LANES * groups(points.len());
+        self.table.points.extend(core::iter::repeat_n(first, full - points.len()));
         let is_small = self.table.points.len() <= u32::MAX as usize;
         if is_small { Ok(points.len() as u32) } else { Err(ReplayError::TooLarge) }
     }

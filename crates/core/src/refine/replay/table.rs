@@ -7,9 +7,10 @@
 
 use crate::limit::area_weighted_normal;
 use crate::parallel;
-use crate::patch::quartic::{Quartic, normals};
+use crate::patch::Quartic;
 use crate::progress::uncancelled;
 use crate::vector::{DVec3, unit_or_zero, vector};
+use wide::f64x4;
 
 /// Weights that are multiplied together.
 pub(super) const LANES: usize = 4;
@@ -22,6 +23,9 @@ pub(super) const COEFFICIENTS: usize = 15;
 
 /// Places on polynomials are multiples of one over this.
 pub(super) const WHOLE: f64 = 32768.0;
+
+/// Places whose polynomials are evaluated together, and normals that are divided by their lengths together.
+const TOGETHER: usize = 2 * LANES;
 
 /// Slots that one call fills, about.
 const SLOTS: usize = 2048;
@@ -44,6 +48,13 @@ pub(super) struct Job {
     pub(super) rows: u32,
     /// Polynomials.
     pub(super) pieces: u32,
+}
+
+impl Job {
+    /// Its points with those that fill groups up.
+    fn slots(&self) -> usize {
+        1 + LANES * groups(self.points as usize)
+    }
 }
 
 /// A polynomial with many places.
@@ -71,7 +82,8 @@ pub(super) struct Table {
     /// Those of control vertices first.
     pub(super) jobs: Vec<Job>,
     pub(super) corner_jobs: usize,
-    /// The control points of jobs; from the number of control vertices on the means of rings.
+    /// The control points of jobs, each but the first in groups that are filled up with the first, where weights are zero; from the
+    /// number of control vertices on the means of rings.
     pub(super) points: Vec<u32>,
     /// By place, where its weights start, in groups of [`LANES`].
     pub(super) rows: Vec<u32>,
@@ -87,29 +99,27 @@ pub(super) struct Table {
     runs: Vec<At>,
 }
 
-/// Positions to be gathered.
-pub(super) struct Inputs<'a> {
-    pub(super) positions: &'a [[f64; 3]],
-    pub(super) means: &'a [[f64; 3]],
+/// Positions to be gathered, those of the control vertices and then the means of rings, with a zero behind each.
+pub(super) type Inputs = [[f64; LANES]];
+
+/// A point of the inputs.
+#[inline]
+fn input(inputs: &Inputs, point: u32) -> DVec3 {
+    let [x, y, z, _] = inputs[point as usize];
+    DVec3::new(x, y, z)
 }
 
-impl Inputs<'_> {
-    #[inline]
-    fn at(&self, point: u32) -> DVec3 {
-        let point = point as usize;
-        vector(match self.positions.get(point) {
-            Some(&position) => position,
-            None => self.means[point - self.positions.len()],
-        })
-    }
+/// Groups of weights that points take, but for the first.
+pub(super) fn groups(points: usize) -> usize {
+    points.saturating_sub(1).div_ceil(LANES)
 }
 
 /// The points of a job.
 #[derive(Default)]
 struct Gathered {
-    first: DVec3,
+    first: [f64; 3],
     /// The differences of the others to it, by group and axis.
-    differences: Vec<[[f64; LANES]; 3]>,
+    differences: Vec<[f64x4; 3]>,
     /// Tangents are multiplied by this.
     scale: f64,
     /// Cross products whose squared length is not above this have no direction.
@@ -117,41 +127,118 @@ struct Gathered {
 }
 
 impl Gathered {
+    /// Takes the first of the points and the differences of all others to it, in whole groups.
     #[inline]
-    fn gather(&mut self, points: &[u32], inputs: &Inputs<'_>) {
+    fn gather<const NORMALS: bool>(&mut self, points: &[u32], inputs: &Inputs) {
         let Some((&first, others)) = points.split_first() else { return };
-        self.first = inputs.at(first);
+        let first = f64x4::from(inputs[first as usize]);
+        let [x, y, z, _] = first.to_array();
+        self.first = [x, y, z];
         self.differences.clear();
-        let mut greatest = DVec3::ZERO;
-        for group in others.chunks(LANES) {
-            let mut by_axis = [[0.0; LANES]; 3];
-            for (lane, &point) in group.iter().enumerate() {
-                let difference = inputs.at(point) - self.first;
-                greatest = greatest.max(difference.abs());
-                [by_axis[0][lane], by_axis[1][lane], by_axis[2][lane]] = difference.to_array();
+        let mut greatest = f64x4::ZERO;
+        for group in others.as_chunks::<LANES>().0 {
+            let differences = group.map(|point| f64x4::from(inputs[point as usize]) - first);
+            if NORMALS {
+                let [a, b, c, d] = differences.map(f64x4::abs);
+                greatest = greatest.fast_max(a.fast_max(b).fast_max(c.fast_max(d)));
             }
-            self.differences.push(by_axis);
+            let [x, y, z, _] = f64x4::transpose(differences);
+            self.differences.push([x, y, z]);
         }
-        let size = greatest.max_element();
+        if NORMALS {
+            self.measure(greatest, first.abs());
+        }
+    }
+
+    /// What tangents are multiplied by, and when they span no plane, by the greatest differences and what they are differences to.
+    #[inline]
+    fn measure(&mut self, differences: f64x4, first: f64x4) {
+        let [size, first] = [differences, first].map(|of| {
+            let [x, y, z, _] = of.to_array();
+            x.max(y).max(z)
+        });
         self.scale = if SAFE_SIZES.contains(&size) { 1.0 } else { reciprocal(size) };
         let scaled = self.scale * size;
         // Coordinates far from the origin have fewer digits to spare for differences.
-        let least = CROSS_ROUNDING * scaled * (scaled + self.scale * self.first.abs().max_element());
+        let least = CROSS_ROUNDING * scaled * (scaled + self.scale * first);
         self.least_square = least * least;
     }
 
-    /// A weighted sum of the differences.
+    /// A weighted sum of the differences. The compiler would pair axes instead of weights if it were left to it, which takes half as
+    /// long again.
     #[inline]
     fn sum(&self, weights: &[[f64; LANES]]) -> [f64; 3] {
-        let mut sums = [[0.0; LANES]; 3];
-        for (weights, differences) in weights.iter().zip(&self.differences) {
-            for (sums, differences) in sums.iter_mut().zip(differences) {
-                for lane in 0..LANES {
-                    sums[lane] += weights[lane] * differences[lane];
-                }
+        let mut sums = [f64x4::ZERO; 3];
+        for (&weights, differences) in weights.iter().zip(&self.differences) {
+            let weights = f64x4::from(weights);
+            for (sum, &difference) in sums.iter_mut().zip(differences) {
+                *sum += weights * difference;
             }
         }
-        sums.map(|[a, b, c, d]| (a + b) + (c + d))
+        sums.map(|sum| {
+            let [a, b, c, d] = sum.to_array();
+            (a + c) + (b + d)
+        })
+    }
+}
+
+/// A place, by the weights of its position and both tangents.
+struct Row<'a> {
+    gathered: &'a Gathered,
+    position: &'a [[f64; LANES]],
+    tangents: (&'a [[f64; LANES]], &'a [[f64; LANES]]),
+}
+
+impl Row<'_> {
+    #[inline]
+    fn position(&self) -> [f64; 3] {
+        let ([a, b, c], [x, y, z]) = (self.gathered.first, self.gathered.sum(self.position));
+        [a + x, b + y, c + z]
+    }
+
+    /// That of the tangents, with the square of its length; `None` where they span no plane.
+    #[inline]
+    fn cross_product(&self) -> Option<([f64; 3], f64)> {
+        let scale = self.gathered.scale;
+        let s = self.gathered.sum(self.tangents.0).map(|s| scale * s);
+        let t = self.gathered.sum(self.tangents.1).map(|t| scale * t);
+        let [x, y, z] = [s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]];
+        let square = x * x + y * y + z * z;
+        (square > self.gathered.least_square).then_some(([x, y, z], square))
+    }
+}
+
+/// Normals that wait to be divided by their lengths, together.
+#[derive(Default)]
+struct Pending {
+    slots: [usize; TOGETHER],
+    by_axis: [[f64; TOGETHER]; 3],
+    squares: [f64; TOGETHER],
+    count: usize,
+}
+
+impl Pending {
+    #[inline]
+    fn add(&mut self, slot: usize, (cross, square): ([f64; 3], f64), normals: &mut [[f64; 3]]) {
+        let at = self.count % TOGETHER;
+        self.slots[at] = slot;
+        self.squares[at] = square;
+        for (lanes, value) in self.by_axis.iter_mut().zip(cross) {
+            lanes[at] = value;
+        }
+        self.count = at + 1;
+        if self.count == TOGETHER {
+            self.divide(normals);
+        }
+    }
+
+    fn divide(&mut self, normals: &mut [[f64; 3]]) {
+        let factors = self.squares.map(|square| 1.0 / square.sqrt());
+        let [x, y, z] = self.by_axis;
+        for (at, &slot) in self.slots[..self.count].iter().enumerate() {
+            normals[slot] = [x[at] * factors[at], y[at] * factors[at], z[at] * factors[at]];
+        }
+        self.count = 0;
     }
 }
 
@@ -173,7 +260,7 @@ impl Table {
                 since = 0;
             }
             let slot = at.slot;
-            at.point += job.points as usize;
+            at.point += job.slots();
             at.row += job.rows as usize;
             at.slot += job.rows as usize;
             for piece in &self.pieces[at.piece..at.piece + job.pieces as usize] {
@@ -205,7 +292,7 @@ impl Table {
     }
 
     /// Fills all slots: positions, and normals where there is room for them.
-    pub(super) fn fill(&self, inputs: &Inputs<'_>, positions: &mut [[f64; 3]], normals: &mut [[f64; 3]]) {
+    pub(super) fn fill(&self, inputs: &Inputs, positions: &mut [[f64; 3]], normals: &mut [[f64; 3]]) {
         let with_normals = !normals.is_empty();
         let (mut positions, mut normals) = (positions, normals);
         let mut runs = Vec::with_capacity(self.runs.len());
@@ -224,27 +311,33 @@ impl Table {
 
     fn run<const NORMALS: bool>(
         &self,
-        inputs: &Inputs<'_>,
+        inputs: &Inputs,
         (from, last): (At, usize),
         positions: &mut [[f64; 3]],
         normals: &mut [[f64; 3]],
     ) {
-        let (mut at, mut gathered) = (from, Gathered::default());
+        let (mut at, mut gathered, mut pending) = (from, Gathered::default(), Pending::default());
         for (number, job) in (from.job..).zip(&self.jobs[from.job..last]) {
-            let points = &self.points[at.point..at.point + job.points as usize];
-            gathered.gather(points, inputs);
+            let points = &self.points[at.point..at.point + job.slots()];
+            gathered.gather::<NORMALS>(points, inputs);
             at.point += points.len();
-            let rows = &self.rows[at.row..at.row + job.rows as usize];
-            at.row += rows.len();
-            let slots = at.slot - from.slot..at.slot - from.slot + rows.len();
-            let own = if NORMALS { &mut normals[slots.clone()] } else { &mut [][..] };
-            self.rows::<NORMALS>(&gathered, rows, &mut positions[slots], own);
-            if NORMALS && number < self.corner_jobs {
-                for (normal, &row) in own.iter_mut().zip(rows).filter(|(normal, _)| **normal == [0.0; 3]) {
-                    *normal = self.average(row, points, inputs).to_array();
+            for &row in &self.rows[at.row..at.row + job.rows as usize] {
+                let slot = at.slot - from.slot;
+                let sums = self.row(&gathered, row);
+                positions[slot] = sums.position();
+                if NORMALS {
+                    match sums.cross_product() {
+                        Some(cross) => pending.add(slot, cross, normals),
+                        None if number < self.corner_jobs => {
+                            normals[slot] =
+                                self.average(row, &points[..job.points as usize], inputs).to_array();
+                        }
+                        None => normals[slot] = [0.0; 3],
+                    }
                 }
+                at.slot += 1;
             }
-            at.slot += rows.len();
+            at.row += job.rows as usize;
             for piece in &self.pieces[at.piece..at.piece + job.pieces as usize] {
                 let places = &self.places[at.place..at.place + piece.places as usize];
                 let slots = at.slot - from.slot..at.slot - from.slot + places.len();
@@ -255,42 +348,15 @@ impl Table {
             }
             at.piece += job.pieces as usize;
         }
+        pending.divide(normals);
     }
 
-    /// Places by rows of their own.
+    /// The sums of a place with a row of its own.
     #[inline]
-    fn rows<const NORMALS: bool>(
-        &self,
-        gathered: &Gathered,
-        rows: &[u32],
-        positions: &mut [[f64; 3]],
-        unit: &mut [[f64; 3]],
-    ) {
+    fn row<'a>(&'a self, gathered: &'a Gathered, row: u32) -> Row<'a> {
         let groups = gathered.differences.len();
-        let first = gathered.first.to_array();
-        for (start, rows) in (0..).step_by(LANES).zip(rows.chunks(LANES)) {
-            let [mut s, mut t] = [[[0.0; LANES]; 3]; 2];
-            for (lane, &row) in rows.iter().enumerate() {
-                let weights = &self.weights[row as usize..][..SUMS * groups];
-                let (of_position, of_tangents) = weights.split_at(groups);
-                let difference = gathered.sum(of_position);
-                positions[start + lane] = [0, 1, 2].map(|axis| first[axis] + difference[axis]);
-                if NORMALS {
-                    let (of_first, of_second) = of_tangents.split_at(groups);
-                    let [by_u, by_v] = [gathered.sum(of_first), gathered.sum(of_second)];
-                    for axis in 0..3 {
-                        s[axis][lane] = gathered.scale * by_u[axis];
-                        t[axis][lane] = gathered.scale * by_v[axis];
-                    }
-                }
-            }
-            if NORMALS {
-                let [x, y, z] = normals(&s, &t, gathered.least_square);
-                for (lane, normal) in unit[start..].iter_mut().take(rows.len()).enumerate() {
-                    *normal = [x[lane], y[lane], z[lane]];
-                }
-            }
-        }
+        let (position, tangents) = self.weights[row as usize..][..SUMS * groups].split_at(groups);
+        Row { gathered, position, tangents: tangents.split_at(groups) }
     }
 
     /// Places on a polynomial.
@@ -303,14 +369,13 @@ impl Table {
         positions: &mut [[f64; 3]],
         unit: &mut [[f64; 3]],
     ) {
-        const TOGETHER: usize = 2 * LANES;
         let groups = gathered.differences.len();
         let weights = &self.weights[weights as usize..][..COEFFICIENTS * groups];
         let mut coefficients = [DVec3::ZERO; COEFFICIENTS];
         for (i, coefficient) in coefficients.iter_mut().enumerate() {
             *coefficient = vector(gathered.sum(&weights[i * groups..(i + 1) * groups]));
         }
-        coefficients[0] += gathered.first;
+        coefficients[0] += vector(gathered.first);
         let piece = Quartic::with_scale(coefficients);
         for (start, places) in (0..).step_by(TOGETHER).zip(places.chunks(TOGETHER)) {
             let [mut u, mut v] = [[0.0; TOGETHER]; 2];
@@ -332,12 +397,12 @@ impl Table {
 
     /// What stands for the normal at a control vertex without a tangent plane: the average of the faces' on its side.
     #[cold]
-    fn average(&self, row: u32, points: &[u32], inputs: &Inputs<'_>) -> DVec3 {
+    fn average(&self, row: u32, points: &[u32], inputs: &Inputs) -> DVec3 {
         let Ok(at) = self.sides.binary_search_by_key(&row, |&(row, _)| row) else { return DVec3::ZERO };
         let [first, faces] = self.sides[at].1;
         let Some((&vertex, ring)) = points.split_first() else { return DVec3::ZERO };
-        let centre = inputs.at(vertex);
-        let edge = |slot: u32| inputs.at(ring[slot as usize % ring.len()]) - centre;
+        let centre = input(inputs, vertex);
+        let edge = |slot: u32| input(inputs, ring[slot as usize % ring.len()]) - centre;
         let faces: Vec<[DVec3; 2]> =
             (first..first + faces).map(|slot| [edge(slot), edge(slot + 1)]).collect();
         area_weighted_normal(&faces)

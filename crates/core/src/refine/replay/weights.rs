@@ -3,7 +3,7 @@
 //! The surface is linear in its control points, three of which are put on the axes at a time, all others at the origin: the
 //! coordinates of points, tangents and polynomials' coefficients are their weights then.
 
-use super::table::{COEFFICIENTS, LANES, SUMS};
+use super::table::{COEFFICIENTS, LANES, SUMS, groups};
 use crate::index::{FaceId, VertexId};
 use crate::mesh::{Mesh, Sharpness};
 use crate::patch::bezier_triangle::BezierTriangle;
@@ -44,11 +44,6 @@ pub(super) struct Wanted<'a> {
     pub(super) rows: &'a [Option<u32>],
     /// By regular piece, the number of its block of coefficients.
     pub(super) pieces: &'a [Option<u32>],
-}
-
-/// Groups of weights that points take, but for the first.
-pub(super) fn groups(points: usize) -> usize {
-    points.saturating_sub(1).div_ceil(LANES)
 }
 
 impl<'a> Probe<'a> {
