@@ -20,6 +20,27 @@ pub(crate) fn unit_or_zero(v: DVec3) -> DVec3 {
     if greatest > 0.0 && greatest.is_finite() { (v / greatest).normalize_or_zero() } else { DVec3::ZERO }
 }
 
+/// Comparisons of numbers by one instruction each: what is not a number is not larger, nor smaller, than anything. `f64::max` gives the other
+/// one whichever of two is not a number, which takes five.
+pub(crate) trait Extremes {
+    /// `other` if that is larger.
+    fn larger(self, other: Self) -> Self;
+    /// `other` if that is smaller.
+    fn smaller(self, other: Self) -> Self;
+}
+
+impl Extremes for f64 {
+    #[inline]
+    fn larger(self, other: Self) -> Self {
+        if other > self { other } else { self }
+    }
+
+    #[inline]
+    fn smaller(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+}
+
 /// The length of a box's diagonal, for any size whose length is finite.
 pub(crate) fn diagonal(low: DVec3, high: DVec3) -> f64 {
     let sides = high - low;

@@ -15,6 +15,7 @@ use super::quartic_cell::{
 use crate::patch::Quartic;
 use crate::vector::DVec3;
 use few_parts::{FEW, FEW_DIVISIONS, FewParts};
+use crate::vector::Extremes;
 
 /// Divisions at most.
 pub(crate) const MOST_DIVISIONS: u32 = 6;
@@ -168,9 +169,9 @@ impl<'a> RowBlock<'a> {
         for corner in corners {
             let [a, b, c, d] = jet.third_at(corner);
             let across = d - a + 3.0 * (b - c);
-            let most = a.length_squared().max(d.length_squared()).max(across.length_squared());
-            third = third.max(most);
-            bubble = bubble.max((-0.25 * (a + 2.0 * (b - a)) + (across + d) / 12.0).length_squared());
+            let most = a.length_squared().larger(d.length_squared()).larger(across.length_squared());
+            third = third.larger(most);
+            bubble = bubble.larger((-0.25 * (a + 2.0 * (b - a)) + (across + d) / 12.0).length_squared());
         }
         let [a, b, c, d, e] = *jet.fourth();
         let pairs = [a, e, a - 4.0 * b + 6.0 * c - 4.0 * d + e, c, a - 2.0 * b + c, e - 2.0 * d + c];
@@ -196,7 +197,7 @@ impl<'a> RowBlock<'a> {
             let place = [self.at[0] + s * self.size, self.at[1] + t * self.size];
             let [uu, uv, vv] = self.jet.second_at(place).map(|c| normal.dot(c) * square);
             let height = super::quartic_cell::quadratic_height([uu, uu - 2.0 * uv + vv, vv]);
-            (least, most) = (least.min(height), most.max(height));
+            (least, most) = (least.smaller(height), most.larger(height));
         }
         let levels = |height: f64| {
             let (mut height, mut levels) = (height, 0);
@@ -362,50 +363,50 @@ fn measure(count: usize, parts: &Parts<'_>, rest: &Remainder, target: &RowTarget
         // Heights of the quadratic part.
         let (wa, wc, wb) = (at(&w0), at(&w1), at(&w2));
         let (p, q, s) = (dot(wa, normal), dot(wc, normal), dot(wb, normal));
-        let edges = 0.125 * p.abs().max(q.abs()).max(s.abs());
+        let edges = 0.125 * p.abs().larger(q.abs()).larger(s.abs());
         let (l2, l1, l0) = (p * (q + s - p), s * (p + q - s), q * (p + s - q));
         let total = l0 + l1 + l2;
         let inner = (0.5 * p * q * s / total).abs();
         let is_inside = (l0 * total > 0.0) & (l1 * total > 0.0) & (l2 * total > 0.0);
-        let height = if is_inside { edges.max(inner) } else { edges };
+        let height = if is_inside { edges.larger(inner) } else { edges };
         low[i] = height - rest.height;
         // Tilts.
         let off = |m: &Slices<'_>| {
             let d = minus(at(m), normal);
             dot(d, d)
         };
-        let tilt = off(&m0).max(off(&m1)).max(off(&m2)).sqrt() + ROUNDING;
+        let tilt = off(&m0).larger(off(&m1)).larger(off(&m2)).sqrt() + ROUNDING;
         let chord = tilt + neighbour;
         // Angles.
         let (la, lb, lc) = (dot(a, a), dot(b, b), dot(c, c));
         let (first, second, third) = (dot(a, b), -dot(a, c), dot(b, c));
-        let slope = area / first.max(second).max(third);
+        let slope = area / first.larger(second).larger(third);
         // Beside the edges: the second derivatives outwards, times the edges' lengths.
         let out = [-dot(wa, cross(a, normal)), -dot(wc, cross(c, normal)), dot(wb, cross(b, normal))];
-        let longest = la.max(lb).max(lc);
+        let longest = la.larger(lb).larger(lc);
         let steep = rest.steep * longest.sqrt();
         let ratio = |out: f64, bend: [f64; 3], edge: [f64; 3], square: f64| {
             (0.5 * out.abs() + steep) / (square - 0.5 * dot(bend, edge).abs() - steep)
         };
         let (ra, rc, rb) = (ratio(out[0], wa, a, la), ratio(out[1], wc, c, lc), ratio(out[2], wb, b, lb));
-        let drift_slope = ra.max(rb).max(rc);
+        let drift_slope = ra.larger(rb).larger(rc);
         // Negative where there is no room at all.
         let is_roomy = (ra >= 0.0) & (rb >= 0.0) & (rc >= 0.0);
-        let reach = out[0].max(out[1]).max(out[2]).max(0.0);
-        let drift = 0.125 * (reach * reach / la.min(lb).min(lc)).sqrt() + rest.curve;
+        let reach = out[0].larger(out[1]).larger(out[2]).larger(0.0);
+        let drift = 0.125 * (reach * reach / la.smaller(lb).smaller(lc)).sqrt() + rest.curve;
         // Within the angles at each edge.
         let (first, second, third) = (first.abs(), second.abs(), third.abs());
         let most = share * area;
-        let stays = (ra * first.max(second).max(area) <= most)
-            & (rc * second.max(third).max(area) <= most)
-            & (rb * third.max(first).max(area) <= most);
+        let stays = (ra * first.larger(second).larger(area) <= most)
+            & (rc * second.larger(third).larger(area) <= most)
+            & (rb * third.larger(first).larger(area) <= most);
         // No two points in one place: see `quartic_cell`. Changes of barycentric coordinates times the area.
         let (oa, ob) = (cross(a, normal), cross(b, normal));
         let stretched = |w: [f64; 3]| {
             let (x, y) = (dot(w, oa), dot(w, ob));
             x * x + y * y - x * y
         };
-        let most = stretched(wa).max(stretched(wb)).max(stretched(wc)).sqrt();
+        let most = stretched(wa).larger(stretched(wb)).larger(stretched(wc)).sqrt();
         let stretch = (0.5 * (la + lb + lc)).sqrt();
         let is_apart = most + DIRECTIONS * rest.first * stretch < NEARLY_ONE * area;
         let is_plain = is_roomy & stays & is_apart & (drift_slope <= allowed) & (chord * chord <= SHARPEST);
@@ -434,9 +435,9 @@ impl Found {
         for (i, mark) in marks.iter_mut().enumerate().take(count) {
             let bound = self.bound[i];
             *mark = if bound <= target.distance {
-                extent.tilt = extent.tilt.max(self.tilt[i]);
-                extent.slope = extent.slope.min(self.slope[i]);
-                extent.drift_slope = extent.drift_slope.max(self.drift_slope[i]);
+                extent.tilt = extent.tilt.larger(self.tilt[i]);
+                extent.slope = extent.slope.smaller(self.slope[i]);
+                extent.drift_slope = extent.drift_slope.larger(self.drift_slope[i]);
                 if bound > extent.bound {
                     (extent.bound, worst) = (bound, Some(i));
                 }

@@ -7,6 +7,7 @@ use super::{exceeds, greater};
 use crate::criterion::Apart;
 use crate::patch::bezier_triangle::{BezierTriangle, EDGES, INNER};
 use crate::vector::DVec3;
+use crate::vector::Extremes;
 
 /// For each edge of a piece the edge of the triangle that it is part of, or [`INSIDE`].
 pub(crate) type Borders = [u8; 3];
@@ -364,14 +365,14 @@ fn attained(heights: &[f64; SEEN]) -> f64 {
     for &[a, b, c, d, e] in &EDGES {
         let [a, b, c, d, e] = [heights[a], heights[b], heights[c], heights[d], heights[e]];
         let (ends, seconds) = (a + e, b + d);
-        greatest = greatest.max((ends + 4.0 * seconds + 6.0 * c).abs() / 16.0);
+        greatest = greatest.larger((ends + 4.0 * seconds + 6.0 * c).abs() / 16.0);
         outer += a + 4.0 * seconds;
         halves += 6.0 * c;
     }
     for at in INNER {
         inner += 12.0 * heights[at];
     }
-    greatest.max((outer + halves + inner).abs() / 81.0)
+    greatest.larger((outer + halves + inner).abs() / 81.0)
 }
 
 #[cfg(test)]

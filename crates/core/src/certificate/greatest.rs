@@ -7,6 +7,7 @@ use super::deviation::Deviation;
 use super::exceeds;
 use super::triangle_frame::TriangleFrame;
 use crate::vector::DVec3;
+use crate::vector::Extremes;
 
 /// Points that are seen together: those of a net, rounded up to whole registers.
 pub(super) const SEEN: usize = 16;
@@ -91,8 +92,8 @@ pub(super) struct Greatest {
 impl Greatest {
     #[inline]
     fn stands(&mut self, height: f64, side: f64) {
-        self.side = self.side.max(side.abs());
-        self.squared = self.squared.max(height * height + side * side);
+        self.side = self.side.larger(side.abs());
+        self.squared = self.squared.larger(height * height + side * side);
     }
 
     /// Points of the surface, one bit each; the heights of all points that are seen count.
@@ -108,10 +109,10 @@ impl Greatest {
                 let outside = seen.outside[edge][at];
                 if exceeds(outside, frame.on_edge()) {
                     let room = frame.room_from_first(edge, seen.offset(at));
-                    sides[at] = outside.max(sides[at]);
+                    sides[at] = outside.larger(sides[at]);
                     beside |= 1 << at;
-                    self.drift = self.drift.max(outside);
-                    self.slopes[edge] = self.slopes[edge].max(outside / room);
+                    self.drift = self.drift.larger(outside);
+                    self.slopes[edge] = self.slopes[edge].larger(outside / room);
                     self.beyond |= exceeds(0.0, room);
                 }
             }
@@ -126,8 +127,8 @@ impl Greatest {
         let mut heights = seen.heights;
         heights.iter_mut().for_each(|height| *height = height.abs());
         let height = most(&heights);
-        self.height = self.height.max(height);
-        self.squared = self.squared.max(height * height);
+        self.height = self.height.larger(height);
+        self.squared = self.squared.larger(height * height);
     }
 
     /// Points of the curve over an edge, by their numbers, some perhaps more than once; their heights are not taken.

@@ -40,6 +40,7 @@ use super::deviation::Deviation;
 use super::triangle_frame::TriangleFrame;
 use crate::patch::Quartic;
 use crate::vector::DVec3;
+use crate::vector::Extremes;
 pub(crate) use heights::{Heights, quadratic_height};
 
 /// Bounds Σ λₐλ_b|λ_b − λₐ|/12 over the triangle, which is 0.1176/12 at most: a polynomial wherever the coordinates are in
@@ -122,8 +123,8 @@ impl QuarticJet {
         // Third derivatives are linear: greatest in a corner.
         let (mut at_corners, mut sizes) = ([0.0; 4], [0.0; 5]);
         for (most, &[c, u, v]) in at_corners.iter_mut().zip(&jet.third) {
-            let ends = (c + u).length_squared().max((c + v).length_squared());
-            *most = c.length_squared().max(ends).sqrt();
+            let ends = (c + u).length_squared().larger((c + v).length_squared());
+            *most = c.length_squared().larger(ends).sqrt();
         }
         sizes.iter_mut().zip(&jet.fourth).for_each(|(size, c): (&mut f64, &DVec3)| *size = c.length());
         Self {
@@ -153,7 +154,7 @@ impl QuarticJet {
         for edge in 0..3 {
             let (from, to) = (corners[edge], corners[(edge + 1) % 3]);
             let direction = minus(to, from);
-            reach = reach.max(direction[0].abs()).max(direction[1].abs());
+            reach = reach.larger(direction[0].abs()).larger(direction[1].abs());
             bends[edge] = self.bend(halfway(from, to), direction);
         }
         let (third, fourth) = self.most(reach);
@@ -171,12 +172,12 @@ impl QuarticJet {
             let swing = (0.5 * outward.abs() + steep) / room;
             is_plain &= room > 0.0 && swing <= frame.slope_at(edge);
             let off = 0.125 * outward.abs() + rest;
-            found.side = found.side.max(off);
+            found.side = found.side.larger(off);
             if open[edge] {
-                found.open = found.open.max(off);
+                found.open = found.open.larger(off);
             } else {
-                found.drift = found.drift.max((0.125 * outward + rest).max(0.0));
-                found.slopes[edge] = (0.5 * outward + steep).max(0.0) / room;
+                found.drift = found.drift.larger((0.125 * outward + rest).larger(0.0));
+                found.slopes[edge] = (0.5 * outward + steep).larger(0.0) / room;
             }
         }
         if !is_plain {

@@ -3,6 +3,7 @@
 use super::exceeds;
 use crate::geometry::closest_to_origin;
 use crate::vector::{DVec3, unit_or_zero};
+use crate::vector::Extremes;
 
 /// Triangles with a smaller sine of the angle between their first edges have no plane to speak of: rounding turns it by
 /// up to 1e-16 over this.
@@ -49,7 +50,7 @@ pub(crate) struct Beside {
 pub(crate) fn least_slope([a, b, c]: [DVec3; 3]) -> f64 {
     let edges = [b - a, c - b, a - c];
     let product = |corner: usize| -edges[corner].dot(edges[(corner + 2) % 3]);
-    edges[0].cross(edges[1]).length() / product(0).max(product(1)).max(product(2))
+    edges[0].cross(edges[1]).length() / product(0).larger(product(1)).larger(product(2))
 }
 
 impl TriangleFrame {
@@ -99,7 +100,7 @@ impl TriangleFrame {
             starts: [0, 1, 2].map(|edge| along[edge].dot(from_first[edge])),
             // What is not a number allows nothing.
             tangents: cosines.map(|cosine| (area / cosine.abs()).max(0.0)),
-            least_slope: area / cosines[0].max(cosines[1]).max(cosines[2]),
+            least_slope: area / cosines[0].larger(cosines[1]).larger(cosines[2]),
         }
     }
 

@@ -2,6 +2,7 @@
 //! its greatest size: the parts q, c and r of [`super`], or its coefficients in Bernstein's basis, halved as often as it takes.
 
 use super::{CUBIC, Cell, Domain, Jet, QUARTIC, minus, quadratic};
+use crate::vector::Extremes;
 
 /// The heights of a quartic over the plane of its corners: coefficients of sⁱrʲ, s and r running from the first corner
 /// to the second and to the third.
@@ -55,7 +56,7 @@ impl Heights {
     /// The greatest height lies between these.
     pub(crate) fn range(&self) -> (f64, f64) {
         let (quadratic, rest) = (quadratic_height(self.bends()), self.rest());
-        ((quadratic - rest).max(0.0), quadratic + rest)
+        ((quadratic - rest).larger(0.0), quadratic + rest)
     }
 
     /// The least and the greatest value of the quadratic part, and how far off the heights may be from it at most.
@@ -68,7 +69,7 @@ impl Heights {
     /// may be off at most.
     pub(crate) fn lifted_range(&self, lifts: [f64; 3]) -> (f64, f64) {
         let (low, high) = quadratic_range(self.bends(), lifts);
-        (high.max(-low), self.rest())
+        (high.larger(-low), self.rest())
     }
 
     /// Second derivatives along the edges in their middles: from the first corner to the second, on to the third, and back.
@@ -94,7 +95,7 @@ impl Heights {
         ];
         let across = d - a + 3.0 * (b - c);
         let bubble = -0.25 * (a + 2.0 * (b - a)) + (across + d) / 12.0;
-        let cubic = CUBIC * a.abs().max(d.abs()).max(across.abs()) + bubble.abs() / 27.0;
+        let cubic = CUBIC * a.abs().larger(d.abs()).larger(across.abs()) + bubble.abs() / 27.0;
         // Fourth derivatives along pairs of edges.
         let pairs = [
             24.0 * ssss,
@@ -104,7 +105,7 @@ impl Heights {
             24.0 * ssss - 12.0 * sssr + 4.0 * ssrr,
             24.0 * rrrr - 12.0 * srrr + 4.0 * ssrr,
         ];
-        cubic + QUARTIC * pairs.iter().fold(0.0f64, |most, x| most.max(x.abs()))
+        cubic + QUARTIC * pairs.iter().fold(0.0f64, |most, x| most.larger(x.abs()))
     }
 
     /// A bound for the greatest height by Bernstein coefficients over the parts that `levels` divisions into four give; parts that
@@ -124,7 +125,7 @@ impl Heights {
             let across = (((rrrr * r + rrr) * r + rr) * r - by_r) * r;
             let mixed = (sr + (ssr + sssr * s) * s + (srr + srrr * r) * r + ssrr * s * r) * s * r;
             let height = along + across + mixed;
-            (low, high) = (low.min(height), high.max(height));
+            (low, high) = (low.smaller(height), high.larger(height));
         }
         (low, high)
     }
@@ -193,11 +194,11 @@ const ROWS: [usize; 5] = [0, 5, 9, 12, 14];
 
 /// The greatest size of a coefficient after so many halvings, but for parts with none above what is good enough.
 pub(super) fn halved(net: &[f64; 15], halvings: u32, enough: f64) -> f64 {
-    let most = net.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    let most = net.iter().fold(0.0f64, |most, x| most.larger(x.abs()));
     if halvings == 0 || most <= enough {
         return most;
     }
-    halves(net).iter().fold(0.0, |most, half| most.max(halved(half, halvings - 1, enough)))
+    halves(net).iter().fold(0.0, |most, half| most.larger(halved(half, halvings - 1, enough)))
 }
 
 /// The halves of a net, each with the middle of its first edge between the corner that it keeps and the third, so that
@@ -231,8 +232,8 @@ fn halved_row<const K: usize>(net: &[f64; 15], halves: &mut [[f64; 15]; 2]) {
 /// The least and the greatest value of a quadratic, by its second derivatives along the edges as in [`quadratic_height`] and its
 /// values at the corners.
 fn quadratic_range([p, q, s]: [f64; 3], [a, b, c]: [f64; 3]) -> (f64, f64) {
-    let (mut low, mut high) = (a.min(b).min(c), a.max(b).max(c));
-    let mut take = |value: f64| (low, high) = (low.min(value), high.max(value));
+    let (mut low, mut high) = (a.smaller(b).smaller(c), a.larger(b).larger(c));
+    let mut take = |value: f64| (low, high) = (low.smaller(value), high.larger(value));
     for (bend, from, to) in [(p, a, b), (q, b, c), (s, c, a)] {
         let rise = to - from;
         // Where the derivative along the edge vanishes.
@@ -257,12 +258,12 @@ fn quadratic_range([p, q, s]: [f64; 3], [a, b, c]: [f64; 3]) -> (f64, f64) {
 /// The greatest height of a quadratic that is 0 at the corners, by its second derivatives along the edges from the first
 /// corner to the second, on to the third, and back.
 pub(crate) fn quadratic_height([p, q, s]: [f64; 3]) -> f64 {
-    let edges = 0.125 * p.abs().max(q.abs()).max(s.abs());
+    let edges = 0.125 * p.abs().larger(q.abs()).larger(s.abs());
     // Where the derivatives along two edges vanish.
     let (l2, l1, l0) = (p * (q + s - p), s * (p + q - s), q * (p + s - q));
     let total = l0 + l1 + l2;
     let is_inside = l0 * total > 0.0 && l1 * total > 0.0 && l2 * total > 0.0;
-    if is_inside { edges.max((0.5 * p * q * s / total).abs()) } else { edges }
+    if is_inside { edges.larger((0.5 * p * q * s / total).abs()) } else { edges }
 }
 
 /// A form of second degree with one direction put in.

@@ -18,6 +18,7 @@ use crate::criterion::Criteria;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{LimitPoint, Patch, Rules};
 use crate::vector::DVec3;
+use crate::vector::Extremes;
 
 /// Halvings of a net before a triangle is given up: the bound is within some per cent of the truth then.
 pub(super) const HALVINGS: usize = 2;
@@ -94,9 +95,9 @@ impl Extent {
         Self { tilt: 0.0, slope: f64::INFINITY, drift_slope: 0.0, bound: 0.0, worst: None };
 
     pub(super) fn add(&mut self, other: &Self) {
-        self.tilt = self.tilt.max(other.tilt);
-        self.slope = self.slope.min(other.slope);
-        self.drift_slope = self.drift_slope.max(other.drift_slope);
+        self.tilt = self.tilt.larger(other.tilt);
+        self.slope = self.slope.smaller(other.slope);
+        self.drift_slope = self.drift_slope.larger(other.drift_slope);
         if other.bound > self.bound {
             (self.bound, self.worst) = (other.bound, other.worst);
         }
