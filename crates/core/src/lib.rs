@@ -79,7 +79,7 @@ mod vector;
 
 pub use facing::{Facing, NormalCone};
 pub use index::{FaceId, HalfEdgeId, VertexId};
-pub use limit_surface::{Curvature, Derivatives, LimitSurface, SurfacePoint};
+pub use limit_surface::{BarycentricError, Curvature, Derivatives, LimitSurface, SurfacePoint, barycentric};
 pub use mesh::{Mesh, PolygonSoup, Triangles};
 pub use proximity::{Closest, Membership, Proximity, ProximityError};
 pub use rays::{Crossing, Hit, Ray, RayCaster, RayError, RayOptions};

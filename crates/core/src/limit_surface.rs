@@ -5,12 +5,14 @@
 //! 1998: around an irregular vertex the regular parts shrink by half with each level), which is evaluated; at corners the scheme's
 //! limit stencils are. Places that share a piece share its refinement.
 
+mod barycentric;
 mod derivatives;
 mod looks;
 mod places;
 mod size;
 mod weights;
 
+pub use barycentric::{BarycentricError, barycentric};
 pub use derivatives::{Curvature, Derivatives};
 
 use crate::certificate::Sheet;
@@ -90,7 +92,8 @@ impl<'a> LimitSurface<'a> {
     }
 
     /// The point over a place of a control face, given by barycentric coordinates; the second and third count, cut off so that none
-    /// is below 0 and their sum not above 1. A face that there is not has its points at zero.
+    /// is below 0 and their sum not above 1: [`barycentric`] gives them for weights that were written with few digits. A face that there is
+    /// not has its points at zero.
     pub fn at(&self, face: FaceId, barycentric: [f64; 3]) -> SurfacePoint {
         self.over(face, &[barycentric]).pop().unwrap_or(NOWHERE)
     }

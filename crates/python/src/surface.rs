@@ -1,7 +1,7 @@
 //! Points, derivatives and curvature of the limit surface at places of its control faces; which way it looks over whole faces.
 
 use limitmesh::criterion::Viewpoint;
-use limitmesh::{FaceId, Facing, LimitSurface, PolygonSoup};
+use limitmesh::{FaceId, Facing, LimitSurface, PolygonSoup, barycentric};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -43,12 +43,12 @@ pub(crate) fn limit_surface<'py>(
     mesh: MeshIn<'py>,
     control: ControlOptions,
     faces: PyReadonlyArray1<'py, i64>,
-    barycentric: PyReadonlyArray2<'py, f64>,
+    weights: PyReadonlyArray2<'py, f64>,
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Told<'py>> {
     let (soup, recipe) = (mesh.soup()?, Recipe::new(control)?);
-    let places = places(faces.as_slice()?, barycentric.as_slice()?, soup.faces.len())?;
+    let places = places(faces.as_slice()?, weights.as_slice()?, soup.faces.len())?;
     let found = run(py, threads, progress, move |observer| {
         let corners = triangles(&soup);
         let control = recipe.control(soup, observer)?;
@@ -87,7 +87,10 @@ pub(crate) fn limit_surface<'py>(
 
 fn places(faces: &[i64], weights: &[f64], count: usize) -> PyResult<Vec<(FaceId, [f64; 3])>> {
     let place = |(row, (&face, weights)): (usize, (&i64, &[f64; 3]))| match u32::try_from(face) {
-        Ok(own) if (own as usize) < count => Ok((FaceId(own), *weights)),
+        Ok(own) if (own as usize) < count => match barycentric(*weights) {
+            Ok(weights) => Ok((FaceId(own), weights)),
+            Err(why) => Err(OptionError::new_err(format!("barycentric[{row}]: {why}"))),
+        },
         _ => Err(OptionError::new_err(format!(
             "at[{row}] names face {face}, expected 0 to {}",
             count.max(1) - 1

@@ -51,8 +51,9 @@ def test_irregular_vertices_have_limits_and_no_curvature():
         ([0, -1], [[1, 0, 0]] * 2, r"at\[1\] names face -1"),
         ([0.5], [[1, 0, 0]], "whole numbers"),
         ([0], [[1, 0]], "barycentric has the shape"),
-        ([0, 1], [[1, 0, 0], [0.5, 0.6, 0]], r"barycentric\[1\]"),
-        ([0], [[1.5, -0.5, 0]], r"barycentric\[0\]"),
+        ([0, 1], [[1, 0, 0], [0.5, 0.6, 0]], r"barycentric\[1\]: the weights add up to 1\.1, expected 1"),
+        ([0], [[0.333, 0.333, 0.333]], r"barycentric\[0\]: the weights add up to 0\.999"),
+        ([0], [[1.5, -0.5, 0]], r"barycentric\[0\]: the weight -0\.5 is below 0"),
         ([0], [[np.nan, 0.5, 0.5]], r"barycentric\[0\]"),
         ([0], [["a", 0, 0]], "barycentric is no array"),
     ],
@@ -60,6 +61,15 @@ def test_irregular_vertices_have_limits_and_no_curvature():
 def test_places_that_are_none_are_errors(at, barycentric, words):
     with pytest.raises(limitmesh.OptionError, match=words):
         limitmesh.limit_surface(OCTAHEDRON, FACES, at=at, barycentric=barycentric)
+
+
+def test_weights_with_few_digits_are_the_place_that_was_meant():
+    few = [[0.333333] * 3, [0.3333] * 3, [0.5, 0.5 + 1e-9, -1e-9]]
+    found = limitmesh.limit_surface(OCTAHEDRON, FACES, at=[0, 0, 4], barycentric=few)
+    meant = limitmesh.limit_surface(OCTAHEDRON, FACES, at=[0, 0, 4], barycentric=[[1 / 3] * 3] * 2 + [[0.5, 0.5, 0]])
+    np.testing.assert_allclose(found.positions, meant.positions, atol=1e-8)
+    np.testing.assert_allclose(found.gaussian, meant.gaussian, rtol=1e-7)
+    np.testing.assert_allclose(found.positions[0], found.positions[1], atol=1e-15)
 
 
 def test_faces_that_are_repaired_are_refused():

@@ -19,8 +19,8 @@ Examples:
 /// Say where the limit surface is over places of its control faces, and how it bends there
 ///
 /// Faces are the triangles of the control mesh, counted from 0 as in the file where that has triangles that need no repair; a
-/// place is given by the weights of the three corners, which add up to 1. The limit surface itself is evaluated, not a mesh
-/// that stands for it. Derivatives are by the weights of the second (u) and the third corner (v). --crease-angle and --boundary may
+/// place is given by the weights of the three corners, which add up to 1; where they do so within 0.0002, as 0.3333 three times, they
+/// are divided by their sum. The limit surface itself is evaluated, not a mesh that stands for it. Derivatives are by the weights of the second (u) and the third corner (v). --crease-angle and --boundary may
 /// divide faces at concave corners, which are numbered anew then; --concave-corners as-tagged leaves them. Curvature is in 1 / unit (Gaussian: 1 / unit²), below 0 on convex places whose normals point outwards; there
 /// is none at irregular vertices, nor for schemes other than loop and loop-warren.
 #[derive(Args, Debug)]
@@ -92,9 +92,6 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// How far the sum of weights may be from 1, where they are written with few digits.
-const ROUNDING: f64 = 1e-6;
-
 impl FromStr for Place {
     type Err = String;
 
@@ -111,17 +108,7 @@ impl FromStr for Place {
         let face = face
             .parse()
             .map_err(|_| format!("'{}' is not the number of a face, counted from 0", shortened(face)))?;
-        if let Some(weight) = weights.iter().find(|weight| **weight < -ROUNDING) {
-            return Err(format!(
-                "the weight {weight:e} in '{text}' is below 0: the place is not on the face"
-            ));
-        }
-        let sum: f64 = weights.iter().sum();
-        if (sum - 1.0).abs() > ROUNDING {
-            return Err(format!(
-                "the weights in '{text}' add up to {sum:e}, 1 is expected (to {ROUNDING:e})"
-            ));
-        }
-        Ok(Self { face, weights: weights.map(|weight| weight.max(0.0)) })
+        let weights = limitmesh::barycentric(weights).map_err(|why| format!("'{text}': {why}"))?;
+        Ok(Self { face, weights })
     }
 }

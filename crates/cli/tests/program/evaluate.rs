@@ -45,6 +45,20 @@ fn places_of_an_octahedron() {
     assert!(text.contains("0.326") && text.contains("Gaussian"), "{text}");
 }
 
+/// People write thirds with as many digits as they like.
+#[test]
+fn weights_with_few_digits_are_the_place_that_was_meant() {
+    let folder = folder();
+    let control = file(&folder, "octahedron.obj", OCTAHEDRON);
+    let places = file(&folder, "places.txt", "7 0.3333 0.3333 0.3333\n");
+    let command = "evaluate {} --at 7,0.333333,0.333333,0.333333 --at {} --json";
+    let found = run(command, &[&control, &places]).expect(0).json();
+    for place in found.as_array().expect("a list") {
+        assert_eq!(place["barycentric"], serde_json::json!([1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0]));
+        near(&place["curvature"]["gaussian"], 3.848001180091);
+    }
+}
+
 #[test]
 fn sharp_edges_have_a_normal_on_each_side() {
     // The middle of an edge of a cube, seen from both of its faces.
@@ -72,8 +86,11 @@ fn places_that_are_none_are_errors() {
     run("evaluate {} --at 8,1,0,0", &[&control])
         .expect(1)
         .saying("no face 8: the control mesh has 8 triangles");
-    run("evaluate {} --at 0,0.5,0.5,0.5", &[&control]).expect(2).saying("add up to 1.5e0");
-    run("evaluate {} --at 0,1.5,-0.5,0", &[&control]).expect(2).saying("-5e-1");
+    run("evaluate {} --at 0,0.5,0.5,0.5", &[&control])
+        .expect(2)
+        .saying("'0,0.5,0.5,0.5': the weights add up to 1.5,");
+    run("evaluate {} --at 0,0.333,0.333,0.333", &[&control]).expect(2).saying("add up to 0.999");
+    run("evaluate {} --at 0,1.5,-0.5,0", &[&control]).expect(2).saying("the weight -0.5 ");
     run("evaluate {} --at 0,1,0", &[&control]).expect(2).saying("2 weights");
     run("evaluate {} --at {}", &[&control, &bad]).expect(1).saying("line 2: 2 weights");
     run("evaluate {} --at {}", &[&control, &empty]).expect(1).saying("no places");

@@ -135,7 +135,7 @@ def limit_surface(
     mesh: Any,
     control: dict[str, Any],
     faces: npt.NDArray[np.int64],
-    barycentric: npt.NDArray[np.float64],
+    weights: npt.NDArray[np.float64],
     threads: int,
     progress: _Callback,
 ) -> tuple[
