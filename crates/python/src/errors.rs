@@ -107,6 +107,7 @@ impl From<Cancelled> for Failure {
 impl From<FrontError> for Failure {
     fn from(error: FrontError) -> Self {
         match error {
+            FrontError::Cancelled(_) => Self::Cancelled,
             FrontError::Limit(error) => error.into(),
             FrontError::Demand(error) => error.into(),
             FrontError::Mesh(error) => error.into(),

@@ -1,14 +1,16 @@
 //! A front that Python keeps: a thread of its own has it and the mesh that it borrows, and answers one demand after the other.
 //!
-//! Threads do not live on in a forked process, so they end before Python forks, and where somebody interrupts an update its thread is
-//! left to itself. The next update then begins with a fresh front, and names all there is as changed: what a front is for a demand does
-//! not depend on those before.
+//! Threads do not live on in a forked process, so they end before Python forks. An update that somebody interrupts leaves a front
+//! between two demands, which goes on from there with the next one; a thread that does not stop at once is left to itself. In all these
+//! cases the next update names all there is as changed, and may begin with a fresh front: what a front is for a demand does not depend on
+//! those before.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use limitmesh::Mesh;
-use limitmesh::front::{Demand, Front as CoreFront, FrontError};
+use limitmesh::front::{Demand, Front as CoreFront, FrontError, Measure};
+use limitmesh::progress::Observer;
 use limitmesh::scheme::Scheme;
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyRuntimeError;
@@ -16,19 +18,21 @@ use pyo3::prelude::*;
 
 use crate::control::Recipe;
 use crate::errors::Failure;
-use crate::options::{CameraIn, ControlOptions, Extent, camera};
+use crate::options::{CameraIn, ControlOptions, Extent, camera, front_levels};
 use crate::pool::Pool;
 use crate::run::{ends, run};
 use crate::soup::MeshIn;
 use crate::tell;
 
 /// What the thread of a front is given.
-type Job = Box<dyn FnOnce(Result<&mut CoreFront<'_>, FrontError>) + Send>;
+type Job = Box<dyn FnOnce(&mut Slot<'_>) + Send>;
 
 /// The thread of a front that waits for its next job, and where to send that.
 struct Worker {
     jobs: Sender<Job>,
     pool: Pool,
+    /// Whether Python knows what the last job left.
+    is_told: bool,
 }
 
 impl Worker {
@@ -36,7 +40,7 @@ impl Worker {
         let pool = Pool::new(threads)?;
         let (jobs, received) = channel();
         pool.start(move || serve(&control, scheme, &received));
-        Ok(Self { jobs, pool })
+        Ok(Self { jobs, pool, is_told: false })
     }
 
     fn end(self) {
@@ -47,9 +51,41 @@ impl Worker {
 
 /// Does jobs until nobody can send any more.
 fn serve(control: &Mesh, scheme: &'static dyn Scheme, jobs: &Receiver<Job>) {
-    let mut front = CoreFront::new(control, scheme);
+    let mut slot = Slot { control, scheme, front: None };
     for job in jobs {
-        job(front.as_mut().map_err(|why| why.clone()));
+        job(&mut slot);
+    }
+}
+
+/// Where the thread of a front has it, once a job has made it.
+struct Slot<'a> {
+    control: &'a Mesh,
+    scheme: &'static dyn Scheme,
+    front: Option<CoreFront<'a>>,
+}
+
+impl<'a> Slot<'a> {
+    /// The front for a demand; without one, the control mesh's own triangles if it is fresh.
+    ///
+    /// # Errors
+    /// The front's; one that was cancelled goes on from where it is, any other failure leaves none.
+    fn updated(
+        &mut self,
+        demand: Option<&Demand>,
+        observer: &mut Observer<'_>,
+    ) -> Result<&CoreFront<'a>, FrontError> {
+        let mut front = match self.front.take() {
+            Some(front) => front,
+            None => CoreFront::measured_by_observed(self.control, self.scheme, Measure::Distance, observer)?,
+        };
+        let done = demand.map_or(Ok(()), |demand| front.update_observed(demand, observer).map(drop));
+        match done {
+            Ok(()) => Ok(self.front.insert(front)),
+            Err(why) => {
+                self.front = matches!(why, FrontError::Cancelled(_)).then_some(front);
+                Err(why)
+            }
+        }
     }
 }
 
@@ -90,8 +126,7 @@ impl DemandIn {
             (None, tolerance) => Demand::tolerance(tolerance.map_or(0.0, |length| length.of(diagonal))),
         };
         let demand = self.triangles.map_or(demand.clone(), |most| demand.triangles(most));
-        let levels = self.max_levels.map(|levels| levels.min(u32::MAX as usize) as u32);
-        let demand = levels.map_or(demand.clone(), |levels| demand.max_levels(levels));
+        let demand = demand.max_levels(front_levels(self.max_levels)?);
         demand.check()?;
         Ok(demand)
     }
@@ -132,12 +167,13 @@ struct News {
 }
 
 impl News {
-    fn of(front: &CoreFront<'_>, is_fresh: bool) -> Self {
+    /// Those of a front of which Python knows what it was before; else all there is.
+    fn of(front: &CoreFront<'_>, is_known: bool) -> Self {
         let (positions, triangles) = (front.positions(), front.triangles());
         let changes = front.changes();
-        let (vertices, slots) = match is_fresh {
-            true => ((0..positions.len() as u32).collect(), (0..triangles.len() as u32).collect()),
-            false => (changes.vertices.clone(), changes.triangles.clone()),
+        let (vertices, slots) = match is_known {
+            true => (changes.vertices.clone(), changes.triangles.clone()),
+            false => ((0..positions.len() as u32).collect(), (0..triangles.len() as u32).collect()),
         };
         Self {
             counts: [positions.len(), triangles.len()],
@@ -179,34 +215,35 @@ impl Front {
     }
 
     /// Brings the front to a demand; without one, to the control mesh's own triangles if it is fresh.
-    fn update<'py>(&mut self, py: Python<'py>, demand: Option<DemandIn>) -> PyResult<Told<'py>> {
+    fn update<'py>(
+        &mut self,
+        py: Python<'py>,
+        demand: Option<DemandIn>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Told<'py>> {
         let demand = demand.map(|demand| demand.demand(self.diagonal)).transpose()?;
-        let (worker, is_fresh) = match taken(&self.place) {
-            Some(worker) if worker.pool.is_here() => (worker, false),
+        let mut worker = match taken(&self.place) {
+            Some(worker) if worker.pool.is_here() => worker,
             other => {
                 // The copy of a thread in a forked process is none.
                 if let Some(copy) = other {
                     copy.end();
                 }
-                (Worker::start(Arc::clone(&self.control), self.scheme, self.threads)?, true)
+                Worker::start(Arc::clone(&self.control), self.scheme, self.threads)?
             }
         };
-        let (end, caller) = ends(None);
-        let job: Job = Box::new(move |front| {
-            end.finish(|_| {
-                let front = front?;
-                if let Some(demand) = demand {
-                    front.update(&demand)?;
-                }
-                Ok(News::of(front, is_fresh))
-            });
+        let (end, caller) = ends(progress);
+        let is_told = worker.is_told;
+        let job: Job = Box::new(move |slot| {
+            end.finish(|observer| Ok(News::of(slot.updated(demand.as_ref(), observer)?, is_told)));
         });
         worker.jobs.send(job).map_err(|_| PyRuntimeError::new_err("the front's thread has ended"))?;
         let (result, is_idle) = caller.wait(py);
-        let news = result??;
+        worker.is_told = matches!(result, Ok(Ok(_)));
         if is_idle {
             *self.place.lock().unwrap_or_else(PoisonError::into_inner) = Some(worker);
         }
+        let news = result??;
         Ok((
             news.counts[0],
             PyArray1::from_vec(py, news.vertices),

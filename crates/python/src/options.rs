@@ -1,12 +1,13 @@
 //! Options as the Python half hands them over, complete, and what they are for the library.
 
 use limitmesh::criterion::{Camera, View, Viewpoint};
+use limitmesh::front::MOST_LEVELS;
 use limitmesh::mesh::{BoundaryRule, BuildOptions, Weld};
 use limitmesh::refine::ExactOptions;
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use pyo3::prelude::*;
 
-use crate::errors::OptionError;
+use crate::errors::{Failure, OptionError};
 
 /// How a control mesh comes of a mesh, and its limit surface of that.
 #[derive(FromPyObject, Clone)]
@@ -78,6 +79,18 @@ pub(crate) type CameraIn = ([f64; 3], [f64; 3], [f64; 3], f64, u32, u32);
 /// As the library has it.
 pub(crate) fn camera(&(eye, target, up, fov_degrees, width, height): &CameraIn) -> Camera {
     Camera { eye, target, up, fov_degrees, width, height }
+}
+
+/// Levels that a front may have at most: those asked for, or as many as there can be.
+///
+/// # Errors
+/// There cannot be so many.
+pub(crate) fn front_levels(max_levels: Option<usize>) -> Result<u32, Failure> {
+    let Some(asked) = max_levels else { return Ok(MOST_LEVELS) };
+    match u32::try_from(asked) {
+        Ok(levels) if levels <= MOST_LEVELS => Ok(levels),
+        _ => Err(Failure::Option(format!("max_levels is {asked}, expected at most {MOST_LEVELS}"))),
+    }
 }
 
 /// Goals and caps of a refinement.

@@ -132,6 +132,64 @@ def test_interrupts_end_an_update_and_the_next_begins_anew():
     assert done.returncode == 0 and done.stdout.split() == ["interrupted", "True"], done.stderr
 
 
+class Enough(Exception):
+    pass
+
+
+def at_call(count: int, told: list[limitmesh.Progress]):
+    def progress(at: limitmesh.Progress) -> None:
+        told.append(at)
+        if len(told) == count:
+            raise Enough
+
+    return progress
+
+
+@pytest.mark.parametrize(
+    "long",
+    [
+        {"tolerance": 0.0, "triangles": 500_000},
+        {"tolerance": "0.0002%", "triangles": 3_000_000},
+        {"cameras": limitmesh.Camera((0, 0, 3)), "pixels": 0.01, "triangles": 800_000},
+    ],
+)
+def test_what_progress_raises_ends_an_update_and_the_next_is_a_fresh_front(long):
+    front = limitmesh.Front("builtin:bunny")
+    front.update(tolerance="1%")
+    vertices, faces, bound = front.vertices, front.faces, front.bound
+    for count in (1, 3):
+        told: list[limitmesh.Progress] = []
+        with pytest.raises(Enough):
+            front.update(**long, progress=at_call(count, told))
+        assert len(told) == count and all(at.stage == "refining" and at.triangles > 0 for at in told)
+        # It is as it was.
+        assert front.vertices is vertices and front.faces is faces and front.bound == bound
+    all_rows = []
+    for demand in ({"tolerance": "0.5%"}, {"triangles": 9000}, {"tolerance": "0.5%"}):
+        changes = front.update(**demand)
+        all_rows.append(len(changes.vertices) == len(front.vertices) and len(changes.faces) == len(front.faces))
+        fresh = limitmesh.Front("builtin:bunny")
+        fresh.update(**demand)
+        assert surface(front) == surface(fresh)
+        assert (front.bound, front.levels) == (fresh.bound, fresh.levels)
+    assert all_rows == [True, False, False]
+
+
+def test_the_beginning_of_a_front_ends_when_progress_raises():
+    mesh = limitmesh.refine("builtin:bunny", method="uniform", levels=4, origins=False)
+    told: list[limitmesh.Progress] = []
+    with pytest.raises(Enough):
+        limitmesh.Front(mesh, progress=at_call(2, told))
+    assert len(told) == 2
+
+
+def test_short_updates_need_not_tell():
+    told: list[limitmesh.Progress] = []
+    front = limitmesh.Front(OCTAHEDRON, FACES, progress=told.append)
+    front.update(tolerance=0.01, progress=told.append)
+    assert front.bound <= 0.01 and all(isinstance(at, limitmesh.Progress) for at in told)
+
+
 def in_a_child(front: limitmesh.Front) -> int:
     front.update(tolerance=0.001)
     return len(front.faces)
@@ -199,6 +257,9 @@ def test_two_threads_at_one_front_are_told():
         ({"cameras": limitmesh.Camera((0, 0, 0))}, "eye"),
         ({"triangles": 0}, "triangles is 0"),
         ({"max_levels": -1, "tolerance": 1}, "max_levels is -1"),
+        ({"max_levels": 31, "tolerance": 1}, "max_levels is 31, expected at most 30"),
+        ({"max_levels": 1e18, "tolerance": 1}, "expected at most 30"),
+        ({"progress": 5, "tolerance": 1}, "progress is 5, expected a function"),
     ],
 )
 def test_demands_that_are_none(options, words):

@@ -27,6 +27,8 @@ def frames() -> tuple[list[np.ndarray], np.ndarray]:
 
 # Each takes many seconds.
 LONG = {
+    "front": lambda **how: limitmesh.Front("builtin:bunny").update(tolerance=0.0, triangles=500_000, **how),
+    "planarity": lambda **how: limitmesh.refine("builtin:bunny", method="planarity", angle=0.05, max_triangles=500_000, **how),
     "intersect": lambda **how: limitmesh.intersect(np.zeros(3), DIRECTIONS, "builtin:bunny", **how),
     "facing": lambda **how: limitmesh.facing(*fine(), eye=[0, 0, 5], **how),
     "levels_of_detail": lambda **how: limitmesh.levels_of_detail("builtin:bunny", tolerances=["1e-3%", "1e-4%"], **how),
@@ -54,20 +56,14 @@ def test_what_progress_raises_ends_the_call(name):
     assert len(told) == 2 and all(isinstance(at, limitmesh.Progress) and at.stage for at in told)
 
 
-@pytest.mark.parametrize("name", [*LONG, "planarity", "front"])
+@pytest.mark.parametrize("name", LONG)
 def test_handlers_of_signals_run_and_end_the_call(name):
-    front = limitmesh.Front("builtin:bunny")
-    calls = {
-        **LONG,
-        "planarity": lambda: limitmesh.refine("builtin:bunny", method="planarity", angle=0.05, max_triangles=500_000),
-        "front": lambda: front.update(tolerance=0.0, triangles=500_000),
-    }
     fine()
     before = signal.signal(signal.SIGALRM, lambda *_: 1 / 0)
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.4)
         with pytest.raises(ZeroDivisionError):
-            calls[name]()
+            LONG[name]()
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)

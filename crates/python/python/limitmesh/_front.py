@@ -40,7 +40,8 @@ class Front:
     """Triangles that stand for a mesh's limit surface, brought from one demand to the next: for viewers and sliders.
 
     What it is depends on the demand alone, but for the order of its rows. It begins with the control mesh's own triangles, their
-    corners on the limit surface. After an update that was interrupted, and after a fork, the next one names all rows as changed.
+    corners on the limit surface. An update that ends before its time, by Ctrl-C or by its ``progress``, leaves all as it was here; the
+    next one goes on from where that was, to the same mesh as a fresh front's, and names all rows as changed, as it does after a fork.
 
     Parameters
     ----------
@@ -49,7 +50,7 @@ class Front:
     interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, weld, repair
         What the limit surface is, as for `refine`; distances are proven for ``"loop"`` and ``"loop-warren"``.
     threads, progress
-        As for `refine`; they are about the beginning.
+        As for `refine`; the threads are those of all updates, ``progress`` is about the beginning.
 
     Raises
     ------
@@ -99,7 +100,7 @@ class Front:
         self._native = _limitmesh.Front(native, control, workers, callback)
         self._vertices: Floats = np.zeros((0, 3))
         self._faces: Integers = np.zeros((0, 3), dtype=np.int64)
-        self._take(self._native.update(None))
+        self._take(self._native.update(None, callback))
 
     def update(
         self,
@@ -109,6 +110,7 @@ class Front:
         cameras: Camera | Iterable[Camera] | None = None,
         triangles: int | None = None,
         max_levels: int | None = None,
+        progress: ProgressCallback | None = None,
     ) -> Changes:
         """Brings the front to another demand.
 
@@ -124,6 +126,8 @@ class Front:
             some 500 bytes each.
         max_levels
             No triangles of more levels below a control face; 30 at most.
+        progress
+            As for `refine`.
 
         Raises
         ------
@@ -156,7 +160,7 @@ class Front:
             "triangles": None if triangles is None else _options.whole(triangles, "triangles", 1),
             "max_levels": None if max_levels is None else _options.whole(max_levels, "max_levels", 0),
         }
-        return self._take(self._native.update(demand))
+        return self._take(self._native.update(demand, _options.callback_of(progress)))
 
     def _take(self, told: tuple[Any, ...]) -> Changes:
         count, at, positions, triangles, slots, corners, numbers = told

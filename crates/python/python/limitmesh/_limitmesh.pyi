@@ -54,7 +54,7 @@ class Front:
         cls, mesh: Any, control: dict[str, Any], threads: int, progress: _Callback
     ) -> Front: ...
     def update(
-        self, demand: dict[str, Any] | None
+        self, demand: dict[str, Any] | None, progress: _Callback
     ) -> tuple[
         int,
         npt.NDArray[np.uint32],

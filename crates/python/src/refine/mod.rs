@@ -82,7 +82,7 @@ pub(crate) fn refine<'py>(
         let refined = match method {
             Method::Exact => exact::refined(control, &recipe, &goals, observer)?,
             Method::Planarity | Method::VertexError => {
-                restricted::refined(control, &recipe, (method, &goals))?
+                restricted::refined(control, &recipe, (method, &goals), observer)?
             }
             Method::Sqrt3 => sqrt3::to_goals(control, &goals, observer)?,
             Method::Sqrt3Uniform => sqrt3::by_steps(control, &goals, observer)?,

@@ -2,31 +2,32 @@
 //! and vertex errors (Müller and Jaeschke).
 
 use limitmesh::carry::carried;
-use limitmesh::front::{Demand, Front, MOST_LEVELS, Measure, Snapshot};
+use limitmesh::front::{Demand, Front, Measure, Snapshot};
+use limitmesh::progress::Observer;
 use limitmesh::refine::{Origin, Traced};
 use limitmesh::{FaceId, HalfEdgeId, LimitSurface};
 
 use super::{Method, Normals, Refined};
 use crate::control::{Control, Recipe};
 use crate::errors::Failure;
-use crate::options::Goals;
+use crate::options::{Goals, front_levels};
 
 /// A triangle with the pieces of the surface that its front keeps, in bytes: measured, rounded up.
 const BYTES_PER_TRIANGLE: usize = 1500;
 
-/// Divides nodes until all meet the criterion, in one go: who is to stop it goes on without it.
+/// Divides nodes until all meet the criterion.
 pub(super) fn refined(
     control: Control,
     recipe: &Recipe,
     (method, goals): (Method, &Goals),
+    observer: &mut Observer<'_>,
 ) -> Result<Refined, Failure> {
     let (measure, limit) = limit(method, goals, control.diagonal);
-    let mut front = Front::measured_by(&control.mesh, recipe.scheme, measure)?;
+    let demand = Demand::tolerance(limit).max_levels(front_levels(goals.max_levels)?);
+    let mut front = Front::measured_by_observed(&control.mesh, recipe.scheme, measure, observer)?;
     let cap = goals.cap(BYTES_PER_TRIANGLE);
-    let most_levels = goals.max_levels.map_or(MOST_LEVELS, |levels| levels.min(MOST_LEVELS as usize) as u32);
-    let demand = Demand::tolerance(limit).max_levels(most_levels);
     let most = goals.triangles.into_iter().chain(cap).min();
-    front.update(&most.map_or(demand.clone(), |most| demand.triangles(most)))?;
+    front.update_observed(&most.map_or(demand.clone(), |most| demand.triangles(most)), observer)?;
     let stop = match goals.triangles {
         _ if front.worst() <= limit => "met",
         _ if front.limit() <= limit => "level-cap",
