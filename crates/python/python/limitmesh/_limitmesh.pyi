@@ -47,174 +47,77 @@ class OptionError(Error): ...
 class ReadError(Error): ...
 
 _Callback = Callable[[str, int, int | None, int], object] | None
+_Record = dict[str, Any]
+_Floats = npt.NDArray[np.float64]
+_Integers = npt.NDArray[np.int64]
+_Indices = npt.NDArray[np.uint32]
 
 @final
 class Front:
-    def __new__(
-        cls, mesh: Any, control: dict[str, Any], threads: int, progress: _Callback
-    ) -> Front: ...
+    def __new__(cls, mesh: Any, control: _Record, threads: int, progress: _Callback) -> Front: ...
     def update(
-        self, demand: dict[str, Any] | None, progress: _Callback
-    ) -> tuple[
-        int,
-        npt.NDArray[np.uint32],
-        npt.NDArray[np.float64],
-        int,
-        npt.NDArray[np.uint32],
-        npt.NDArray[np.uint32],
-        tuple[int, int, float, bool, float | None, int],
-    ]: ...
+        self, demand: _Record | None, progress: _Callback
+    ) -> tuple[int, _Indices, _Floats, int, _Indices, _Indices, tuple[int, int, float, bool, float | None, int]]: ...
 
 @final
 class Origins:
-    def rows(
-        self,
-    ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], npt.NDArray[np.float64]]: ...
+    def rows(self) -> tuple[_Integers, _Integers, _Floats]: ...
 
 @final
 class Replay:
-    def at(
-        self, positions: npt.NDArray[np.float64], threads: int
-    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+    def at(self, positions: _Floats, threads: int) -> tuple[_Floats, _Floats]: ...
 
 def replay(
-    mesh: Any,
-    control: dict[str, Any],
-    goals: dict[str, Any],
-    has_wide_indices: bool,
-    threads: int,
-    progress: _Callback,
-) -> tuple[dict[str, Any], Replay]: ...
+    mesh: Any, control: _Record, goals: _Record, has_wide_indices: bool, threads: int, progress: _Callback
+) -> tuple[_Record, Replay]: ...
 def refine_frames(
-    mesh: Any,
-    frames: npt.NDArray[np.float64],
-    control: dict[str, Any],
-    goals: dict[str, Any],
-    has_wide_indices: bool,
-    threads: int,
-    progress: _Callback,
-) -> tuple[dict[str, Any], list[tuple[float, float, bool, tuple[float, float, float]]], Replay]: ...
-def refine(
-    mesh: Any,
-    control: dict[str, Any],
-    goals: dict[str, Any],
-    has_wide_indices: bool,
-    threads: int,
-    progress: _Callback,
-) -> dict[str, Any]: ...
-def estimate(
-    mesh: Any, control: dict[str, Any], goals: dict[str, Any], threads: int, progress: _Callback
-) -> tuple[int, int, bool]: ...
-def measure(
-    surface: Any, reference: Any, how: dict[str, Any], threads: int, progress: _Callback
-) -> dict[str, Any]: ...
+    mesh: Any, frames: _Floats, control: _Record, goals: _Record, has_wide_indices: bool, threads: int, progress: _Callback
+) -> tuple[_Record, list[tuple[float, float, bool, tuple[float, float, float]]], Replay]: ...
+def refine(mesh: Any, control: _Record, goals: _Record, has_wide_indices: bool, threads: int, progress: _Callback) -> _Record: ...
+def estimate(mesh: Any, control: _Record, goals: _Record, threads: int, progress: _Callback) -> tuple[int, int, bool]: ...
+def measure(surface: Any, reference: Any, how: _Record, threads: int, progress: _Callback) -> _Record: ...
 def measure_limit(
-    surface: Any,
-    reference: Any,
-    control: dict[str, Any],
-    how: dict[str, Any],
-    levels: int | None,
-    threads: int,
-    progress: _Callback,
-) -> dict[str, Any]: ...
+    surface: Any, reference: Any, control: _Record, how: _Record, levels: int | None, threads: int, progress: _Callback
+) -> _Record: ...
 def levels_of_detail(
-    mesh: Any,
-    control: dict[str, Any],
-    detail: dict[str, Any],
-    has_wide_indices: bool,
-    threads: int,
-    progress: _Callback,
-) -> list[dict[str, Any]]: ...
-def switching_distance(
-    deviation: float, pixels: float, height: float, fov_degrees: float
-) -> float: ...
-def limit(
-    mesh: Any, control: dict[str, Any], threads: int, progress: _Callback
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+    mesh: Any, control: _Record, detail: _Record, has_wide_indices: bool, threads: int, progress: _Callback
+) -> list[_Record]: ...
+def switching_distance(deviation: float, pixels: float, height: float, fov_degrees: float) -> float: ...
+def limit(mesh: Any, control: _Record, threads: int, progress: _Callback) -> tuple[_Floats, _Floats]: ...
 def limit_surface(
-    mesh: Any,
-    control: dict[str, Any],
-    faces: npt.NDArray[np.int64],
-    weights: npt.NDArray[np.float64],
-    threads: int,
-    progress: _Callback,
-) -> tuple[
-    npt.NDArray[np.float64],
-    npt.NDArray[np.float64],
-    npt.NDArray[np.float64],
-    npt.NDArray[np.float64],
-    npt.NDArray[np.float64],
-    npt.NDArray[np.float64],
-]: ...
+    mesh: Any, control: _Record, faces: _Integers, weights: _Floats, threads: int, progress: _Callback
+) -> tuple[_Floats, _Floats, _Floats, _Floats, _Floats, _Floats]: ...
 def facing(
-    mesh: Any,
-    control: dict[str, Any],
-    eye: list[float] | None,
-    view: list[float],
-    threads: int,
-    progress: _Callback,
+    mesh: Any, control: _Record, eye: list[float] | None, view: list[float], threads: int, progress: _Callback
 ) -> npt.NDArray[np.int8]: ...
 def intersect(
-    origins: npt.NDArray[np.float64],
-    directions: npt.NDArray[np.float64],
-    mesh: Any,
-    control: dict[str, Any],
-    casting: dict[str, Any],
-    threads: int,
-    progress: _Callback,
-) -> tuple[
-    npt.NDArray[np.int64],
-    npt.NDArray[np.float64],
-    npt.NDArray[np.int64],
-    npt.NDArray[np.float64],
-    npt.NDArray[np.float64],
-    npt.NDArray[np.float64],
-    npt.NDArray[np.int8],
-]: ...
+    origins: _Floats, directions: _Floats, mesh: Any, control: _Record, casting: _Record, threads: int, progress: _Callback
+) -> tuple[_Integers, _Floats, _Integers, _Floats, _Floats, _Floats, npt.NDArray[np.int8]]: ...
 def project(
-    points: npt.NDArray[np.float64],
-    mesh: Any,
-    control: dict[str, Any],
-    tolerance: tuple[float, bool],
-    threads: int,
-    progress: _Callback,
-) -> tuple[
-    npt.NDArray[np.float64],
-    npt.NDArray[np.float64],
-    npt.NDArray[np.float64],
-    npt.NDArray[np.int64],
-    npt.NDArray[np.float64],
-    npt.NDArray[np.float64],
-    npt.NDArray[np.float64],
-]: ...
-def examine(mesh: Any, control: dict[str, Any], threads: int) -> tuple[str, dict[str, Any] | None]: ...
+    points: _Floats, mesh: Any, control: _Record, tolerance: tuple[float, bool], threads: int, progress: _Callback
+) -> tuple[_Floats, _Floats, _Floats, _Integers, _Floats, _Floats, _Floats]: ...
+def examine(mesh: Any, control: _Record, threads: int) -> tuple[str, _Record | None]: ...
 def simplify(
     mesh: Any,
-    control: dict[str, Any],
+    control: _Record,
     tolerance: tuple[float, bool] | None,
     triangles: int | None,
     certify: bool,
     threads: int,
     progress: _Callback,
-) -> dict[str, Any]: ...
-def repair(mesh: Any, control: dict[str, Any], threads: int) -> dict[str, Any]: ...
+) -> _Record: ...
+def repair(mesh: Any, control: _Record, threads: int) -> _Record: ...
 def picture(
-    vertices: npt.NDArray[np.float64],
-    faces: npt.NDArray[np.uint32],
-    normals: npt.NDArray[np.float64] | None,
-    width: int,
-    height: int,
-    wireframe: bool,
-    threads: int,
+    vertices: _Floats, faces: _Indices, normals: _Floats | None, width: int, height: int, wireframe: bool, threads: int
 ) -> bytes: ...
 def models() -> list[tuple[str, str]]: ...
-def load(path: str) -> dict[str, Any]: ...
+def load(path: str) -> _Record: ...
 def save(
     path: str,
-    vertices: npt.NDArray[np.float64],
-    faces: npt.NDArray[np.uint32],
-    normals: npt.NDArray[np.float64] | None,
-    channels: list[dict[str, Any]],
+    vertices: _Floats,
+    faces: _Indices,
+    normals: _Floats | None,
+    channels: list[_Record],
     linked: list[list[str]],
     ascii: bool,
 ) -> list[str]: ...
