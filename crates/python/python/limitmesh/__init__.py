@@ -13,29 +13,24 @@ changed in place. Everything raises `Error`, a ``ValueError``, where its argumen
 import os as _os
 
 from . import _limitmesh
-from ._errors import Error, MeshError, OptionError, ReadError, StoppedShort, ToleranceNotMet
-from ._files import load, models, refine_file, save
+from ._files import refine_file, save
 from ._front import Changes, Front
 from ._frames import RefinedFrames, Replay, refine_frames, replay
-from ._interop import (
-    from_meshio,
-    from_open3d,
-    from_pyvista,
-    from_trimesh,
-    to_meshio,
-    to_pyvista,
-    to_trimesh,
-)
-from ._levels import Level, levels_of_detail
-from ._limitmesh import __version__
+from ._incoming import from_meshio, from_open3d, from_pyvista, from_trimesh
+from ._interop import to_meshio, to_pyvista, to_trimesh
+from ._level import Level
+from ._levels import levels_of_detail
+from ._limitmesh import Error, MeshError, OptionError, ReadError, __version__
 from ._measure import Distance, Limit, OneSided, info, limit, measure
 from ._mesh import Channel, Mesh
 from ._options import Camera, Progress
-from ._refine import Estimate, estimate, refine
-from ._refined import Diagnosis, ErrorBounds, Finding, Refined, Split
-from ._simplify import Repaired, Simplified, repair, simplify
 from ._project import Projected, project
 from ._rays import Intersections, intersect
+from ._read import load, models
+from ._refine import Estimate, estimate, refine
+from ._refined import Diagnosis, ErrorBounds, Finding, Refined, Split
+from ._short import StoppedShort, ToleranceNotMet
+from ._simplify import Repaired, Simplified, repair, simplify
 from ._surface import SurfacePoints, facing, limit_surface
 
 if hasattr(_os, "register_at_fork"):

@@ -39,6 +39,14 @@ def vertices_of(vertices: npt.ArrayLike, name: str = "vertices") -> Floats:
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
+def check_finite(rows: Floats, name: str, error: type[Exception]) -> None:
+    """Refuses rows with what is no finite number, by the first of them."""
+    is_finite = np.isfinite(rows).all(axis=1)
+    if not is_finite.all():
+        row = int(np.argmin(is_finite))
+        raise error(f"{name}[{row}] is {rows[row]}, expected finite numbers")
+
+
 def _numbers(values: npt.ArrayLike, name: str) -> npt.NDArray[Any]:
     try:
         array = np.asarray(values)

@@ -1,74 +1,19 @@
-"""Files and built-in models."""
+"""Meshes written to files, and files refined as the program does."""
 
 from __future__ import annotations
 
 import json
 import os
 import tempfile
-import warnings
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
-
-from . import _limitmesh, _options
-from ._errors import StoppedShort, ToleranceNotMet
+from . import _limitmesh, _options, _short
+from ._inputs import MeshLike, as_mesh
 from ._limitmesh import OptionError
-from ._mesh import Channel, Mesh, MeshLike, as_mesh
 from ._options import Boundary, Length, Method, ProgressCallback, Scheme
-
-if TYPE_CHECKING:
-    from ._refined import Refined
-
-
-def models() -> dict[str, str]:
-    """The built-in models, each with a line about it; `load` takes them as ``"builtin:cup"``.
-
-    >>> import limitmesh
-    >>> "cup" in limitmesh.models()
-    True
-    """
-    return dict(_limitmesh.models())
-
-
-def load(path: str | os.PathLike[str]) -> Mesh:
-    """Reads a file, whatever is in it: OBJ, PLY, STL, OFF, glTF (what its scene shows) or 3MF (what its build has), or a built-in model.
-
-    Parameters
-    ----------
-    path
-        The file, whose extension tells the format; or ``"builtin:NAME"``.
-
-    Raises
-    ------
-    ReadError
-        It cannot be read; the message names the line or the place.
-
-    Examples
-    --------
-    >>> import limitmesh
-    >>> limitmesh.load("builtin:cube").vertices.shape
-    (8, 3)
-    """
-    told = _limitmesh.load(os.fspath(path))
-    corners, starts = told["corners"], told["starts"]
-    sizes = np.diff(starts)
-    faces: Any
-    if len(sizes) and (sizes == sizes[0]).all():
-        faces = corners.reshape(-1, sizes[0])
-    elif not len(sizes):
-        faces = np.zeros((0, 3), dtype=np.int64)
-    else:
-        faces = np.split(corners, starts[1:-1])
-    return Mesh(
-        told["vertices"],
-        faces,
-        {one["name"]: Channel._of_native(one, triangles=False) for one in told["channels"]},
-        told["creases"] or None,
-        told["corner_tags"] or None,
-        tuple(told["material_libraries"]),
-        tuple(told["texture_files"]),
-        tuple(told["left_out"]),
-    )
+from ._refined import Refined
+from ._simplify import repair
+from ._write import write
 
 
 def save(path: str | os.PathLike[str], mesh: Refined | MeshLike, *, ascii: bool = False) -> None:
@@ -100,31 +45,13 @@ def save(path: str | os.PathLike[str], mesh: Refined | MeshLike, *, ascii: bool 
     ...     limitmesh.info(path)["triangles"]
     12
     """
-    from ._refined import Refined
-
     if isinstance(mesh, Refined):
-        vertices, faces, channels = mesh.vertices, mesh.faces, dict(mesh.channels)
-        has_sides = len(mesh._sides[0]) > 0
-        # One normal a vertex would be an average over the sides of sharp edges.
-        normals = None if has_sides else mesh.normals
-        linked: list[list[str]] = [[], []]
-    else:
-        from ._simplify import repair
-
-        given = as_mesh(mesh)
-        mended = repair(given)
-        vertices, faces, channels, normals = mended.vertices, mended.faces, dict(mended.channels), None
-        linked = [list(given.material_libraries), list(given.texture_files)]
-    counts = {"vertex": len(vertices), "corner": 3 * len(faces), "face": len(faces)}
-    _limitmesh.save(
-        os.fspath(path),
-        np.ascontiguousarray(vertices, dtype=np.float64),
-        np.ascontiguousarray(faces, dtype=np.uint32),
-        None if normals is None else np.ascontiguousarray(normals),
-        [channel._native(name, counts) for name, channel in channels.items()],
-        linked,
-        bool(ascii),
-    )
+        mesh.save(path, ascii=ascii)
+        return
+    given = as_mesh(mesh)
+    mended = repair(given)
+    linked = (given.material_libraries, given.texture_files)
+    write(path, mended.vertices, mended.faces, None, mended.channels, linked, ascii=ascii)
 
 
 def refine_file(
@@ -207,23 +134,8 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         weld=weld,
     )
     goals = _options.goals_of(
-        method=method,
-        levels=levels,
-        tolerance=tolerance,
-        triangles=triangles,
-        angle=angle,
-        pixels=None,
-        cameras=None,
-        view=None,
-        eye=None,
-        dilatation=1.0,
-        optimize=optimize,
-        balance=balance,
-        flat_regions=True,
-        origins=provenance,
-        max_triangles=max_triangles,
-        max_levels=max_levels,
-        max_memory=max_memory,
+        method=method, levels=levels, tolerance=tolerance, triangles=triangles, angle=angle, optimize=optimize,
+        balance=balance, max_triangles=max_triangles, max_levels=max_levels, max_memory=max_memory,
     )
     arguments = [_name(source, "source"), f"--output={_name(target, 'target')}", f"--method={method}", f"--uv={uv}"]
     arguments += [f"--scheme={scheme}", f"--boundary={boundary}"]
@@ -258,15 +170,12 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
     with tempfile.TemporaryDirectory(prefix="limitmesh-") as folder:
         path = os.path.join(folder, "report.json")
         short, notes = _limitmesh.refine_file(
-            [*arguments, f"--report={path}"], _options.threads_of(threads), _options.callback_of(progress)
+            [*arguments, f"--report={path}"], *_options.work_of(threads, progress)
         )
         with open(path, encoding="utf-8") as file:
             report: dict[str, Any] = json.load(file)
     report["notes"] = notes
-    if short is not None:
-        if strict:
-            raise ToleranceNotMet(short, report)
-        warnings.warn(short, StoppedShort, stacklevel=2)
+    _short.tell(short, report, strict)
     return report
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -11,13 +10,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _arrays, _limitmesh, _options
+from . import _arrays, _inputs, _limitmesh, _options, _short
 from ._arrays import Floats
-from ._errors import StoppedShort, ToleranceNotMet
+from ._inputs import MeshLike
 from ._limitmesh import MeshError
-from ._mesh import Channel, MeshLike
+from ._mesh import Channel
 from ._options import Boundary, Camera, Length, ProgressCallback, Scheme
-from ._refine import _index_dtype, _mesh_of, _refined, _short
 from ._refined import AnyIntegers, ErrorBounds, Refined
 
 
@@ -113,27 +111,19 @@ def replay(
     >>> moved.shape == moving.refined.vertices.shape == normals.shape
     True
     """
-    control, goals = _asked(
-        crease_angle=crease_angle,
-        boundary=boundary,
-        scheme=scheme,
-        weld=weld,
-        repair=repair,
-        tolerance=tolerance,
-        triangles=triangles,
-        angle=angle,
-        pixels=pixels,
-        cameras=cameras,
-        max_triangles=max_triangles,
-        max_levels=max_levels,
-        max_memory=max_memory,
+    goals = _options.goals_of(
+        tolerance=tolerance, triangles=triangles, angle=angle, pixels=pixels, cameras=cameras, flat_regions=False,
+        max_triangles=max_triangles, max_levels=max_levels, max_memory=max_memory,
     )
-    mesh = _mesh_of(vertices, faces, channels, creases, corners)
-    native, dtype = mesh._native(), _index_dtype(index_dtype)
-    workers, callback = _options.threads_of(threads), _options.callback_of(progress)
-    told, own = _limitmesh.replay(native, control, goals, dtype == np.int64, workers, callback)
-    refined = _refined(told, dtype)
-    _warn(refined, goals, strict)
+    # Where corners are concave depends on positions, which change.
+    native, control = _inputs.surface_of(
+        vertices, faces, creases, corners, channels, crease_angle=crease_angle, boundary=boundary,
+        concave_corners="as-tagged", scheme=scheme, weld=weld, repair=repair,
+    )
+    dtype = _options.index_dtype_of(index_dtype)
+    told, own = _limitmesh.replay(native, control, goals, dtype == np.int64, *_options.work_of(threads, progress))
+    refined = Refined._of_native(told, dtype)
+    _short.tell(_short.why(refined, goals), refined, strict)
     return Replay(own, refined, len(native["vertices"]))
 
 
@@ -242,29 +232,22 @@ def refine_frames(
     >>> found.vertices.shape[0], [error.upper <= 0.02 for error in found.errors]
     (3, [True, True, True])
     """
-    control, goals = _asked(
-        crease_angle=crease_angle,
-        boundary=boundary,
-        scheme=scheme,
-        weld=weld,
-        repair=repair,
-        tolerance=tolerance,
-        triangles=None,
-        angle=angle,
-        pixels=pixels,
-        cameras=cameras,
-        max_triangles=max_triangles,
-        max_levels=max_levels,
-        max_memory=max_memory,
+    goals = _options.goals_of(
+        tolerance=tolerance, angle=angle, pixels=pixels, cameras=cameras, flat_regions=False,
+        max_triangles=max_triangles, max_levels=max_levels, max_memory=max_memory,
     )
     rows = _frames_of(frames)
-    native, dtype = _mesh_of(rows[0], faces, channels, creases, corners)._native(), _index_dtype(index_dtype)
-    workers, callback = _options.threads_of(threads), _options.callback_of(progress)
-    told, errors, own = _limitmesh.refine_frames(
-        native, rows.reshape(-1, 3), control, goals, dtype == np.int64, workers, callback
+    # Where corners are concave depends on positions, which change.
+    native, control = _inputs.surface_of(
+        rows[0], faces, creases, corners, channels, crease_angle=crease_angle, boundary=boundary,
+        concave_corners="as-tagged", scheme=scheme, weld=weld, repair=repair,
     )
-    refined = _refined(told, dtype)
-    _warn(refined, goals, strict)
+    dtype = _options.index_dtype_of(index_dtype)
+    told, errors, own = _limitmesh.refine_frames(
+        native, rows.reshape(-1, 3), control, goals, dtype == np.int64, *_options.work_of(threads, progress)
+    )
+    refined = Refined._of_native(told, dtype)
+    _short.tell(_short.why(refined, goals), refined, strict)
     bounds = tuple(ErrorBounds(*error) for error in errors)
     return RefinedFrames(refined, bounds, Replay(own, refined, rows.shape[1]), rows)
 
@@ -285,51 +268,7 @@ def _frames_of(frames: Any) -> Floats:
 def _check(rows: Floats, count: int, name: str) -> None:
     if len(rows) != count:
         raise MeshError(f"{name} has {len(rows)} rows, expected {count}: one for each control vertex")
-    is_finite = np.isfinite(rows).all(axis=1)
-    if not is_finite.all():
-        row = int(np.argmin(is_finite))
-        raise MeshError(f"{name}[{row}] is {rows[row]}, expected finite numbers")
-
-
-def _asked(
-    *,
-    crease_angle: float | None,
-    boundary: str,
-    scheme: str,
-    weld: float | None,
-    repair: bool,
-    **goals: Any,
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    """What the native half takes for a control mesh that moves, and for goals."""
-    # Where corners are concave depends on positions, which change.
-    control = _options.control_of(
-        crease_angle=crease_angle,
-        boundary=boundary,
-        concave_corners="as-tagged",
-        scheme=scheme,
-        weld=weld,
-        repair=repair,
-    )
-    return control, _options.goals_of(
-        method="exact",
-        levels=None,
-        view=None,
-        eye=None,
-        dilatation=1.0,
-        optimize=False,
-        balance=False,
-        flat_regions=False,
-        origins=True,
-        **goals,
-    )
-
-
-def _warn(refined: Refined, goals: dict[str, Any], strict: bool) -> None:
-    short = _short(refined, goals)
-    if short is not None:
-        if strict:
-            raise ToleranceNotMet(short, refined)
-        warnings.warn(short, StoppedShort, stacklevel=3)
+    _arrays.check_finite(rows, name, MeshError)
 
 
 __all__ = ["RefinedFrames", "Replay", "refine_frames", "replay"]

@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _limitmesh, _options
+from . import _inputs, _limitmesh, _options
 from ._arrays import Floats, Integers
+from ._inputs import MeshLike
 from ._limitmesh import OptionError
-from ._mesh import MeshLike
 from ._options import Boundary, Camera, Length, ProgressCallback, Scheme
-from ._refine import _mesh_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,18 +84,13 @@ class Front:
         threads: int | None = None,
         progress: ProgressCallback | None = None,
     ) -> None:
-        control = _options.control_of(
-            interpolate=interpolate,
-            crease_angle=crease_angle,
-            boundary=boundary,
-            concave_corners=concave_corners,
-            scheme=scheme,
-            weld=weld,
-            repair=repair,
+        native, control = _inputs.surface_of(
+            vertices, faces, creases, corners,
+            interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
+            scheme=scheme, weld=weld, repair=repair,
         )
-        native = _mesh_of(vertices, faces, None, creases, corners)._native()
         native["channels"] = []
-        workers, callback = _options.threads_of(threads), _options.callback_of(progress)
+        workers, callback = _options.work_of(threads, progress)
         self._native = _limitmesh.Front(native, control, workers, callback)
         self._vertices: Floats = np.zeros((0, 3))
         self._faces: Integers = np.zeros((0, 3), dtype=np.int64)
@@ -144,9 +138,7 @@ class Front:
         >>> front.pixels <= 2
         True
         """
-        looking = [] if cameras is None else _options.cameras_of([cameras] if isinstance(cameras, Camera) else cameras)
-        if looking and pixels is None:
-            pixels = 1.0
+        pixels, looking = _options.seen_by(pixels, cameras)
         if pixels is not None and not looking:
             raise OptionError("pixels is what cameras see; it needs cameras")
         if pixels is not None and tolerance is not None:
@@ -155,7 +147,7 @@ class Front:
             raise OptionError("nothing is asked for: tolerance, pixels with cameras, or triangles")
         demand = {
             "tolerance": None if tolerance is None else _options.extent(tolerance, "tolerance", zero=True),
-            "pixels": None if pixels is None else _options.number(pixels, "pixels", "a number above 0", lambda x: 0.0 < x < np.inf),
+            "pixels": None if pixels is None else _options.positive(pixels, "pixels"),
             "cameras": looking,
             "triangles": None if triangles is None else _options.whole(triangles, "triangles", 1),
             "max_levels": None if max_levels is None else _options.whole(max_levels, "max_levels", 0),

@@ -9,12 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy.typing as npt
 
-from . import _limitmesh, _options
+from . import _inputs, _limitmesh, _options
 from ._arrays import Floats
+from ._inputs import MeshLike, as_mesh
 from ._limitmesh import OptionError
-from ._mesh import MeshLike, as_mesh
 from ._options import Boundary, Length, ProgressCallback, Scheme
-from ._refine import _mesh_of
 from ._refined import Diagnosis
 
 
@@ -138,22 +137,18 @@ def measure(
     }
     if not certified and (gap is not None or max_work is not None):
         raise OptionError("gap and max_work belong to certified distances")
-    workers, callback = _options.threads_of(threads), _options.callback_of(progress)
+    work = _options.work_of(threads, progress)
     surface = as_mesh(a, name="a")._native()
     if limit_of is None:
-        told = _limitmesh.measure(surface, as_mesh(b, name="b")._native(), how, workers, callback)
+        told = _limitmesh.measure(surface, as_mesh(b, name="b")._native(), how, *work)
     else:
-        control = _options.control_of(
-            interpolate=interpolate,
-            crease_angle=crease_angle,
-            boundary=boundary,
-            concave_corners=concave_corners,
-            scheme=scheme,
-            weld=weld,
-        )
         steps = None if levels is None else min(_options.whole(levels, "levels", 0), 12)
-        reference = _mesh_of(limit_of, None, None, creases, corners)._native()
-        told = _limitmesh.measure_limit(surface, reference, control, how, steps, workers, callback)
+        reference, control = _inputs.surface_of(
+            limit_of, None, creases, corners,
+            interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
+            scheme=scheme, weld=weld,
+        )
+        told = _limitmesh.measure_limit(surface, reference, control, how, steps, *work)
     return Distance(
         told["lower"],
         told["upper"],
@@ -209,18 +204,12 @@ def limit(
     >>> np.allclose(normals, vertices / np.sqrt(3))
     True
     """
-    control = _options.control_of(
-        interpolate=interpolate,
-        crease_angle=crease_angle,
-        boundary=boundary,
-        concave_corners=concave_corners,
-        scheme=scheme,
-        weld=weld,
-        repair=repair,
+    native, control = _inputs.surface_of(
+        vertices, faces, creases, corners,
+        interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
+        scheme=scheme, weld=weld, repair=repair,
     )
-    native = _mesh_of(vertices, faces, None, creases, corners)._native()
-    found = _limitmesh.limit(native, control, _options.threads_of(threads), _options.callback_of(progress))
-    return Limit(*found)
+    return Limit(*_limitmesh.limit(native, control, *_options.work_of(threads, progress)))
 
 
 def info(
@@ -254,8 +243,7 @@ def info(
     >>> found["watertight"], found["dihedrals"]["suggested_crease_angle_degrees"] is not None
     (True, True)
     """
-    control = _options.control_of(weld=weld, repair=repair)
-    native = as_mesh(vertices, faces)._native()
+    native, control = _inputs.surface_of(vertices, faces, weld=weld, repair=repair)
     text, diagnosis = _limitmesh.examine(native, control, _options.threads_of(threads))
     found: dict[str, Any] = json.loads(text)
     return {**found, "diagnosis": Diagnosis._of_native(diagnosis)}

@@ -1,21 +1,17 @@
-"""Meshes and what they carry, as arguments."""
+"""Meshes and what they carry."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
+from typing import Any, Literal, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arrays
 from ._arrays import Floats, MeshIn
-from ._limitmesh import MeshError, OptionError
-
-if TYPE_CHECKING:
-    from ._refined import Refined
+from ._limitmesh import OptionError
 
 Domain: TypeAlias = Literal["vertex", "corner", "face"]
 Semantic: TypeAlias = Literal["texture", "colour", "skin-weight", "displacement", "label", "other"]
@@ -139,6 +135,11 @@ class Channel:
         )
 
 
+def told_channels(told: Iterable[Mapping[str, Any]], *, triangles: bool) -> dict[str, Channel]:
+    """Channels by name, as the native half tells of them."""
+    return {one["name"]: Channel._of_native(one, triangles=triangles) for one in told}
+
+
 def channel_of(name: str, value: Any, counts: Mapping[str, int]) -> Channel:
     """A channel from an array: its length tells what has its values, its name or type what they mean."""
     if isinstance(value, Channel):
@@ -232,32 +233,3 @@ class Mesh:
             "corner_tags": _arrays.corner_tags_of(self.corners),
             "channels": channels,
         }
-
-
-MeshLike: TypeAlias = "Mesh | Refined | tuple[npt.ArrayLike, Any] | str | os.PathLike[str] | Any"
-"""A `Mesh`, a result, a pair of vertices and faces, a file's name, or a mesh of trimesh, PyVista, meshio or Open3D."""
-
-
-def as_mesh(mesh: Any, faces: Any = None, name: str = "vertices") -> Mesh:
-    """A mesh from whatever stands for one."""
-    if faces is not None:
-        if isinstance(faces, (str, float, int)):
-            raise MeshError(f"faces is {faces!r}, expected rows of vertex numbers; options have names, such as tolerance={faces!r}")
-        return Mesh(mesh, faces)
-    if isinstance(mesh, Mesh):
-        return mesh
-    if isinstance(mesh, (str, os.PathLike)):
-        from ._files import load
-
-        return load(mesh)
-    if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
-        return Mesh(*mesh)
-    library = type(mesh).__module__.partition(".")[0]
-    if library in ("trimesh", "pyvista", "meshio", "open3d"):
-        from . import _interop
-
-        found = getattr(_interop, f"from_{library}")(mesh)
-        return cast(Mesh, found)
-    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
-        return Mesh(mesh.vertices, mesh.faces, getattr(mesh, "channels", {}))
-    raise MeshError(f"{name} is {type(mesh).__name__} and faces are missing, expected vertices and faces, or a mesh")

@@ -7,11 +7,12 @@ import os
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias, TypeVar
+from typing import Any, Literal, TypeAlias, TypedDict, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
+from ._arrays import Floats, check_finite
 from ._limitmesh import OptionError
 
 Length: TypeAlias = float | str
@@ -94,6 +95,11 @@ def number(value: Any, name: str, expected: str, fits: Callable[[float], bool]) 
     return found
 
 
+def positive(value: Any, name: str) -> float:
+    """A finite number above 0."""
+    return number(value, name, "a number above 0", lambda x: 0.0 < x < np.inf)
+
+
 def whole(value: Any, name: str, least: int) -> int:
     """A whole number; counts may be written as floats are, such as 2e4."""
     found = number(value, name, f"a whole number of at least {least}", lambda x: x >= least and x == np.floor(x) < 2**62)
@@ -130,20 +136,21 @@ def point(value: Any, name: str) -> list[float]:
     return [float(x) for x in array]
 
 
-def points_of(points: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
-    """Rows of three finite numbers, (n, 3) and C-contiguous."""
+def rows_of(values: npt.ArrayLike, name: str) -> Floats:
+    """Numbers, C-contiguous: rows of three if all is well; none are no rows of three."""
     try:
-        rows = np.ascontiguousarray(points, dtype=np.float64)
+        rows = np.ascontiguousarray(values, dtype=np.float64)
     except (ValueError, TypeError):
         raise OptionError(f"{name} is no array of numbers, expected (n, 3)") from None
-    if not rows.size:
-        rows = rows.reshape(-1, 3)
+    return rows if rows.size else rows.reshape(-1, 3)
+
+
+def points_of(points: npt.ArrayLike, name: str) -> Floats:
+    """Rows of three finite numbers, (n, 3) and C-contiguous."""
+    rows = rows_of(points, name)
     if rows.ndim != 2 or rows.shape[1] != 3:
         raise OptionError(f"{name} has the shape {rows.shape}, expected (n, 3)")
-    is_finite = np.isfinite(rows).all(axis=1)
-    if not is_finite.all():
-        row = int(np.argmin(is_finite))
-        raise OptionError(f"{name}[{row}] is {rows[row]}, expected finite numbers")
+    check_finite(rows, name, OptionError)
     return rows
 
 
@@ -209,7 +216,16 @@ def threads_of(threads: int | None) -> int:
 MOST_THREADS = 256
 
 
-def callback_of(progress: ProgressCallback | None) -> Callable[[str, int, int | None, int], object] | None:
+Told: TypeAlias = Callable[[str, int, int | None, int], object] | None
+"""What the native half calls."""
+
+
+def work_of(threads: int | None, progress: ProgressCallback | None) -> tuple[int, Told]:
+    """How a job is done: on so many threads, and who is told of its progress."""
+    return threads_of(threads), callback_of(progress)
+
+
+def callback_of(progress: ProgressCallback | None) -> Told:
     """What the native half calls."""
     if progress is None:
         return None
@@ -217,6 +233,18 @@ def callback_of(progress: ProgressCallback | None) -> Callable[[str, int, int | 
         raise OptionError(f"progress is {progress!r}, expected a function")
     call = progress
     return lambda stage, done, total, triangles: call(Progress(stage, done, total, triangles))
+
+
+class ControlOptions(TypedDict, total=False):
+    """What `control_of` takes, for those who pass it on."""
+
+    interpolate: bool | Length
+    crease_angle: float | None
+    boundary: str
+    concave_corners: str | None
+    scheme: str
+    weld: float | None
+    repair: bool
 
 
 def control_of(
@@ -289,6 +317,25 @@ def cameras_of(cameras: Iterable[Camera]) -> list[tuple[Any, ...]]:
             raise OptionError(f"{name} has a picture of {size[0]} x {size[1]}, which is too large")
         found.append((*places, fov, *size))
     return found
+
+
+def seen_by(
+    pixels: float | None, cameras: Camera | Iterable[Camera] | None
+) -> tuple[float | None, list[tuple[Any, ...]]]:
+    """What may be seen of an error, 1 where there are cameras and no number, and the cameras for the native half."""
+    looking = [] if cameras is None else cameras_of([cameras] if isinstance(cameras, Camera) else cameras)
+    return 1.0 if looking and pixels is None else pixels, looking
+
+
+def index_dtype_of(index_dtype: npt.DTypeLike) -> np.dtype[Any]:
+    """The type of a result's vertex numbers."""
+    try:
+        dtype = np.dtype(index_dtype)
+    except TypeError:
+        dtype = np.dtype(np.float64)
+    if dtype.kind not in "iu" or dtype.itemsize < 4:
+        raise OptionError(f"index_dtype is {index_dtype!r}, expected whole numbers of 32 or 64 bits")
+    return dtype
 
 
 def of_refinement(
@@ -368,30 +415,28 @@ def _refuse(method: str, sqrt3: bool, given: dict[str, bool]) -> None:
 
 def goals_of(
     *,
-    method: str,
+    method: str = "exact",
     sqrt3: bool = False,
-    levels: int | None,
-    tolerance: Length | None,
-    triangles: int | None,
-    angle: float | None,
-    pixels: float | None,
-    cameras: Camera | Iterable[Camera] | None,
-    view: npt.ArrayLike | None,
-    eye: npt.ArrayLike | None,
-    dilatation: float,
-    optimize: bool,
-    balance: bool,
-    flat_regions: bool,
-    origins: bool,
-    max_triangles: int | None,
-    max_levels: int | None,
-    max_memory: float | str | None,
+    levels: int | None = None,
+    tolerance: Length | None = None,
+    triangles: int | None = None,
+    angle: float | None = None,
+    pixels: float | None = None,
+    cameras: Camera | Iterable[Camera] | None = None,
+    view: npt.ArrayLike | None = None,
+    eye: npt.ArrayLike | None = None,
+    dilatation: float = 1.0,
+    optimize: bool = False,
+    balance: bool = False,
+    flat_regions: bool = True,
+    origins: bool = True,
+    max_triangles: int | None = None,
+    max_levels: int | None = None,
+    max_memory: float | str | None = None,
 ) -> dict[str, Any]:
     """Goals and caps."""
     one_of(method, "method", ("exact", *_STEPS, *_QUADTREE))
-    looking = [] if cameras is None else cameras_of([cameras] if isinstance(cameras, Camera) else cameras)
-    if looking and pixels is None:
-        pixels = 1.0
+    pixels, looking = seen_by(pixels, cameras)
     given = {
         "levels": levels is not None,
         "tolerance": tolerance is not None,
@@ -418,7 +463,7 @@ def goals_of(
         "tolerance": None if tolerance is None else extent(tolerance, "tolerance"),
         "triangles": None if triangles is None else whole(triangles, "triangles", 1),
         "angle": None if angle is None else angle_of(angle, "angle"),
-        "pixels": None if pixels is None else number(pixels, "pixels", "a number above 0", lambda x: 0.0 < x < np.inf),
+        "pixels": None if pixels is None else positive(pixels, "pixels"),
         "cameras": looking,
         "eye": None if eye is None else point(eye, "eye"),
         "view": None if view is None else point(view, "view"),

@@ -2,45 +2,49 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
+from ._arrays import Floats
 from ._limitmesh import OptionError
+from ._outgoing import Outgoing, to_pyvista
 
-if TYPE_CHECKING:
-    from ._refined import Refined
+Triangles = tuple[Floats, npt.NDArray[np.integer[Any]]]
 
 
-def plot(mesh: Refined, *, backend: str | None, show: bool, options: dict[str, Any]) -> Any:
-    """See `Refined.plot`."""
+def plot(
+    mesh: Triangles, outgoing: Callable[[], Outgoing], *, backend: str | None, show: bool, options: dict[str, Any]
+) -> Any:
+    """See `Refined.plot`; ``outgoing`` gives all that a mesh carries, to a library that draws it."""
     if backend is None:
         backend = "pyvista" if find_spec("pyvista") else "matplotlib"
     if backend not in ("pyvista", "matplotlib"):
         raise OptionError(f"backend is {backend!r}, expected 'pyvista' or 'matplotlib'")
     if find_spec(backend) is None:
         raise OptionError(f"{backend} is not installed; plot() draws with pyvista or matplotlib")
-    return (_pyvista if backend == "pyvista" else _matplotlib)(mesh, show, options)
+    return _pyvista(outgoing(), show, options) if backend == "pyvista" else _matplotlib(mesh, show, options)
 
 
-def _pyvista(mesh: Refined, show: bool, options: dict[str, Any]) -> Any:
+def _pyvista(mesh: Outgoing, show: bool, options: dict[str, Any]) -> Any:
     import pyvista
-
-    from ._interop import to_pyvista
 
     plotter = pyvista.Plotter()
     plotter.add_mesh(to_pyvista(mesh), **options)
     return plotter.show() if show else plotter
 
 
-def _matplotlib(mesh: Refined, show: bool, options: dict[str, Any]) -> Any:
+def _matplotlib(mesh: Triangles, show: bool, options: dict[str, Any]) -> Any:
     from matplotlib import pyplot
 
     axes: Any = pyplot.figure().add_subplot(projection="3d")
-    x, y, z = mesh.vertices.T
-    axes.plot_trisurf(x, y, z, triangles=np.asarray(mesh.faces), **options)
-    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    vertices, faces = mesh
+    x, y, z = vertices.T
+    axes.plot_trisurf(x, y, z, triangles=np.asarray(faces), **options)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
     axes.set_box_aspect(np.maximum(high - low, 1e-9 * (high - low).max() or 1.0))
     if show:
         pyplot.show()

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy.typing as npt
 
-from . import _limitmesh, _options
+from . import _inputs, _limitmesh, _options
 from ._arrays import Floats, Integers
-from ._mesh import MeshLike
+from ._inputs import MeshLike
 from ._options import Boundary, Length, ProgressCallback, Scheme
-from ._refine import _mesh_of
 
 
 @dataclass(frozen=True)
@@ -89,20 +88,14 @@ def project(
     >>> round(float(found.signed[0]), 6), bool(found.signed[1] < 0)
     (1.563636, True)
     """
-    control = _options.control_of(
-        interpolate=interpolate,
-        crease_angle=crease_angle,
-        boundary=boundary,
-        concave_corners=concave_corners,
-        scheme=scheme,
-        weld=weld,
-        repair=True,
-    )
     rows = _options.points_of(points, "points")
     within = _options.extent(tolerance, "tolerance")
-    native = _mesh_of(vertices, faces, None, creases, corners)._native()
-    workers, callback = _options.threads_of(threads), _options.callback_of(progress)
-    found = _limitmesh.project(rows, native, control, within, workers, callback)
+    native, control = _inputs.surface_of(
+        vertices, faces, creases, corners,
+        interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
+        scheme=scheme, weld=weld,
+    )
+    found = _limitmesh.project(rows, native, control, within, *_options.work_of(threads, progress))
     closest, normals, barycentric, triangles, distances, lower, signed = found
     return Projected(closest, normals, distances, lower, signed, triangles, barycentric)
 

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _limitmesh, _options
+from . import _inputs, _limitmesh, _options
 from ._arrays import Floats, Integers
+from ._inputs import MeshLike
 from ._limitmesh import OptionError
-from ._mesh import MeshLike
 from ._options import Boundary, Length, ProgressCallback, Scheme
-from ._refine import _mesh_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,25 +104,19 @@ def intersect(
     >>> hits.rays.tolist(), hits.t.round(6).tolist(), hits.crossing.tolist()
     ([0, 0], [4.563636, 5.436364], [1, -1])
     """
-    control = _options.control_of(
-        interpolate=interpolate,
-        crease_angle=crease_angle,
-        boundary=boundary,
-        concave_corners=concave_corners,
-        scheme=scheme,
-        weld=weld,
-        repair=True,
-    )
     starts, along = _rays_of(origins, directions)
     casting = {
         "first": bool(first),
         "between": _range_of(between),
         "tolerance": None if tolerance is None else _options.extent(tolerance, "tolerance"),
     }
-    native = _mesh_of(vertices, faces, None, creases, corners)._native()
-    workers, callback = _options.threads_of(threads), _options.callback_of(progress)
+    native, control = _inputs.surface_of(
+        vertices, faces, creases, corners,
+        interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
+        scheme=scheme, weld=weld,
+    )
     rays, t, triangles, barycentric, points, normals, crossing = _limitmesh.intersect(
-        starts, along, native, control, casting, workers, callback
+        starts, along, native, control, casting, *_options.work_of(threads, progress)
     )
     return Intersections(rays, t, points, normals, triangles, barycentric, crossing)
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _limitmesh, _options
-from ._errors import StoppedShort, ToleranceNotMet
+from . import _inputs, _limitmesh, _options, _short
+from ._inputs import MeshLike
 from ._limitmesh import OptionError
-from ._mesh import Channel, Mesh, MeshLike, as_mesh
+from ._mesh import Channel
 from ._options import Boundary, Camera, Length, Method, ProgressCallback, RefiningScheme, Scheme
-from ._refined import Diagnosis, ErrorBounds, Refined
+from ._refined import Refined
 
 
 def refine(
@@ -140,7 +139,7 @@ def refine(
     >>> smooth.vertices.shape[1], smooth.faces.dtype
     (3, dtype('int64'))
     """
-    mesh = _mesh_of(vertices, faces, channels, creases, corners)
+    mesh = _inputs.mesh_of(vertices, faces, creases, corners, channels)
     if scheme == "sqrt3" and mesh.channels:
         names = ", ".join(map(repr, mesh.channels))
         raise OptionError(f"channels do not go with scheme='sqrt3', which carries none: {names}")
@@ -171,73 +170,11 @@ def refine(
         max_levels=max_levels,
         max_memory=max_memory,
     )
-    dtype = _index_dtype(index_dtype)
-    told = _limitmesh.refine(
-        mesh._native(), control, goals, dtype == np.int64, _options.threads_of(threads), _options.callback_of(progress)
-    )
-    result = _refined(told, dtype)
-    short = _short(result, goals)
-    if short is not None:
-        if strict:
-            raise ToleranceNotMet(short, result)
-        warnings.warn(short, StoppedShort, stacklevel=2)
+    dtype = _options.index_dtype_of(index_dtype)
+    work = _options.work_of(threads, progress)
+    result = Refined._of_native(_limitmesh.refine(mesh._native(), control, goals, dtype == np.int64, *work), dtype)
+    _short.tell(_short.why(result, goals), result, strict)
     return result
-
-
-def _mesh_of(
-    vertices: Any,
-    faces: Any,
-    channels: Mapping[str, Channel | npt.ArrayLike] | None,
-    creases: Any,
-    corners: Any,
-) -> Mesh:
-    mesh = as_mesh(vertices, faces).with_channels(channels)
-    if creases is not None:
-        mesh = replace(mesh, creases=creases)
-    if corners is not None:
-        mesh = replace(mesh, corners=corners)
-    return mesh
-
-
-def _index_dtype(index_dtype: npt.DTypeLike) -> np.dtype[Any]:
-    try:
-        dtype = np.dtype(index_dtype)
-    except TypeError:
-        dtype = np.dtype(np.float64)
-    if dtype.kind not in "iu" or dtype.itemsize < 4:
-        raise OptionError(f"index_dtype is {index_dtype!r}, expected whole numbers of 32 or 64 bits")
-    return dtype
-
-
-def _refined(told: dict[str, Any], dtype: np.dtype[Any]) -> Refined:
-    told["faces"] = told["faces"].astype(dtype, copy=False)
-    if told["error"] is not None:
-        told["error"] = ErrorBounds(*told["error"])
-    told["channels"] = {one["name"]: Channel._of_native(one, triangles=True) for one in told["channels"]}
-    told["diagnosis"] = Diagnosis._of_native(told["diagnosis"])
-    return Refined(**told)
-
-
-def _short(result: Refined, goals: dict[str, Any]) -> str | None:
-    """Why a result is less than what was asked for, if it is."""
-    if result.stop == "met":
-        return None
-    count = len(result.faces)
-    reached = f"what was reached has {count} triangles"
-    if result.error is not None and np.isfinite(result.error.upper):
-        reached += f" within {result.error.upper:.4g}"
-    if result.stop == "triangle-cap":
-        return f"max_triangles came before the goals: {reached}"
-    if result.stop == "memory-cap":
-        return f"max_memory came before the goals: {reached}"
-    if result.stop == "level-cap":
-        return f"max_levels came before the goals: {reached}"
-    if result.stop == "rounding":
-        return f"the tolerance is finer than rounding leaves certain: {reached}"
-    if result.stop == "triangles" and goals["triangles"] is not None and count > goals["triangles"]:
-        below = "; optimize=True goes below" if goals["method"] == "exact" and not goals["sqrt3"] else ""
-        return f"the control mesh has more than the {goals['triangles']} triangles asked for{below}: {reached}"
-    return None
 
 
 @dataclass(frozen=True)
@@ -300,37 +237,13 @@ def estimate(
     >>> found.counted and found.triangles > 1000
     True
     """
-    control = _options.control_of(
-        interpolate=interpolate,
-        crease_angle=crease_angle,
-        boundary=boundary,
-        concave_corners=concave_corners,
-        scheme=scheme,
-        weld=weld,
-        repair=repair,
-    )
     goals = _options.goals_of(
-        method="exact",
-        levels=None,
-        tolerance=tolerance,
-        triangles=triangles,
-        angle=angle,
-        pixels=pixels,
-        cameras=cameras,
-        view=view,
-        eye=eye,
-        dilatation=dilatation,
-        optimize=optimize,
-        balance=balance,
-        flat_regions=flat_regions,
-        origins=False,
-        max_triangles=None,
-        max_levels=None,
-        max_memory=None,
+        tolerance=tolerance, triangles=triangles, angle=angle, pixels=pixels, cameras=cameras, view=view, eye=eye,
+        dilatation=dilatation, optimize=optimize, balance=balance, flat_regions=flat_regions, origins=False,
     )
-    mesh = _mesh_of(vertices, faces, None, creases, corners)
-    native = mesh._native()
-    found = _limitmesh.estimate(
-        native, control, goals, _options.threads_of(threads), _options.callback_of(progress)
+    native, control = _inputs.surface_of(
+        vertices, faces, creases, corners,
+        interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
+        scheme=scheme, weld=weld, repair=repair,
     )
-    return Estimate(*found)
+    return Estimate(*_limitmesh.estimate(native, control, goals, *_options.work_of(threads, progress)))

@@ -15,8 +15,11 @@ import numpy.typing as npt
 from . import _limitmesh
 from ._arrays import Floats
 from ._limitmesh import OptionError
-from ._mesh import Channel
+from ._mesh import Channel, told_channels
 from ._options import threads_of
+from ._outgoing import Outgoing, restored
+from ._plot import plot
+from ._write import write
 
 AnyIntegers = npt.NDArray[np.integer[Any]]
 
@@ -157,6 +160,15 @@ class Refined:
     _parents: AnyIntegers | None
     _origins: _limitmesh.Origins | None
 
+    @staticmethod
+    def _of_native(told: dict[str, Any], dtype: np.dtype[Any]) -> Refined:
+        told["faces"] = told["faces"].astype(dtype, copy=False)
+        if told["error"] is not None:
+            told["error"] = ErrorBounds(*told["error"])
+        told["channels"] = told_channels(told["channels"], triangles=True)
+        told["diagnosis"] = Diagnosis._of_native(told["diagnosis"])
+        return Refined(**told)
+
     # These are made when they are asked for: for most who refine they would be the greater part of what is handed over.
 
     @functools.cached_property
@@ -189,10 +201,7 @@ class Refined:
     @property
     def corner_normals(self) -> Floats:
         """(m, 3, 3) unit limit normals of the triangles' corners, each of its own side of sharp edges."""
-        found = self.normals[self.faces]
-        corners, normals = self._sides
-        found.reshape(-1, 3)[corners] = normals
-        return found
+        return by_corner(self.normals, self.faces, self._sides)
 
     @property
     def met(self) -> bool:
@@ -306,9 +315,9 @@ class Refined:
         ...     len(limitmesh.load(path).faces) > 1000
         True
         """
-        from ._files import save
-
-        save(path, self, ascii=ascii)
+        # One normal a vertex would be an average over the sides of sharp edges.
+        normals = None if len(self._sides[0]) else self.normals
+        write(path, self.vertices, self.faces, normals, self.channels, ascii=ascii)
 
     def __repr__(self) -> str:
         error = ""
@@ -353,9 +362,28 @@ class Refined:
         options
             For ``pyvista.Plotter.add_mesh``, or ``Axes.plot_trisurf``.
         """
-        from ._plot import plot
+        return plot((self.vertices, self.faces), self._outgoing, backend=backend, show=show, options=options)
 
-        return plot(self, backend=backend, show=show, options=options)
+    def _outgoing(self) -> Outgoing:
+        split = self.split()
+        faces = {name: channel for name, channel in self.channels.items() if channel.domain == "face"}
+        return Outgoing(
+            split.vertices,
+            split.faces,
+            split.normals,
+            {name: restored(value, self.channels[name]) for name, value in split.values.items()},
+            {name: restored(channel[slice(None)], channel) for name, channel in faces.items()},
+            frozenset(name for name, channel in self.channels.items() if channel.semantic == "texture"),
+            self.parent_face,
+        )
+
+
+def by_corner(normals: Floats, faces: AnyIntegers, sides: tuple[AnyIntegers, Floats]) -> Floats:
+    """(m, 3, 3) normals of corners: those of their vertices, but for the corners that have their own."""
+    found = normals[faces]
+    corners, own = sides
+    found.reshape(-1, 3)[corners] = own
+    return found
 
 
 _SHORT = ("triangle-cap", "level-cap", "memory-cap", "rounding")

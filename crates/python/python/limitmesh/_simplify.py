@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _limitmesh, _options
+from . import _inputs, _limitmesh, _options
 from ._arrays import Floats
-from ._mesh import Channel, MeshLike
+from ._inputs import MeshLike
+from ._mesh import Channel, told_channels
 from ._options import Boundary, Length, ProgressCallback
-from ._refine import _index_dtype, _mesh_of
 from ._refined import AnyIntegers, Diagnosis
 
 
@@ -90,11 +90,11 @@ def simplify(
     >>> len(coarse.faces) < len(fine.faces) and bool((coarse.vertices == fine.vertices[coarse.parent_vertex]).all())
     True
     """
-    control = _options.control_of(
-        crease_angle=crease_angle, boundary=boundary, concave_corners="as-tagged", weld=weld, repair=repair
+    dtype = _options.index_dtype_of(index_dtype)
+    native, control = _inputs.surface_of(
+        vertices, faces, creases, corners,
+        crease_angle=crease_angle, boundary=boundary, concave_corners="as-tagged", weld=weld, repair=repair,
     )
-    dtype = _index_dtype(index_dtype)
-    native = _mesh_of(vertices, faces, None, creases, corners)._native()
     native["channels"] = []
     told = _limitmesh.simplify(
         native,
@@ -102,8 +102,7 @@ def simplify(
         None if tolerance is None else _options.extent(tolerance, "tolerance"),
         None if triangles is None else _options.whole(triangles, "triangles", 1),
         bool(certify),
-        _options.threads_of(threads),
-        _options.callback_of(progress),
+        *_options.work_of(threads, progress),
     )
     return Simplified(
         told["vertices"],
@@ -175,16 +174,15 @@ def repair(
     >>> square.faces.shape, square.parent_face.tolist(), square.diagnosis.repairs
     ((2, 3), [0, 0], ('1 vertex in no face: left out (vertex 4)',))
     """
-    control = _options.control_of(weld=weld)
-    dtype = _index_dtype(index_dtype)
-    native = _mesh_of(vertices, faces, channels, creases, corners)._native()
+    dtype = _options.index_dtype_of(index_dtype)
+    native, control = _inputs.surface_of(vertices, faces, creases, corners, channels, weld=weld)
     told = _limitmesh.repair(native, control, _options.threads_of(threads))
     return Repaired(
         told["vertices"],
         told["faces"].astype(dtype, copy=False),
         told["parent_face"].astype(dtype, copy=False),
         told["parent_vertices"].astype(dtype, copy=False),
-        {one["name"]: Channel._of_native(one, triangles=True) for one in told["channels"]},
+        told_channels(told["channels"], triangles=True),
         told["creases"],
         told["corners"],
         Diagnosis._of_native(told["diagnosis"]),

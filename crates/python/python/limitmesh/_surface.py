@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _limitmesh, _options
-from ._arrays import Floats
+from . import _inputs, _limitmesh, _options
+from ._arrays import Floats, Integers
+from ._inputs import MeshLike
 from ._limitmesh import OptionError
-from ._mesh import MeshLike
 from ._options import Boundary, Length, ProgressCallback, Scheme
-from ._refine import _mesh_of
 
 
 @dataclass(frozen=True)
@@ -93,19 +92,13 @@ def limit_surface(
     >>> round(float(middle.gaussian[0]), 9), round(float(middle.mean[0]), 9)
     (15.75, -4.625)
     """
-    control = _options.control_of(
-        interpolate=interpolate,
-        crease_angle=crease_angle,
-        boundary=boundary,
-        concave_corners=concave_corners,
-        scheme=scheme,
-        weld=weld,
-        repair=True,
-    )
     rows, weights = _places_of(at, barycentric)
-    native = _mesh_of(vertices, faces, None, creases, corners)._native()
-    workers, callback = _options.threads_of(threads), _options.callback_of(progress)
-    found = _limitmesh.limit_surface(native, control, rows, weights, workers, callback)
+    native, control = _inputs.surface_of(
+        vertices, faces, creases, corners,
+        interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
+        scheme=scheme, weld=weld,
+    )
+    found = _limitmesh.limit_surface(native, control, rows, weights, *_options.work_of(threads, progress))
     positions, normals, first, second, directions, curvatures = found
     gaussian, mean, most, least = np.ascontiguousarray(curvatures.reshape(-1, 4).T)
     return SurfacePoints(
@@ -170,38 +163,27 @@ def facing(
     >>> limitmesh.facing(vertices, faces, eye=[9, 9, -9]).tolist()
     [1, 0, 0, 0]
     """
-    control = _options.control_of(
-        interpolate=interpolate,
-        crease_angle=crease_angle,
-        boundary=boundary,
-        concave_corners=concave_corners,
-        scheme=scheme,
-        weld=weld,
-        repair=True,
-    )
     if (view is None) == (eye is None):
         raise OptionError("view and eye: one of them says where the viewer is")
     stands = None if eye is None else _options.point(eye, "eye")
     sight = [0.0, 0.0, 0.0] if view is None else _options.point(view, "view")
     if view is not None and not any(sight):
         raise OptionError(f"view is {view!r}, expected a direction: it is 0")
-    native = _mesh_of(vertices, faces, None, creases, corners)._native()
-    workers, callback = _options.threads_of(threads), _options.callback_of(progress)
-    return _limitmesh.facing(native, control, stands, sight, workers, callback)
+    native, control = _inputs.surface_of(
+        vertices, faces, creases, corners,
+        interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
+        scheme=scheme, weld=weld,
+    )
+    return _limitmesh.facing(native, control, stands, sight, *_options.work_of(threads, progress))
 
 
 def _places_of(
     at: npt.ArrayLike, barycentric: npt.ArrayLike
-) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64]]:
+) -> tuple[Integers, Floats]:
     faces = np.asarray(at)
     if faces.ndim != 1 or (faces.dtype.kind not in "iu" and faces.size):
         raise OptionError(f"at has the shape {faces.shape} and numbers of type {faces.dtype}, expected (n,) whole numbers")
-    try:
-        weights = np.ascontiguousarray(barycentric, dtype=np.float64)
-    except (ValueError, TypeError):
-        raise OptionError("barycentric is no array of numbers, expected (n, 3)") from None
-    if not weights.size:
-        weights = weights.reshape(-1, 3)
+    weights = _options.rows_of(barycentric, "barycentric")
     if weights.shape != (len(faces), 3):
         raise OptionError(f"barycentric has the shape {weights.shape}, expected {(len(faces), 3)}: a row for each of at")
     return np.ascontiguousarray(faces, dtype=np.int64), weights

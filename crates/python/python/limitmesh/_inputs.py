@@ -1,0 +1,69 @@
+"""Meshes as arguments: whatever stands for one, and with its options what the native half takes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, TypeAlias, Unpack
+
+import numpy.typing as npt
+
+from . import _incoming, _options
+from ._arrays import MeshIn
+from ._limitmesh import MeshError
+from ._mesh import Channel, Mesh
+from ._read import load
+from ._refined import Refined
+
+MeshLike: TypeAlias = Mesh | Refined | tuple[npt.ArrayLike, Any] | str | os.PathLike[str] | Any
+"""A `Mesh`, a result, a pair of vertices and faces, a file's name, or a mesh of trimesh, PyVista, meshio or Open3D."""
+
+
+def as_mesh(mesh: Any, faces: Any = None, name: str = "vertices") -> Mesh:
+    """A mesh from whatever stands for one."""
+    if faces is not None:
+        if isinstance(faces, (str, float, int)):
+            raise MeshError(f"faces is {faces!r}, expected rows of vertex numbers; options have names, such as tolerance={faces!r}")
+        return Mesh(mesh, faces)
+    if isinstance(mesh, Mesh):
+        return mesh
+    if isinstance(mesh, (str, os.PathLike)):
+        return load(mesh)
+    if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
+        return Mesh(*mesh)
+    library = _incoming.BY_LIBRARY.get(type(mesh).__module__.partition(".")[0])
+    if library is not None:
+        return library(mesh)
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
+        return Mesh(mesh.vertices, mesh.faces, getattr(mesh, "channels", {}))
+    raise MeshError(f"{name} is {type(mesh).__name__} and faces are missing, expected vertices and faces, or a mesh")
+
+
+def mesh_of(
+    vertices: Any,
+    faces: Any,
+    creases: Any = None,
+    corners: Any = None,
+    channels: Mapping[str, Channel | npt.ArrayLike] | None = None,
+) -> Mesh:
+    """A mesh with the tags and channels that are given beside it, which replace its own."""
+    mesh = as_mesh(vertices, faces).with_channels(channels)
+    if creases is not None:
+        mesh = replace(mesh, creases=creases)
+    if corners is not None:
+        mesh = replace(mesh, corners=corners)
+    return mesh
+
+
+def surface_of(
+    vertices: Any,
+    faces: Any,
+    creases: Any = None,
+    corners: Any = None,
+    channels: Mapping[str, Channel | npt.ArrayLike] | None = None,
+    **options: Unpack[_options.ControlOptions],
+) -> tuple[MeshIn, dict[str, Any]]:
+    """A mesh, and how a control mesh comes about from it, whose limit surface is meant."""
+    control = _options.control_of(**options)
+    return mesh_of(vertices, faces, creases, corners, channels)._native(), control
