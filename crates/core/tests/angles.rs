@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use limitmesh::criterion::{View, Viewpoint};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Frame, exact, exact_frames};
 use limitmesh::scheme::Loop;
 use limitmesh::{FaceId, HalfEdgeId, Mesh};
 
@@ -113,4 +113,28 @@ fn a_tolerance_is_kept_where_cones_stay_open() {
     let options = ExactOptions::default().angle(30f64.to_radians()).tolerance(tolerance);
     let result = exact(&control, &Loop, &options).unwrap();
     assert!(result.error.upper <= tolerance && result.stop == ExactStop::Cones, "{:?}", result.stop);
+}
+
+/// By hand in every frame, whichever comes first: triangles are within the angle, or told as open, as many as there are in the worst frame.
+#[test]
+fn angles_hold_in_every_frame() {
+    for (name, degrees, expected) in [("cup", 15.0f64, ExactStop::Met), ("head", 40.0, ExactStop::Cones)] {
+        let (control, angle) = (model(name), degrees.to_radians());
+        let positions = control.positions().to_vec();
+        let stretched: Vec<[f64; 3]> = positions.iter().map(|&[x, y, z]| [x, 1.7 * y, 0.8 * z]).collect();
+        for frames in [[positions.clone(), stretched.clone()], [stretched, positions]] {
+            let options = ExactOptions::default().angle(angle);
+            let found = exact_frames(&control, &Loop, &frames, &options).unwrap();
+            let mut frame = Frame::default();
+            let open = frames.iter().map(|positions| {
+                found.replay.frame(positions, &mut frame).unwrap();
+                let shown = found.refined.moved_to(&frame).unwrap();
+                angles(&shown).iter().filter(|(_, found)| *found > angle * (1.0 + 1e-6)).count()
+            });
+            assert_eq!(found.refined.open_cones, open.max().unwrap(), "{name}");
+            assert_eq!(found.refined.stop, expected, "{name}");
+            assert!((found.refined.open_cones > 0) == (expected == ExactStop::Cones), "{name}");
+            assert_eq!(found.refined.pixels, None);
+        }
+    }
 }

@@ -12,7 +12,7 @@ use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
 use limitmesh::measure::{Bvh, distances_to};
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Frame, exact, exact_frames};
 use limitmesh::scheme::Loop;
 use support::{Point, Random, cross, dot};
 
@@ -279,6 +279,40 @@ fn what_looks_away_does_not_show() {
         assert!(model.is_closed);
         let share = model.check_with(6, [0.5, 2.0, 8.0], seed, Model::outside);
         assert!(share > 0.1, "{}: {share}", model.name);
+    }
+}
+
+/// Frames share their triangles: what is told is the most of all of them, also where the first, far smaller, is off by far less.
+#[test]
+fn no_frame_shows_more_than_is_told() {
+    let mut random = Random::new(60);
+    for (name, control, levels) in
+        [("torus", support::torus(8, 6), 4), ("cup", built_in("cup"), 4), ("sheet", built_in("sheet"), 4)]
+    {
+        let positions = control.positions().to_vec();
+        let small = positions.iter().map(|p| p.map(|x| 0.1 * x)).collect();
+        let stretched = positions.iter().map(|&[x, y, z]| [x, 1.4 * y, 0.8 * z]).collect();
+        let frames = [small, positions, stretched];
+        let models = frames.clone().map(|frame: Vec<Point>| {
+            Model::new(name, control.clone().with_positions(frame).unwrap(), levels)
+        });
+        let cameras: Vec<Camera> = (0..2).map(|_| models[2].outside(&mut random)).collect();
+        for limit in [0.5, 3.0] {
+            let options = ExactOptions::default().pixels(limit, cameras.clone());
+            let found = exact_frames(&control, &Loop, &frames, &options).unwrap();
+            let said = found.refined.pixels.unwrap();
+            assert!(found.refined.stop == ExactStop::Met && said <= limit, "{name}: {said} of {limit}");
+            let (mut frame, mut most) = (Frame::default(), 0.0f64);
+            for (positions, model) in frames.iter().zip(&models) {
+                found.replay.frame(positions, &mut frame).unwrap();
+                let shown = found.refined.moved_to(&frame).unwrap();
+                for camera in &cameras {
+                    most = most.max(model.greatest(&shown, &Picture::of(camera), &mut random));
+                }
+            }
+            assert!(most <= said * (1.0 + 1e-6), "{name}: {most} of {said}");
+            assert!(most > 0.05 * said, "{name}: {most} of {said}");
+        }
     }
 }
 

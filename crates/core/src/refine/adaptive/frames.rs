@@ -6,8 +6,8 @@
 
 use super::demands::Demands;
 use super::judge::Goal;
-use super::measure::measure;
-use super::result::Outcome;
+use super::measure::{Measured, measure};
+use super::result::open_cones;
 use super::{Engine, Plan, with_engine};
 use crate::mesh::Mesh;
 use crate::progress::{Observer, Stage};
@@ -46,31 +46,34 @@ pub(in crate::refine) fn frames(
     let demands = Demands::default();
     let settings = (options, &demands);
     let plan = with_engine(&meshes[0], scheme, settings, observer, |engine| first(engine, options))?;
-    let plan = united(&meshes, scheme, (settings, plan), observer)?;
-    let mut has_failed = plan.has_failed;
+    let mut plan = united(&meshes, scheme, (settings, plan), observer)?;
     let (refined, replay) = with_engine(&meshes[0], scheme, settings, observer, |engine| {
-        let mut plan = plan.with_goal(plan.goal.clone());
         let emission = engine.emit_all(&mut plan)?;
-        let refined = Outcome { plan, emission, measured: None }.finish(engine, ExactStop::Met, options)?;
+        engine.check(&emission)?;
+        let refined = engine.assemble(emission, plan.levels(engine.watch)?)?;
         let replay = Replay::new(control, scheme, &refined)?;
         Ok((refined, replay))
     })?;
-    let (mut frame, mut errors) = (Frame::default(), Vec::with_capacity(frames.len()));
-    let mut worst = Vec::with_capacity(frames.len());
+    let (mut frame, mut all) = (Frame::default(), Vec::with_capacity(frames.len()));
     for mesh in &meshes {
         replay.frame(mesh.positions(), &mut frame)?;
-        let (error, value) = with_engine(mesh, scheme, settings, observer, |engine| {
-            proven(engine, plan.with_goal(plan.goal.clone()), &frame, options)
-        })?;
-        errors.push(error);
-        worst.push(value);
+        all.push(with_engine(mesh, scheme, settings, observer, |engine| {
+            proven(engine, &mut plan, (&refined, &frame), options)
+        })?);
     }
     replay.frame(meshes[0].positions(), &mut frame)?;
-    let mut refined = Exact { error: errors[0], ..refined.moved_to(&frame)? };
-    refined.worst = worst.iter().copied().fold(0.0, f64::max);
-    has_failed |= refined.worst > 1.0 + f64::EPSILON;
-    refined.stop = if has_failed { ExactStop::LevelCap } else { ExactStop::Met };
-    Ok(Found { refined, replay, errors })
+    let greatest = |of: fn(&Proven) -> f64| all.iter().map(of).fold(0.0, f64::max);
+    let (worst, open_cones) = (greatest(|own| own.worst), all.iter().map(|own| own.open_cones).max());
+    let open_cones = open_cones.unwrap_or(0);
+    let stop = match () {
+        () if plan.has_failed || worst > 1.0 + f64::EPSILON => ExactStop::LevelCap,
+        () if open_cones > 0 => ExactStop::Cones,
+        () => ExactStop::Met,
+    };
+    let pixels = options.pixels.map(|_| greatest(|own| own.pixels));
+    let error = all[0].error;
+    let refined = Exact { error, pixels, open_cones, worst, stop, ..refined.moved_to(&frame)? };
+    Ok(Found { refined, replay, errors: all.into_iter().map(|own| own.error).collect() })
 }
 
 /// The plan of the first frame, of which nothing is taken for granted.
@@ -116,27 +119,42 @@ fn united(
     Ok(plan)
 }
 
-/// What is proven of a frame, and how many times over its worst triangle fails.
+/// What is proven of a frame.
+struct Proven {
+    error: ErrorBounds,
+    /// How many times over its worst triangle fails.
+    worst: f64,
+    /// As its cameras see it; 0 without any.
+    pixels: f64,
+    /// Triangles outside their cones; 0 where no angle is asked for.
+    open_cones: usize,
+}
+
+/// What is proven of a frame of what was refined.
 fn proven(
     engine: &Engine<'_>,
-    mut plan: Plan,
-    frame: &Frame,
+    plan: &mut Plan,
+    (refined, frame): (&Exact, &Frame),
     options: &ExactOptions,
-) -> Result<(ErrorBounds, f64), RefineError> {
-    let mut emission = engine.emit_all(&mut plan)?;
+) -> Result<Proven, RefineError> {
+    let mut emission = engine.emit_all(plan)?;
     emission.positions.copy_from_slice(&frame.positions);
     engine.watch.stage(Stage::Bounding, None)?;
     let floor = engine.floor(options.tolerance);
     let all: Vec<u32> = (0..plan.closed.len() as u32).collect();
-    let sources = engine.sources(&plan, &emission);
+    let sources = engine.sources(plan, &emission);
     let measured = measure(&sources, engine.watch, (&Goal::Within(floor), f64::INFINITY), (&all, None))?;
-    let value = measured.iter().map(|face| face.value).fold(0.0, f64::max);
+    let greatest = |of: fn(&Measured) -> f64| measured.iter().map(of).fold(0.0, f64::max);
+    let value = greatest(|face| face.value);
     let is_met = options.tolerance.is_some() && value <= floor;
-    let error = probe::probe(engine, &plan, &emission, (Some(&measured), is_met))?;
-    if let Some(why) = engine.control.rules.failure() {
-        return Err(why.clone().into());
-    }
+    let error = probe::probe(engine, plan, &emission, (Some(&measured), is_met))?;
+    engine.check(&emission)?;
     let beyond = options.tolerance.map_or(0.0, |tolerance| error.upper / tolerance);
-    let value = if engine.control.criteria.is_some() { value } else { 0.0 };
-    Ok((error, value.max(beyond)))
+    let criteria = engine.control.criteria.as_ref();
+    let open_cones = match criteria.filter(|_| options.angle.is_some()) {
+        Some(criteria) => open_cones(&refined.moved_to(frame)?, criteria, engine.watch)?,
+        None => 0,
+    };
+    let worst = if criteria.is_some() { value.max(beyond) } else { beyond };
+    Ok(Proven { error, worst, pixels: greatest(|face| face.pixels), open_cones })
 }

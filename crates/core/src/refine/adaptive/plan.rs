@@ -1,11 +1,13 @@
 //! What is going to be emitted: the trees that the passes have come to, and what is known of their leaves.
 
+use super::block;
 use super::chains::Chains;
 use super::close::Closed;
 use super::decide::Decision;
 use super::emit::Emission;
 use super::judge::Goal;
 use super::quadtree::Place;
+use crate::progress::{Cancelled, SharedWatch};
 
 /// Trees whose closed leaves pass, and what emitting them takes.
 pub(super) struct Plan {
@@ -73,5 +75,14 @@ impl Plan {
     /// The greatest bound of all triangles.
     pub(super) fn worst(&self) -> f64 {
         (0..self.closed.len() as u32).map(|face| self.bound(face)).fold(0.0, f64::max)
+    }
+
+    /// Levels of the deepest tree.
+    pub(super) fn levels(&self, watch: &SharedWatch<'_>) -> Result<usize, Cancelled> {
+        let (trees, faces) = (&self.decision.trees, self.closed.len());
+        let levels = watch.pieces(faces, block(faces), |block| {
+            block.map(|face| trees.depth(trees.root(face as u32)) as usize).max()
+        });
+        Ok(levels?.into_iter().flatten().max().unwrap_or(0))
     }
 }

@@ -6,7 +6,7 @@ use super::flat::Assembled;
 use super::judge::Goal;
 use super::measure::{Measured, measure};
 use super::settle::sharp_edges;
-use super::{BLOCK, Engine, Plan, block, probe, sides};
+use super::{BLOCK, Engine, Plan, probe, sides};
 use crate::certificate::{TriangleFrame, exceeds};
 use crate::criterion::{Criteria, Region};
 use crate::index::{FaceId, HalfEdgeId};
@@ -14,7 +14,7 @@ use crate::mesh::{Mesh, Topology, check_finite, outgoing_half_edges_polled};
 use crate::progress::{Cancelled, SharedWatch, Stage};
 use crate::refine::RefineError;
 use crate::refine::exact_options::ExactOptions;
-use crate::refine::exact_result::{Exact, ExactStop};
+use crate::refine::exact_result::{ErrorBounds, Exact, ExactStop};
 use crate::vector::vector;
 
 /// What rounding may do to an angle against its limit, relative: normals are taken anew from what is emitted.
@@ -53,10 +53,7 @@ impl Outcome {
         let (control, watch) = (engine.control, engine.watch);
         watch.stage(Stage::Bounding, None)?;
         let stop = if stop == ExactStop::Met && plan.has_failed { ExactStop::LevelCap } else { stop };
-        check_finite(&emission.positions)?;
-        if let Some(why) = control.rules.failure() {
-            return Err(why.clone().into());
-        }
+        engine.check(&emission)?;
         let is_met = stop == ExactStop::Met && options.tolerance.is_some();
         let mut error = probe::probe(engine, &plan, &emission, (measured.as_deref(), is_met))?;
         // Where nothing was asked of distances, a bound far from the truth says nothing.
@@ -77,47 +74,9 @@ impl Outcome {
         };
         let pixels = options.pixels.and(measured.as_ref());
         let pixels = pixels.map(|measured| measured.iter().map(|face| face.pixels).fold(0.0, f64::max));
-        watch.stage(Stage::Assembling, None)?;
-        let tags = sides::tags((control, watch), &emission)?;
-        let sides = sides::sides((control, watch), &emission)?;
-        let trees = &plan.decision.trees;
-        let faces = control.mesh.face_count();
-        let levels = watch.pieces(faces, block(faces), |block| {
-            block.map(|face| trees.depth(trees.root(face as u32)) as usize).max()
-        });
-        let levels = levels?.into_iter().flatten().max().unwrap_or(0);
+        let levels = plan.levels(watch)?;
         drop(plan);
-        let sharp = sharp_edges(&emission, watch)?;
-        let Emission { positions, normals, origins, triangles, twins, parents, starts, junctions, .. } =
-            emission;
-        let whole =
-            Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions };
-        let corners = control.mesh.vertex_count();
-        let (whole, unfolded) = control.flat.merge(whole, (&starts, &sharp), corners, watch)?;
-        let Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions } =
-            whole;
-        let outgoing =
-            outgoing_half_edges_polled(&triangles, &twins, positions.len(), &mut |_| watch.poll())?;
-        let topology = Topology::from_parts(triangles, twins, outgoing);
-        let mut exact = Exact {
-            mesh: Mesh::from_parts(topology, positions, tags, junctions),
-            normals,
-            sides,
-            origins,
-            off_planes: control.flat.off_planes(),
-            unfolded,
-            parents,
-            is_optimized: false,
-            side_origins: Vec::new(),
-            error,
-            pixels,
-            attribute_bounds: Vec::new(),
-            open_cones: 0,
-            refused: 0,
-            worst,
-            stop,
-            levels,
-        };
+        let mut exact = Exact { error, pixels, worst, stop, ..engine.assemble(emission, levels)? };
         if options.angle.is_some()
             && let Some(criteria) = &control.criteria
         {
@@ -130,8 +89,62 @@ impl Outcome {
     }
 }
 
+impl Engine<'_> {
+    /// Whether what was emitted is all finite, and all stencils were found.
+    pub(super) fn check(&self, emission: &Emission) -> Result<(), RefineError> {
+        check_finite(&emission.positions)?;
+        match self.control.rules.failure() {
+            Some(why) => Err(why.clone().into()),
+            None => Ok(()),
+        }
+    }
+
+    /// The mesh of what was emitted, of which nothing is proven yet.
+    pub(super) fn assemble(&self, emission: Emission, levels: usize) -> Result<Exact, RefineError> {
+        let (control, watch) = (self.control, self.watch);
+        watch.stage(Stage::Assembling, None)?;
+        let tags = sides::tags((control, watch), &emission)?;
+        let sides = sides::sides((control, watch), &emission)?;
+        let sharp = sharp_edges(&emission, watch)?;
+        let Emission { positions, normals, origins, triangles, twins, parents, starts, junctions, .. } =
+            emission;
+        let whole =
+            Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions };
+        let corners = control.mesh.vertex_count();
+        let (whole, unfolded) = control.flat.merge(whole, (&starts, &sharp), corners, watch)?;
+        let Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions } =
+            whole;
+        let outgoing =
+            outgoing_half_edges_polled(&triangles, &twins, positions.len(), &mut |_| watch.poll())?;
+        let topology = Topology::from_parts(triangles, twins, outgoing);
+        Ok(Exact {
+            mesh: Mesh::from_parts(topology, positions, tags, junctions),
+            normals,
+            sides,
+            origins,
+            off_planes: control.flat.off_planes(),
+            unfolded,
+            parents,
+            is_optimized: false,
+            side_origins: Vec::new(),
+            error: ErrorBounds { lower: 0.0, upper: f64::INFINITY, at: [0.0; 3], certified: false },
+            pixels: None,
+            attribute_bounds: Vec::new(),
+            open_cones: 0,
+            refused: 0,
+            worst: 0.0,
+            stop: ExactStop::Met,
+            levels,
+        })
+    }
+}
+
 /// Triangles outside their cones.
-fn open_cones(exact: &Exact, criteria: &Criteria, watch: &SharedWatch<'_>) -> Result<usize, Cancelled> {
+pub(super) fn open_cones(
+    exact: &Exact,
+    criteria: &Criteria,
+    watch: &SharedWatch<'_>,
+) -> Result<usize, Cancelled> {
     let surface = exact.mesh.as_triangles();
     let is_open = |face: usize| {
         let corners = surface.corners(face).map(vector);

@@ -14,8 +14,8 @@ use crate::scheme::Scheme;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Frames {
-    /// The refined mesh, with the vertices of the first frame as [`Self::replay`] gives them. [`Exact::worst`] and
-    /// [`Exact::stop`] are about all frames.
+    /// The refined mesh, with the vertices of the first frame as [`Self::replay`] gives them. [`Exact::worst`], [`Exact::pixels`]
+    /// and [`Exact::open_cones`] are the greatest of any frame, and [`Exact::stop`] is about all of them.
     pub refined: Exact,
     /// Gives the vertices of all frames.
     pub replay: Replay,
