@@ -97,7 +97,7 @@ impl Beholder for Measuring<'_> {
         if self.changes.is_some_and(|changes| !changes.concern(self.emission, emitted.number)) {
             return;
         }
-        let mut among = Among::of(self.emission, self.sharp, emitted);
+        let mut among = Among::of(self.emission, self.sharp, emitted, self.criteria);
         if let Some(criteria) = self.criteria {
             among.backs = among.looks_away(criteria, |viewer, rest| {
                 Behind::of(self.back_faces, emitted, &over, rules).is_back(&over.corners(), viewer, rest)
@@ -324,18 +324,25 @@ struct Among {
     moved: f64,
     /// How far within the plane.
     aside: f64,
-    /// The triangles beside it.
+    /// The triangles beside it, where anybody asks.
     neighbours: [Option<[DVec3; 3]>; 3],
     /// Who sees nothing but its back and theirs.
     backs: Backs,
 }
 
 impl Among {
-    fn of(emission: &Emission, sharp: &HashSet<u32>, emitted: &Emitted) -> Self {
+    fn of(
+        emission: &Emission,
+        sharp: &HashSet<u32>,
+        emitted: &Emitted,
+        criteria: Option<&Criteria>,
+    ) -> Self {
         let corners = emitted.vertices.map(|vertex| vector(emission.positions[vertex as usize]));
         let frame = TriangleFrame::new(corners);
-        let (squared, slopes) = beside(emission, sharp, emitted.number);
-        let neighbours = neighbours(emission, sharp, emitted.number);
+        let ((squared, slopes), neighbours) = match criteria.is_some_and(|criteria| criteria.viewers() > 0) {
+            true => neighbours(emission, sharp, emitted.number),
+            false => (beside(emission, sharp, emitted.number), [None; 3]),
+        };
         // The emitted triangle may begin at another corner.
         let emitted_at = emission.triangles[emitted.number as usize];
         let first = emitted_at.iter().position(|&vertex| vertex == emitted.vertices[0]).unwrap_or(0);

@@ -179,27 +179,35 @@ pub(super) fn sharp_edges(emission: &Emission, watch: &SharedWatch<'_>) -> Resul
 
 /// [`around`] of an emitted triangle. Sharp edges have nobody beyond.
 pub(super) fn beside(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -> (f64, [f64; 3]) {
-    let opposite =
-        neighbours(emission, sharp, triangle).map(|corners| corners.map(|[.., opposite]| opposite));
+    let opposite = [0, 1, 2].map(|edge| {
+        let twin = beyond(emission, sharp, 3 * triangle + edge)?;
+        let vertex = emission.triangles[twin as usize / 3][(twin as usize + 2) % 3];
+        Some(vector(emission.positions[vertex as usize]))
+    });
     around(corners(emission, triangle), &opposite)
 }
 
-/// By edge, the corners of the triangle beyond, the one opposite last. Sharp edges have nobody beyond.
+/// [`beside`], and by edge the corners of the triangle beyond, the one opposite last.
 pub(super) fn neighbours(
     emission: &Emission,
     sharp: &HashSet<u32>,
     triangle: u32,
-) -> [Option<[DVec3; 3]>; 3] {
-    [0, 1, 2].map(|edge| {
-        let h = 3 * triangle + edge;
-        let twin = emission.twins[h as usize];
-        let is_open = twin == NONE || !sharp.is_empty() && sharp.contains(&h);
-        (!is_open).then(|| {
-            let mut corners = corners(emission, twin / 3);
-            corners.rotate_left(twin as usize % 3);
-            corners
-        })
-    })
+) -> ((f64, [f64; 3]), [Option<[DVec3; 3]>; 3]) {
+    let neighbours = [0, 1, 2].map(|edge| {
+        let twin = beyond(emission, sharp, 3 * triangle + edge)?;
+        let mut corners = corners(emission, twin / 3);
+        corners.rotate_left(twin as usize % 3);
+        Some(corners)
+    });
+    let opposite = neighbours.map(|corners| corners.map(|[.., opposite]| opposite));
+    (around(corners(emission, triangle), &opposite), neighbours)
+}
+
+/// The half-edge on the other side, where somebody is.
+fn beyond(emission: &Emission, sharp: &HashSet<u32>, h: u32) -> Option<u32> {
+    let twin = emission.twins[h as usize];
+    let is_open = twin == NONE || !sharp.is_empty() && sharp.contains(&h);
+    (!is_open).then_some(twin)
 }
 
 fn corners(emission: &Emission, triangle: u32) -> [DVec3; 3] {
