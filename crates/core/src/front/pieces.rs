@@ -14,46 +14,11 @@ use crate::certificate::{SecondDerivatives, Sheet, SubTriangle};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{Patch, Points, Quartic};
+use crate::patch::{Patch, Points, Quartic, Spot};
 use crate::vector::DVec3;
 
 /// Values of irregular pieces are tight down to this part of their size.
 const TIGHT: f64 = 1e-6;
-
-/// A node's place in the domain of a regular piece: its first corner, and its edges' length there, negative for nodes that stand on
-/// their heads.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Spot {
-    u: f64,
-    v: f64,
-    size: f64,
-}
-
-impl Spot {
-    const WHOLE: Self = Self { u: 0.0, v: 0.0, size: 1.0 };
-
-    fn child(self, child: usize) -> Self {
-        let Self { u, v, size } = self;
-        let half = 0.5 * size;
-        match child {
-            0 => Self { u, v, size: half },
-            1 => Self { u: u + half, v, size: half },
-            2 => Self { u, v: v + half, size: half },
-            _ => Self { u: u + half, v: v + half, size: -half },
-        }
-    }
-
-    fn corners(self) -> [[f64; 2]; 3] {
-        let Self { u, v, size } = self;
-        [[u, v], [u + size, v], [u, v + size]]
-    }
-
-    fn middle(self, edge: usize) -> [f64; 2] {
-        let Self { u, v, size } = self;
-        let half = 0.5 * size;
-        [[u + half, v], [u + half, v + half], [u, v + half]][edge]
-    }
-}
 
 /// Where the surface over a node is kept.
 #[derive(Clone, Copy, Debug)]
@@ -249,13 +214,13 @@ impl<'a> Pieces<'a> {
                 let (sheet, rules) = self.surface.sheet(FaceId(face));
                 match &sheet.patch {
                     Patch::Regular(points) if self.measure == Measure::Distance => {
-                        at(&quartic(points), Spot::WHOLE.middle(edge))
+                        at(&quartic(points), Spot::WHOLE.along(edge, 0.5))
                     }
                     _ => sheet.patch.refined(rules).middle(edge).position,
                 }
             }
             Ground::Regular(piece, spot) => {
-                self.regular.get(piece).map_or(DVec3::NAN, |piece| at(piece, spot.middle(edge)))
+                self.regular.get(piece).map_or(DVec3::NAN, |piece| at(piece, spot.along(edge, 0.5)))
             }
             Ground::General(piece) => self.general.get(piece).map_or(DVec3::NAN, |piece| piece.middles[edge]),
             Ground::Sampled(piece) => self.sampled.get(piece).map_or(DVec3::NAN, |piece| piece.middle(edge)),

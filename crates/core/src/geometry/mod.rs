@@ -1,13 +1,15 @@
 //! What several rooms need of triangles and sets of numbers, once: edges and their triangles, disjoint sets, the closest
-//! point of a triangle, a tree of boxes. Knows no mesh.
+//! point of a triangle, a tree of boxes, coordinates in which a surface is about as large as 1. Knows no mesh.
 
 pub(crate) mod box_tree;
 mod disjoint_sets;
 mod edges;
+mod surface_frame;
 mod triangle;
 
 pub(crate) use disjoint_sets::DisjointSets;
 pub(crate) use edges::{EdgeSide, every_edge, for_each_edge};
+pub(crate) use surface_frame::SurfaceFrame;
 pub(crate) use triangle::{Foot, closest_to_origin};
 
 /// Stands for "no element" among indices.

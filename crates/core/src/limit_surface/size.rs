@@ -7,7 +7,7 @@
 use super::{LimitSurface, regular};
 use crate::index::FaceId;
 use crate::parallel;
-use crate::patch::{Patch, Quartic, child_corners, root_patch};
+use crate::patch::{Patch, Quartic, Spot, child_corners, root_patch};
 use crate::vector::{DVec3, vector};
 
 /// Faces that are integrated together.
@@ -50,7 +50,7 @@ struct Volume;
 
 impl Integrand for Area {
     fn of_piece(&self, piece: &Quartic, whole: f64) -> f64 {
-        area(piece, Part::WHOLE, AGREEMENT * whole, MOST_DIVISIONS)
+        area(piece, Spot::WHOLE, AGREEMENT * whole, MOST_DIVISIONS)
     }
 
     fn of_triangle(&self, [a, b, c]: [DVec3; 3]) -> f64 {
@@ -60,7 +60,7 @@ impl Integrand for Area {
 
 impl Integrand for Volume {
     fn of_piece(&self, piece: &Quartic, _: f64) -> f64 {
-        integral(&SIX, Part::WHOLE, |u, v| {
+        integral(&SIX, Spot::WHOLE, |u, v| {
             let [by_u, by_v] = piece.tangents(u, v);
             piece.point(u, v).dot(by_u.cross(by_v)) / 3.0
         })
@@ -153,46 +153,29 @@ impl LimitSurface<'_> {
     }
 }
 
-fn area(piece: &Quartic, part: Part, agreement: f64, divisions: u32) -> f64 {
+fn area(piece: &Quartic, spot: Spot, agreement: f64, divisions: u32) -> f64 {
     let density = |u: f64, v: f64| {
         let [by_u, by_v] = piece.tangents(u, v);
         by_u.cross(by_v).length()
     };
-    let (coarse, fine) = (integral(&FOUR, part, density), integral(&SIX, part, density));
+    let (coarse, fine) = (integral(&FOUR, spot, density), integral(&SIX, spot, density));
     if (coarse - fine).abs() <= agreement || divisions == 0 {
         return fine;
     }
-    part.parts().into_iter().map(|part| area(piece, part, 0.25 * agreement, divisions - 1)).sum()
-}
-
-/// A part of the parameter triangle: a corner and the size from there, below 0 where it stands on its head.
-#[derive(Clone, Copy)]
-struct Part {
-    corner: [f64; 2],
-    size: f64,
-}
-
-impl Part {
-    const WHOLE: Self = Self { corner: [0.0, 0.0], size: 1.0 };
-
-    fn parts(self) -> [Self; 4] {
-        let ([u, v], half) = (self.corner, 0.5 * self.size);
-        let at = |corner| Self { corner, size: half };
-        [at([u, v]), at([u + half, v]), at([u, v + half]), Self { corner: [u + half, v + half], size: -half }]
-    }
+    (0..4).map(|child| area(piece, spot.child(child), 0.25 * agreement, divisions - 1)).sum()
 }
 
 /// The integral over a part, by a product of rules on the square that is collapsed to the triangle.
-fn integral(rule: &[(f64, f64)], part: Part, density: impl Fn(f64, f64) -> f64) -> f64 {
+fn integral(rule: &[(f64, f64)], spot: Spot, density: impl Fn(f64, f64) -> f64) -> f64 {
     let nodes = || rule.iter().flat_map(|&(at, weight)| [(-at, weight), (at, weight)]);
     let mut sum = 0.0;
     for (x, of_x) in nodes() {
         let x = 0.5 + 0.5 * x;
         for (y, of_y) in nodes() {
             let y = (0.5 + 0.5 * y) * (1.0 - x);
-            let [u, v] = [part.corner[0] + part.size * x, part.corner[1] + part.size * y];
+            let [u, v] = spot.at([x, y]);
             sum += of_x * of_y * (1.0 - x) * density(u, v);
         }
     }
-    0.25 * sum * part.size * part.size
+    0.25 * sum * spot.size * spot.size
 }

@@ -19,6 +19,7 @@ mod rules;
 mod sector;
 mod semi_sharp;
 pub(crate) mod settling;
+mod spot;
 pub(crate) mod submesh;
 mod support;
 
@@ -34,6 +35,7 @@ use pole::{LARGEST_RING, PolePatch, RefinedPole};
 pub(crate) use quartic::Quartic;
 use sector::{Far, RefinedSectors, SectorPatch};
 use semi_sharp::{RefinedSemiSharp, SemiSharpPatch};
+pub(crate) use spot::Spot;
 
 /// The neighbours of a vertex: nearly all have at most eight.
 pub(crate) type Neighbours = smallvec::SmallVec<[DVec3; 8]>;

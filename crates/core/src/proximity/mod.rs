@@ -10,6 +10,7 @@ mod nearest;
 mod pieces;
 mod winding;
 
+use crate::geometry::SurfaceFrame;
 use crate::geometry::box_tree::BoxTree;
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
@@ -17,7 +18,7 @@ use crate::parallel;
 use crate::progress::{Cancelled, Observer, Stage, Watch, uncancelled, unobserved};
 use crate::vector::vector;
 use nearest::Query;
-use pieces::{FacePieces, Frame};
+use pieces::FacePieces;
 use winding::Chains;
 
 /// Control faces up to which their pieces are kept, some ten kilobytes a face; those of larger meshes are made when they are looked at.
@@ -137,7 +138,7 @@ pub enum Membership {
 /// ```
 pub struct Proximity<'a> {
     surface: &'a LimitSurface<'a>,
-    frame: Frame,
+    frame: SurfaceFrame,
     /// Over the boxes of the control faces' pieces.
     tree: BoxTree,
     /// By control face; empty where they are made when they are needed.
@@ -170,7 +171,7 @@ impl<'a> Proximity<'a> {
         if mesh.face_count() == 0 {
             return Err(ProximityError::Empty);
         }
-        let frame = Frame::of(bounds.map(vector));
+        let frame = SurfaceFrame::of(bounds.map(vector));
         let mut watch = Watch::new(observer, Stage::Indexing);
         watch.triangles(mesh.face_count());
         watch.stage(Stage::Indexing, Some(mesh.face_count()))?;
@@ -232,7 +233,7 @@ impl<'a> Proximity<'a> {
         check(points)?;
         let mut watch = Watch::new(observer, Stage::Sampling);
         watch.stage(Stage::Sampling, Some(points.len()))?;
-        let tolerance = self.frame.length_within(tolerance).max(LEAST_TOLERANCE);
+        let tolerance = self.frame.length_inside(tolerance).max(LEAST_TOLERANCE);
         let poll = &mut |done| watch.done(done);
         let found = parallel::long_pieces_polled(points.len(), POINTS, poll, |block, is_stopped| {
             let mut query = Query::new(self, tolerance, is_stopped);
@@ -252,7 +253,7 @@ impl<'a> Proximity<'a> {
     pub fn winding_number(&self, point: [f64; 3]) -> Result<Option<i32>, ProximityError> {
         check(&[point])?;
         let chains = self.chains.as_ref().map_err(Clone::clone)?;
-        Ok(chains.winding_number(self, self.frame.inside(point)))
+        Ok(chains.winding_number(self, self.frame.inside(vector(point))))
     }
 
     /// Where a point is: inside if the surface winds around it, whichever way its normals point.

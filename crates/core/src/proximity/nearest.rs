@@ -7,13 +7,14 @@
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::pieces::{Form, Part, Piece, RegularPiece};
+use super::pieces::{Form, Piece, RegularPiece};
 use super::{Closest, Proximity};
 use crate::geometry::box_tree::distance_to;
 use crate::geometry::closest_to_origin;
 use crate::index::FaceId;
 use crate::parallel::IsStopped;
-use crate::vector::DVec3;
+use crate::patch::Spot;
+use crate::vector::{DVec3, vector};
 
 /// Newton's steps on a piece at most: it converges within five, or it is better to quarter the piece.
 const STEPS: usize = 8;
@@ -110,7 +111,7 @@ impl<'q> Query<'q> {
     /// What it finds is of no use once it was stopped.
     pub(super) fn closest(&mut self, point: [f64; 3]) -> Closest {
         let frame = &self.proximity.frame;
-        (self.from, self.best, self.passed_over) = (frame.inside(point), NOTHING, f64::INFINITY);
+        (self.from, self.best, self.passed_over) = (frame.inside(vector(point)), NOTHING, f64::INFINITY);
         let mut number = 0;
         self.waiting.clear();
         self.wait(&mut number, 0.0, What::Node(0));
@@ -142,7 +143,7 @@ impl<'q> Query<'q> {
         }
         let (best, lower) = (self.best, self.passed_over);
         Closest {
-            point: frame.outside(best.point),
+            point: frame.outside(best.point).to_array(),
             face: FaceId(best.face),
             barycentric: best.weights,
             distance: frame.length_outside(best.distance),
@@ -210,13 +211,13 @@ impl<'q> Query<'q> {
             Form::Regular(regular) => {
                 let [a, b, c] = piece.corners.map(|corner| corner - self.from);
                 let [_, u, v] = closest_to_origin(a, b, c).weights;
-                if let Some(lower) = self.descend(regular, [u, v], (piece.part, face)) {
+                if let Some(lower) = self.descend(regular, [u, v], (piece.spot, face)) {
                     return self.pass_over(lower);
                 }
             }
             Form::Irregular(_) => {
                 for (corner, at) in piece.corners.into_iter().zip([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]) {
-                    self.offer(corner.distance(self.from), corner, (piece.part, face), at);
+                    self.offer(corner.distance(self.from), corner, (piece.spot, face), at);
                 }
             }
         }
@@ -237,17 +238,17 @@ impl<'q> Query<'q> {
     }
 
     /// Takes a point if it is nearer than any before, and tells whether it is.
-    fn offer(&mut self, distance: f64, point: DVec3, (part, face): (Part, u32), at: [f64; 2]) -> bool {
+    fn offer(&mut self, distance: f64, point: DVec3, (spot, face): (Spot, u32), at: [f64; 2]) -> bool {
         let is_nearer = distance < self.best.distance;
         if is_nearer {
-            self.best = Best { distance, point, face, weights: part.weights(at) };
+            self.best = Best { distance, point, face, weights: spot.weights(at) };
         }
         is_nearer
     }
 
     /// Newton's method on a regular piece, from a place; gives a bound for all of the piece that need not be looked at any more. A point that
     /// is the nearest so far is followed to where it is nearest, which moves it by far more than its distance shows.
-    fn descend(&mut self, piece: &RegularPiece, mut at: [f64; 2], over: (Part, u32)) -> Option<f64> {
+    fn descend(&mut self, piece: &RegularPiece, mut at: [f64; 2], over: (Spot, u32)) -> Option<f64> {
         let from = self.from - piece.origin;
         let made = if piece.convexity.is_none() { Some(piece.convexity()) } else { None };
         let convexity = piece.convexity.as_ref().or(made.as_ref())?;

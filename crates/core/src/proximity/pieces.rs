@@ -1,95 +1,22 @@
 //! The surface over a control face in pieces, each in the hull of points that stand about the triangle of its corners.
 //!
 //! Distance to a triangle is convex: a piece in the hull of points that are within δ of a triangle is within δ of it, too. Coordinates
-//! are those of a [`Frame`], in which the control mesh is about as large as 1.
+//! are those of a [`SurfaceFrame`], in which the control mesh is about as large as 1.
 
 use super::convexity::Convexity;
 use crate::geometry::box_tree::{Bounds, NO_BOUNDS, grown};
-use crate::geometry::closest_to_origin;
+use crate::geometry::{SurfaceFrame, closest_to_origin};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{self, Patch, Quartic, Rules, child_corners};
-use crate::vector::{DVec3, diagonal, vector};
+use crate::patch::{self, Patch, Quartic, Rules, Spot, child_corners};
+use crate::vector::DVec3;
 
 /// Refinements of a face towards irregular corners before its pieces are kept as they are.
 const KEPT_LEVELS: u32 = 3;
 
 /// Regular pieces are quartered once if they leave their triangle by more than this part of their longest edge.
 const FLAT: f64 = 0.02;
-
-/// Coordinates that are about as large as 1, so that squares of lengths neither vanish nor overflow.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    middle: DVec3,
-    size: f64,
-}
-
-impl Frame {
-    pub(super) fn of([low, high]: Bounds) -> Self {
-        let size = diagonal(0.5 * low, 0.5 * high);
-        Self { middle: 0.5 * low + 0.5 * high, size: if size > 0.0 && size.is_finite() { size } else { 1.0 } }
-    }
-
-    /// A point in the frame.
-    pub(super) fn inside(&self, point: [f64; 3]) -> DVec3 {
-        self.of_vector(vector(point))
-    }
-
-    fn of_vector(&self, point: DVec3) -> DVec3 {
-        (point - self.middle) / self.size
-    }
-
-    /// A length in the frame.
-    pub(super) fn length_within(&self, length: f64) -> f64 {
-        length / self.size
-    }
-
-    /// A point of the frame, outside.
-    pub(super) fn outside(&self, point: DVec3) -> [f64; 3] {
-        (self.size * point + self.middle).to_array()
-    }
-
-    /// A length of the frame, outside.
-    pub(super) fn length_outside(&self, length: f64) -> f64 {
-        self.size * length
-    }
-}
-
-/// Where a part lies in the parameters of a face: those of its first corner, and its size, below 0 where it stands on its head.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
-    corner: [f64; 2],
-    size: f64,
-}
-
-impl Part {
-    const WHOLE: Self = Self { corner: [0.0, 0.0], size: 1.0 };
-
-    /// Those at the corners and the middle one, as [`patch::RefinedPatch`] numbers them.
-    const PARTS: [Self; 4] = [
-        Self { corner: [0.0, 0.0], size: 0.5 },
-        Self { corner: [0.5, 0.0], size: 0.5 },
-        Self { corner: [0.0, 0.5], size: 0.5 },
-        Self { corner: [0.5, 0.5], size: -0.5 },
-    ];
-
-    fn part(self, part: usize) -> Self {
-        let own = Self::PARTS[part];
-        Self { corner: self.at(own.corner), size: self.size * own.size }
-    }
-
-    /// Where (u, v) of the part is in the face.
-    fn at(self, [u, v]: [f64; 2]) -> [f64; 2] {
-        [self.corner[0] + self.size * u, self.corner[1] + self.size * v]
-    }
-
-    /// The weights of the face's corners at (u, v) of the part.
-    pub(super) fn weights(self, at: [f64; 2]) -> [f64; 3] {
-        let [u, v] = self.at(at);
-        [1.0 - u - v, u, v].map(|weight| weight.clamp(0.0, 1.0))
-    }
-}
 
 /// A piece of the surface.
 #[derive(Clone, Debug)]
@@ -103,7 +30,7 @@ pub(super) struct Piece {
     /// How far a point of it is at most from that of the triangle with the same weights.
     pub(super) deviation: f64,
     /// Where it is over the face.
-    pub(super) part: Part,
+    pub(super) spot: Spot,
     pub(super) form: Form,
 }
 
@@ -133,7 +60,7 @@ impl RegularPiece {
 
 impl Piece {
     /// Of a net in the frame.
-    fn of_net(net: &BezierTriangle, part: Part) -> Self {
+    fn of_net(net: &BezierTriangle, spot: Spot) -> Self {
         let corners = net.corners();
         let origin = (corners[0] + corners[1] + corners[2]) / 3.0;
         let net = BezierTriangle(net.0.map(|point| point - origin));
@@ -144,44 +71,44 @@ impl Piece {
             bounds: bounds.map(|corner| corner + origin),
             corners,
             height,
-            deviation: deviation(&net),
-            part,
+            deviation: net.off_flat().map(DVec3::length_squared).fold(0.0, f64::max).sqrt(),
+            spot,
             form: Form::Regular(Box::new(piece)),
         }
     }
 
-    fn of_patch(frame: &Frame, patch: Patch, corners: [DVec3; 3], part: Part) -> Self {
+    fn of_patch(frame: &SurfaceFrame, patch: Patch, corners: [DVec3; 3], spot: Spot) -> Self {
         if let Patch::Regular(points) = patch {
-            return Self::of_points(frame, &points, part);
+            return Self::of_points(frame, &points, spot);
         }
         let mut points = Vec::new();
-        patch.for_each_hull_point(|point| points.push(frame.of_vector(point)));
+        patch.for_each_hull_point(|point| points.push(frame.inside(point)));
         let (bounds, height) = hull(points.iter().copied(), corners);
         let spans = points.iter().flat_map(|point| corners.map(|corner| point.distance(corner)));
         let deviation = spans.fold(0.0, f64::max);
-        Self { bounds, corners, height, deviation, part, form: Form::Irregular(Box::new(patch)) }
+        Self { bounds, corners, height, deviation, spot, form: Form::Irregular(Box::new(patch)) }
     }
 
-    fn of_points(frame: &Frame, points: &patch::Points, part: Part) -> Self {
-        Self::of_net(&BezierTriangle::of(&points.map(|point| frame.of_vector(point))), part)
+    fn of_points(frame: &SurfaceFrame, points: &patch::Points, spot: Spot) -> Self {
+        Self::of_net(&BezierTriangle::of(&points.map(|point| frame.inside(point))), spot)
     }
 
     /// The pieces over its four parts.
-    pub(super) fn parts(&self, frame: &Frame, rules: &Rules<'_>) -> [Self; 4] {
+    pub(super) fn parts(&self, frame: &SurfaceFrame, rules: &Rules<'_>) -> [Self; 4] {
         match &self.form {
             Form::Regular(regular) => [0, 1, 2, 3].map(|part| {
-                let Part { corner, size } = Part::PARTS[part];
-                let net = regular.quartic.net(corner, size).0.map(|point| point + regular.origin);
-                Self::of_net(&BezierTriangle(net), self.part.part(part))
+                let Spot { u, v, size } = Spot::WHOLE.child(part);
+                let net = regular.quartic.net([u, v], size).0.map(|point| point + regular.origin);
+                Self::of_net(&BezierTriangle(net), self.spot.child(part))
             }),
             Form::Irregular(patch) => {
                 let refined = patch.refined(rules);
-                let middles = [0, 1, 2].map(|edge| frame.of_vector(refined.middle(edge).position));
+                let middles = [0, 1, 2].map(|edge| frame.inside(refined.middle(edge).position));
                 [0, 1, 2, 3].map(|part| match refined.points(part) {
-                    Some(points) => Self::of_points(frame, &points, self.part.part(part)),
+                    Some(points) => Self::of_points(frame, &points, self.spot.child(part)),
                     None => {
                         let corners = child_corners(self.corners, middles, part);
-                        Self::of_patch(frame, refined.part(part), corners, self.part.part(part))
+                        Self::of_patch(frame, refined.part(part), corners, self.spot.child(part))
                     }
                 })
             }
@@ -221,18 +148,6 @@ fn hull(points: impl Iterator<Item = DVec3>, [a, b, c]: [DVec3; 3]) -> (Bounds, 
     (bounds, squared.sqrt())
 }
 
-/// How far a net is at most from that of its triangle: the greatest distance of points with the same weights.
-fn deviation(net: &BezierTriangle) -> f64 {
-    let [a, b, c] = net.corners();
-    let mut greatest = 0.0;
-    let places = (0..5).flat_map(|k| (0..5 - k).map(move |j| (f64::from(j), f64::from(k))));
-    for (point, (j, k)) in net.0.iter().zip(places) {
-        let flat = 0.25 * ((4.0 - j - k) * a + j * b + k * c);
-        greatest = f64::max(greatest, point.distance_squared(flat));
-    }
-    greatest.sqrt()
-}
-
 /// The pieces over a control face.
 #[derive(Clone, Debug)]
 pub(super) struct FacePieces {
@@ -243,7 +158,7 @@ pub(super) struct FacePieces {
 }
 
 impl FacePieces {
-    pub(super) fn of(surface: &LimitSurface<'_>, frame: &Frame, face: FaceId) -> Self {
+    pub(super) fn of(surface: &LimitSurface<'_>, frame: &SurfaceFrame, face: FaceId) -> Self {
         let mut found = Self { pieces: Vec::new(), closing: Vec::new() };
         found.append(whole(surface, frame, face), (frame, surface.rules()), 0);
         found
@@ -254,7 +169,7 @@ impl FacePieces {
         joined(&self.pieces)
     }
 
-    fn append(&mut self, piece: Piece, (frame, rules): (&Frame, &Rules<'_>), level: u32) {
+    fn append(&mut self, piece: Piece, (frame, rules): (&SurfaceFrame, &Rules<'_>), level: u32) {
         if !piece.is_coarse(level) {
             self.pieces.push(piece.with_convexity());
             return;
@@ -275,15 +190,15 @@ pub(super) fn closing(piece: &Piece, parts: &[Piece; 4]) -> [[DVec3; 3]; 3] {
 }
 
 /// All of the surface over a face.
-fn whole(surface: &LimitSurface<'_>, frame: &Frame, face: FaceId) -> Piece {
+fn whole(surface: &LimitSurface<'_>, frame: &SurfaceFrame, face: FaceId) -> Piece {
     let (sheet, _) = surface.sheet(face);
-    let corners = sheet.corners.map(|corner| frame.of_vector(corner));
-    Piece::of_patch(frame, sheet.patch, corners, Part::WHOLE)
+    let corners = sheet.corners.map(|corner| frame.inside(corner));
+    Piece::of_patch(frame, sheet.patch, corners, Spot::WHOLE)
 }
 
 /// A box around the surface over a face and the triangle of its corners, where pieces are not kept: around its four parts, as the hull
 /// of all its control points is far wider.
-pub(super) fn bounds(surface: &LimitSurface<'_>, frame: &Frame, face: FaceId) -> Bounds {
+pub(super) fn bounds(surface: &LimitSurface<'_>, frame: &SurfaceFrame, face: FaceId) -> Bounds {
     joined(&whole(surface, frame, face).parts(frame, surface.rules()))
 }
 

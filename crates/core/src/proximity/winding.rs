@@ -9,10 +9,10 @@
 
 use core::f64::consts::PI;
 
-use super::pieces::{Frame, Piece, closing};
+use super::pieces::{Piece, closing};
 use super::{NEAR, Proximity, ProximityError};
 use crate::geometry::box_tree::{BoxTree, distance_to};
-use crate::geometry::closest_to_origin;
+use crate::geometry::{SurfaceFrame, closest_to_origin};
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit_surface::LimitSurface;
 use crate::vector::{DVec3, vector};
@@ -45,7 +45,7 @@ enum Doubt {
 impl Chains {
     pub(super) fn of(
         surface: &LimitSurface<'_>,
-        frame: &Frame,
+        frame: &SurfaceFrame,
         tree: &BoxTree,
     ) -> Result<Self, ProximityError> {
         let topology = surface.control().topology();
@@ -68,7 +68,7 @@ impl Chains {
             }
             starts.push(edges.len());
         }
-        let corners = surface.corner_limits().iter().map(|&corner| frame.inside(corner)).collect();
+        let corners = surface.corner_limits().iter().map(|&corner| frame.inside(vector(corner))).collect();
         Ok(Self { corners, edges, starts })
     }
 

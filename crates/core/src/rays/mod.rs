@@ -10,13 +10,14 @@ mod pieces;
 mod planar;
 mod search;
 
+use crate::geometry::SurfaceFrame;
 use crate::geometry::box_tree::{Bounds, BoxTree, NO_BOUNDS, grown};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::parallel::{self, Cancelled};
 use crate::progress::{Observer, SharedWatch, Stage, uncancelled};
 use crate::vector::vector;
-use pieces::{Piece, Scale};
+use pieces::Piece;
 use search::{Found, RayFrame, RaySearch};
 
 /// Control faces whose pieces are made together.
@@ -133,7 +134,7 @@ pub enum RayError {
 /// ```
 pub struct RayCaster<'a> {
     surface: &'a LimitSurface<'a>,
-    scale: Scale,
+    frame: SurfaceFrame,
     pieces: Vec<Piece>,
     tree: BoxTree,
 }
@@ -148,15 +149,15 @@ impl<'a> RayCaster<'a> {
             return Err(RayError::Scheme { name: surface.rules().scheme().name().to_owned() });
         }
         let mesh = surface.control();
-        let scale = Scale::of(mesh.positions().iter().map(|&p| vector(p)).fold(NO_BOUNDS, grown));
+        let frame = SurfaceFrame::of(mesh.positions().iter().map(|&p| vector(p)).fold(NO_BOUNDS, grown));
         let faces = mesh.face_count();
-        let of_faces = |face: usize| pieces::pieces(surface, &scale, FaceId(face as u32), faces);
+        let of_faces = |face: usize| pieces::pieces(surface, &frame, FaceId(face as u32), faces);
         let blocks = parallel::pieces_of(faces, BLOCK, |block| block.flat_map(of_faces).collect::<Vec<_>>());
         let (boxes, pieces): (Vec<Bounds>, Vec<Piece>) = blocks.into_iter().flatten().unzip();
         if let Some(why) = surface.failure() {
             return Err(why.clone().into());
         }
-        Ok(Self { surface, scale, tree: BoxTree::of(&boxes), pieces })
+        Ok(Self { surface, frame, tree: BoxTree::of(&boxes), pieces })
     }
 
     /// All points where a ray meets the surface, in their order along it. None is missed; what lies on an edge or a vertex is told once.
@@ -235,10 +236,10 @@ impl<'a> RayCaster<'a> {
         options: &RayOptions,
         is_first_enough: bool,
     ) -> Option<(RaySearch<'_>, f64)> {
-        let frame = RayFrame::of(ray, &self.scale)?;
-        let asked = options.tolerance.map_or(TOLERANCE, |tolerance| tolerance / self.scale.size);
+        let frame = RayFrame::of(ray, &self.frame)?;
+        let asked = options.tolerance.map_or(TOLERANCE, |tolerance| self.frame.length_inside(tolerance));
         let tolerance = if asked > LEAST_TOLERANCE { asked } else { LEAST_TOLERANCE };
-        let of = (self.surface, &self.scale, &self.pieces[..]);
+        let of = (self.surface, &self.frame, &self.pieces[..]);
         let mut search = RaySearch::new(of, frame, options, tolerance, is_first_enough);
         self.tree.search(&mut search);
         Some((search, tolerance))
@@ -289,8 +290,8 @@ mod tests {
         };
         let count = 500;
         for _ in 0..count {
-            let origin = [next(), next(), next()].map(|x| rays.scale.size * x);
-            let origin = (vector(origin) + rays.scale.middle).to_array();
+            let origin = [next(), next(), next()].map(|x| rays.frame.size * x);
+            let origin = (vector(origin) + rays.frame.middle).to_array();
             let ray = Ray { origin, direction: [next(), next(), next()] };
             let all = RayOptions::default().between(f64::NEG_INFINITY, f64::INFINITY);
             let (search, _) = rays.searched(&ray, &all, false).unwrap();

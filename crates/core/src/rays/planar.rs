@@ -128,17 +128,6 @@ fn on_triangle([a, b, c]: [DVec3; 3]) -> Option<[f64; 2]> {
     (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then_some([u, v])
 }
 
-/// How far a net's points are from those of its triangle with the same weights at most: coordinate by coordinate.
-pub(super) fn bulge(net: &BezierTriangle) -> f64 {
-    let [a, b, c] = net.corners();
-    let places = (0..5).flat_map(|k| (0..5 - k).map(move |j| (f64::from(j), f64::from(k))));
-    let off = net.0.iter().zip(places).map(|(point, (j, k))| {
-        let flat = 0.25 * ((4.0 - j - k) * a + j * b + k * c);
-        (point - flat).abs().max_element()
-    });
-    off.fold(0.0, f64::max)
-}
-
 /// The greatest side of a box around points.
 pub(super) fn extent(points: impl Iterator<Item = DVec3>) -> f64 {
     let [low, high] =

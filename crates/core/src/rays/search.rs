@@ -1,15 +1,16 @@
 //! All places where one ray meets the surface.
 
-use super::pieces::{Form, Part, Piece, Scale};
-use super::planar::{Projection, bulge, extent, is_beside, meeting, nearest_on_edges, projection};
+use super::pieces::{Form, Piece, control_corner};
+use super::planar::{Projection, extent, is_beside, meeting, nearest_on_edges, projection};
 use super::{Crossing, Ray, RayOptions};
 use crate::criterion::Viewpoint;
 use crate::facing;
 use crate::facing::Facing;
+use crate::geometry::SurfaceFrame;
 use crate::geometry::box_tree::{Bounds, Search};
 use crate::limit_surface::LimitSurface;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{Patch, Points, Refined};
+use crate::patch::{Patch, Points, Refined, Spot};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// Pieces that are looked at for a ray before those that are left count as grazed: a ray that runs within a surface that is nowhere flat.
@@ -31,7 +32,7 @@ pub(super) struct RayFrame {
 
 impl RayFrame {
     /// `None` for a ray that has no direction or is not finite.
-    pub(super) fn of(ray: &Ray, scale: &Scale) -> Option<Self> {
+    pub(super) fn of(ray: &Ray, scale: &SurfaceFrame) -> Option<Self> {
         let sight = unit_or_zero(vector(ray.direction));
         let origin = scale.inside(vector(ray.origin));
         if sight == DVec3::ZERO || !origin.is_finite() {
@@ -102,7 +103,7 @@ pub(super) struct Found {
 /// A search along a ray.
 pub(super) struct RaySearch<'a> {
     surface: &'a LimitSurface<'a>,
-    scale: &'a Scale,
+    scale: &'a SurfaceFrame,
     pieces: &'a [Piece],
     pub(super) frame: RayFrame,
     sight: Viewpoint,
@@ -119,7 +120,7 @@ pub(super) struct RaySearch<'a> {
 
 impl<'a> RaySearch<'a> {
     pub(super) fn new(
-        (surface, scale, pieces): (&'a LimitSurface<'a>, &'a Scale, &'a [Piece]),
+        (surface, scale, pieces): (&'a LimitSurface<'a>, &'a SurfaceFrame, &'a [Piece]),
         frame: RayFrame,
         options: &RayOptions,
         tolerance: f64,
@@ -141,7 +142,7 @@ impl<'a> RaySearch<'a> {
         }
     }
 
-    fn add(&mut self, (face, part): (u32, Part), at: [f64; 2], depth: f64, crossing: Crossing) {
+    fn add(&mut self, (face, spot): (u32, Spot), at: [f64; 2], depth: f64, crossing: Crossing) {
         if depth < self.first || depth > self.last {
             return;
         }
@@ -149,7 +150,7 @@ impl<'a> RaySearch<'a> {
             // What is met twice there is still found twice.
             self.last = depth + self.tolerance;
         }
-        self.found.push(Found { depth, face, weights: part.weights(at), crossing });
+        self.found.push(Found { depth, face, weights: spot.weights(at), crossing });
     }
 
     /// Whether points in whose hull a piece is are beside the ray, or before its start or behind its end.
@@ -161,7 +162,7 @@ impl<'a> RaySearch<'a> {
     }
 
     /// A regular piece, its points in the ray's frame.
-    fn regular(&mut self, points: &Points, place: (u32, Part)) {
+    fn regular(&mut self, points: &Points, place: (u32, Spot)) {
         self.looked_at += 1;
         let net = BezierTriangle::of(points);
         if self.is_missed(net.0.iter().copied(), Some(net.corners())) {
@@ -174,9 +175,12 @@ impl<'a> RaySearch<'a> {
             let crossing = if meeting.is_front { Crossing::Entering } else { Crossing::Leaving };
             return self.add(place, meeting.at, meeting.depth, crossing);
         }
-        let flat = || bulge(&net) < self.tolerance;
+        let bulge = || net.off_flat().map(|off| off.abs().max_element()).fold(0.0, f64::max);
         let is_small = extent(net.0.iter().copied()) < SIZE * self.tolerance;
-        if is_small || self.looked_at > MOST_PIECES || projection == Projection::EdgeOn && flat() {
+        if is_small
+            || self.looked_at > MOST_PIECES
+            || projection == Projection::EdgeOn && bulge() < self.tolerance
+        {
             let (at, depth, distance) = nearest_on_edges(net.corners(), self.tolerance);
             if is_small || self.looked_at > MOST_PIECES || distance <= self.tolerance {
                 self.add(place, at, depth, Crossing::Grazing);
@@ -185,12 +189,12 @@ impl<'a> RaySearch<'a> {
         }
         let refined = Refined::of(points);
         for part in 0..4 {
-            self.regular(&refined.part(part), (place.0, place.1.part(part)));
+            self.regular(&refined.part(part), (place.0, place.1.child(part)));
         }
     }
 
     /// A piece that is to be refined.
-    fn irregular(&mut self, patch: &Patch, place: (u32, Part)) {
+    fn irregular(&mut self, patch: &Patch, place: (u32, Spot)) {
         let (frame, scale) = (self.frame, *self.scale);
         let inside = |point: DVec3| frame.inside(scale.inside(point));
         if let Patch::Regular(points) = patch {
@@ -210,11 +214,11 @@ impl<'a> RaySearch<'a> {
                 Facing::Back => Crossing::Leaving,
                 Facing::Undecided => Crossing::Grazing,
             };
-            return self.add(place, place.1.control_corner(), middle.z, crossing);
+            return self.add(place, control_corner(place.1), middle.z, crossing);
         }
         let refined = patch.refined(self.surface.rules());
         for part in 0..4 {
-            self.irregular(&refined.part(part), (place.0, place.1.part(part)));
+            self.irregular(&refined.part(part), (place.0, place.1.child(part)));
         }
     }
 }
@@ -234,7 +238,7 @@ impl Search for RaySearch<'_> {
     fn visit(&mut self, item: u32) {
         let pieces = self.pieces;
         let piece = &pieces[item as usize];
-        let place = (piece.face, piece.part);
+        let place = (piece.face, piece.spot);
         match &piece.form {
             Form::Regular(points) => {
                 let frame = self.frame;

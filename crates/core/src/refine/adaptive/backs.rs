@@ -18,11 +18,11 @@
 
 use super::decide::Control;
 use super::emitted::{Emitted, Over};
-use super::surface::{Ground, Spot};
+use super::surface::Ground;
 use crate::certificate::SubTriangle;
 use crate::criterion::{Backs, Criteria, Region, Viewpoint};
 use crate::facing::{DEEPEST, back_but_for, is_back};
-use crate::patch::{LimitPoint, Patch, Rules};
+use crate::patch::{LimitPoint, Patch, Rules, Spot};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, unit_or_zero, vector};
 

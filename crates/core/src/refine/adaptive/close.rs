@@ -7,11 +7,11 @@ use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
 use super::leaf::leaf_triangles;
 use super::quadtree::{Edges, Place, Trees};
 use super::rim::Rim;
-use super::surface::{GeneralPiece, Ground, Spot, Surface};
+use super::surface::{GeneralPiece, Ground, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
 use crate::certificate::{Cell, Pieces, SubTriangle};
 use crate::parallel::IsStopped;
-use crate::patch::LimitPoint;
+use crate::patch::{LimitPoint, Spot};
 
 /// Leaves that are judged between two questions whether that is still of use.
 const ASKED: usize = 256;

@@ -14,8 +14,8 @@ use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
 use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, Piece, Place, Trees, UNJUDGED};
-use super::surface::{Ground, Spot, SurfacePiece};
-use crate::certificate::{CellRows, Marks, Pieces, SubTriangle};
+use super::surface::{Ground, SurfacePiece};
+use crate::certificate::{Cell, CellRows, Marks, Pieces, SubTriangle};
 use crate::criterion::Criteria;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::SidedNormals;
@@ -23,7 +23,7 @@ use crate::mesh::{Mesh, Sharpness};
 use crate::parallel::IsStopped;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::large_rings::LargeRings;
-use crate::patch::{LimitPoint, Patch, RefinedPatch, Rules, child_corners, root_patch};
+use crate::patch::{LimitPoint, Patch, RefinedPatch, Rules, Spot, child_corners, root_patch};
 use crate::progress::SharedWatch;
 use crate::refine::RefineError;
 use crate::vector::{DVec3, vector};
@@ -404,7 +404,8 @@ impl<'a> Decider<'a> {
         }
         if !surely_fails || place.level >= self.max_levels {
             let at = (spot, place.level, SubTriangle::Whole);
-            let verdict = self.judge.regular(ground, at, &spot.cell(), &corners, open, &self.allowance);
+            let verdict =
+                self.judge.regular(ground, at, &Cell(spot.corners()), &corners, open, &self.allowance);
             if !verdict.fails() || place.level >= self.max_levels {
                 return self.leaf(place, &verdict);
             }

@@ -7,12 +7,12 @@ use super::emit::Emission;
 use super::leaf::leaf_triangles;
 use super::quadtree::{Edges, Place, Trees};
 use super::rim::{Rim, bits};
-use super::surface::{Ground, Spot, Surface};
+use super::surface::{Ground, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
 use crate::certificate::{Cell, Pieces, SubTriangle};
 use crate::closure::{Diagonal, closure};
 use crate::parallel::IsStopped;
-use crate::patch::{LimitPoint, Rules};
+use crate::patch::{LimitPoint, Rules, Spot};
 
 /// Rows of triangles that are shown between two questions whether that is still of use.
 const ROWS: usize = 8;
@@ -192,6 +192,7 @@ impl<B: Beholder> Leaves<'_, B> {
         let emitted =
             Emitted { number, vertices: [b, c, a], place, part: SubTriangle::Whole, open: [false; 3] };
         let spot = spot.row(node.depth, i, j, true);
-        self.beholder.triangle(&emitted, Over::Regular(piece.ground(), spot.cell(), spot), self.rules);
+        let cell = Cell(spot.corners());
+        self.beholder.triangle(&emitted, Over::Regular(piece.ground(), cell, spot), self.rules);
     }
 }

@@ -9,14 +9,14 @@
 use super::backs::{BackFaces, Behind, Leaf};
 use super::decide::Control;
 use super::quadtree::Place;
-use super::surface::{Ground, Spot};
+use super::surface::Ground;
 use super::trial::Trial;
 use crate::certificate::{
     Cell, Deviation, Effort, NetPart, Pieces, RowTarget, SubTriangle, TriangleFrame, exceeds, least_slope,
 };
 use crate::criterion::Criteria;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{LimitPoint, Patch, Rules};
+use crate::patch::{LimitPoint, Patch, Rules, Spot};
 use crate::vector::DVec3;
 use crate::vector::Extremes;
 

@@ -331,12 +331,7 @@ struct Among {
 }
 
 impl Among {
-    fn of(
-        emission: &Emission,
-        sharp: &HashSet<u32>,
-        emitted: &Emitted,
-        criteria: Option<&Criteria>,
-    ) -> Self {
+    fn of(emission: &Emission, sharp: &HashSet<u32>, emitted: &Emitted, criteria: Option<&Criteria>) -> Self {
         let corners = emitted.vertices.map(|vertex| vector(emission.positions[vertex as usize]));
         let frame = TriangleFrame::new(corners);
         let ((squared, slopes), neighbours) = match criteria.is_some_and(|criteria| criteria.viewers() > 0) {

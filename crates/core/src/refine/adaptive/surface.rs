@@ -4,9 +4,9 @@
 use core::array::from_fn;
 use core::cell::OnceCell;
 
-use crate::certificate::{Cell, NetPart, QuarticJet, SubTriangle};
+use crate::certificate::{NetPart, QuarticJet, SubTriangle};
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{LimitPoint, Patch, Quartic, Rules, child_corners};
+use crate::patch::{LimitPoint, Patch, Quartic, Rules, Spot, child_corners};
 use crate::vector::DVec3;
 
 /// Points that are evaluated together.
@@ -53,65 +53,6 @@ impl Ground {
             *found = LimitPoint { position: vector(&points, l), normal: vector(&normals, l) };
         }
         found
-    }
-}
-
-/// A node's place in the domain of a regular piece: its first corner, and its edges' length there, negative for nodes that
-/// stand on their heads.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Spot {
-    pub(super) u: f64,
-    pub(super) v: f64,
-    pub(super) size: f64,
-}
-
-impl Spot {
-    pub(super) const WHOLE: Self = Self { u: 0.0, v: 0.0, size: 1.0 };
-
-    /// A child's place.
-    #[inline]
-    pub(super) fn child(self, child: usize) -> Self {
-        let Self { u, v, size } = self;
-        let half = 0.5 * size;
-        match child {
-            0 => Self { u, v, size: half },
-            1 => Self { u: u + half, v, size: half },
-            2 => Self { u, v: v + half, size: half },
-            _ => Self { u: u + half, v: v + half, size: -half },
-        }
-    }
-
-    /// The leaf `depth` levels below whose first corner stands i edges along edge 0 and j along edge 2 from the first corner.
-    #[inline]
-    pub(super) fn leaf(self, depth: u32, i: usize, j: usize) -> Self {
-        let size = self.size / f64::from(1u32 << depth);
-        Self { u: self.u + size * i as f64, v: self.v + size * j as f64, size }
-    }
-
-    /// The node `depth` levels below in column i and row j, upright or on its head.
-    pub(super) fn row(self, depth: u32, i: usize, j: usize, is_headlong: bool) -> Self {
-        let Self { u, v, size } = self.leaf(depth, i, j);
-        if is_headlong { Self { u: u + size, v: v + size, size: -size } } else { Self { u, v, size } }
-    }
-
-    pub(super) fn corners(self) -> [[f64; 2]; 3] {
-        let Self { u, v, size } = self;
-        [[u, v], [u + size, v], [u, v + size]]
-    }
-
-    /// A place along an edge, `t` from its start to its end.
-    pub(super) fn along(self, edge: usize, t: f64) -> [f64; 2] {
-        let Self { u, v, size } = self;
-        let t = t * size;
-        match edge {
-            0 => [u + t, v],
-            1 => [u + (size - t), v + t],
-            _ => [u, v + (size - t)],
-        }
-    }
-
-    pub(super) fn cell(self) -> Cell {
-        Cell(self.corners())
     }
 }
 

@@ -8,9 +8,10 @@
 use super::quadtree::{
     CONDITIONAL, FULL, LEAF, Place, STRICT, Trees, UNJUDGED, along_edge, even_depth, is_split,
 };
-use super::surface::{Spot, Surface};
+use super::surface::Surface;
 use crate::mesh::NONE;
 use crate::parallel::IsStopped;
+use crate::patch::Spot;
 
 /// A vertex on a chain, and the half-edge that was met first between it and the next one.
 #[derive(Clone, Copy, Debug)]

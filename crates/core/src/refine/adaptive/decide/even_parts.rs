@@ -2,9 +2,10 @@
 
 use super::super::judge::Extent;
 use super::super::quadtree::{LEAF, Place};
-use super::super::surface::{Ground, Spot};
+use super::super::surface::Ground;
 use super::Decider;
-use crate::certificate::{MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, SubTriangle};
+use crate::certificate::{Cell, MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, SubTriangle};
+use crate::patch::Spot;
 
 /// Levels below the first that are tested at most.
 const MOST_SPREAD: u32 = 2;
@@ -89,8 +90,14 @@ impl Decider<'_> {
                     return self.part(rows.ground, spot, corners, [false; 3], (place, false));
                 }
                 let at = (spot, place.level, SubTriangle::Whole);
-                let verdict =
-                    self.judge.regular(rows.ground, at, &spot.cell(), &corners, [false; 3], &self.allowance);
+                let verdict = self.judge.regular(
+                    rows.ground,
+                    at,
+                    &Cell(spot.corners()),
+                    &corners,
+                    [false; 3],
+                    &self.allowance,
+                );
                 if !verdict.fails() {
                     return self.leaf(place, &verdict);
                 }

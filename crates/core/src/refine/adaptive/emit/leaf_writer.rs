@@ -4,13 +4,13 @@
 use super::super::judge::Condition;
 use super::super::quadtree::Place;
 use super::super::rim::{Rim, bits};
-use super::super::surface::{Spot, Surface};
+use super::super::surface::Surface;
 use super::super::walk::{Knot, Node, Visitor};
 use super::fraction;
 use crate::closure::{Diagonal, closure};
 use crate::mesh::NONE;
 use crate::parallel::IsStopped;
-use crate::patch::LimitPoint;
+use crate::patch::{LimitPoint, Spot};
 use crate::refine::exact_result::Origin;
 
 /// Rows that are written between two questions whether that is still of use.

@@ -1,0 +1,67 @@
+//! Where part of a piece is over its face: what division in four leads to.
+
+/// A part of the parameter triangle: its first corner, and its edges' length there, negative where it stands on its head.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spot {
+    pub(crate) u: f64,
+    pub(crate) v: f64,
+    pub(crate) size: f64,
+}
+
+impl Spot {
+    pub(crate) const WHOLE: Self = Self { u: 0.0, v: 0.0, size: 1.0 };
+
+    /// One of its four parts, as [`super::RefinedPatch`] numbers them.
+    #[inline]
+    pub(crate) fn child(self, child: usize) -> Self {
+        let Self { u, v, size } = self;
+        let half = 0.5 * size;
+        match child {
+            0 => Self { u, v, size: half },
+            1 => Self { u: u + half, v, size: half },
+            2 => Self { u, v: v + half, size: half },
+            _ => Self { u: u + half, v: v + half, size: -half },
+        }
+    }
+
+    /// The part `depth` levels below whose first corner stands i edges along edge 0 and j along edge 2 from the first corner.
+    #[inline]
+    pub(crate) fn leaf(self, depth: u32, i: usize, j: usize) -> Self {
+        let size = self.size / f64::from(1u32 << depth);
+        Self { u: self.u + size * i as f64, v: self.v + size * j as f64, size }
+    }
+
+    /// The part `depth` levels below in column i and row j, upright or on its head.
+    pub(crate) fn row(self, depth: u32, i: usize, j: usize, is_headlong: bool) -> Self {
+        let Self { u, v, size } = self.leaf(depth, i, j);
+        if is_headlong { Self { u: u + size, v: v + size, size: -size } } else { Self { u, v, size } }
+    }
+
+    pub(crate) fn corners(self) -> [[f64; 2]; 3] {
+        let Self { u, v, size } = self;
+        [[u, v], [u + size, v], [u, v + size]]
+    }
+
+    /// A place along an edge, `t` from its start to its end.
+    pub(crate) fn along(self, edge: usize, t: f64) -> [f64; 2] {
+        let Self { u, v, size } = self;
+        let t = t * size;
+        match edge {
+            0 => [u + t, v],
+            1 => [u + (size - t), v + t],
+            _ => [u, v + (size - t)],
+        }
+    }
+
+    /// The place of the part's own (u, v) in the whole.
+    #[inline]
+    pub(crate) fn at(self, [u, v]: [f64; 2]) -> [f64; 2] {
+        [self.u + self.size * u, self.v + self.size * v]
+    }
+
+    /// The weights of the whole's corners at the part's own (u, v).
+    pub(crate) fn weights(self, at: [f64; 2]) -> [f64; 3] {
+        let [u, v] = self.at(at);
+        [1.0 - u - v, u, v].map(|weight| weight.clamp(0.0, 1.0))
+    }
+}
