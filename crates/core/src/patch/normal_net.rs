@@ -56,7 +56,7 @@ const fn factorial(n: usize) -> f64 {
 }
 
 /// `n!/(i! j! k!)` by place.
-const fn multinomials<const SIZE: usize>(n: usize) -> [f64; SIZE] {
+pub(crate) const fn multinomials<const SIZE: usize>(n: usize) -> [f64; SIZE] {
     let mut all = [0.0; SIZE];
     let mut k = 0;
     while k <= n {

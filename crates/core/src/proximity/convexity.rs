@@ -10,6 +10,7 @@ use core::array::from_fn;
 
 use crate::geometry::box_tree::{Bounds, NO_BOUNDS, grown};
 use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::normal_net::{CUBIC, SEXTIC, multinomials, place, tangents};
 use crate::vector::DVec3;
 
 /// What of a piece decides how its distance from points bends.
@@ -26,18 +27,18 @@ pub(super) struct Convexity {
 impl Convexity {
     /// Of a net that stands about the origin.
     pub(super) fn of(net: &BezierTriangle) -> Self {
-        let [by_u, by_v] = first(&net.0).map(|net| scaled(3, net));
+        let [by_u, by_v] = tangents(net).map(|quarter| scaled::<3, CUBIC>(quarter.map(|by| 4.0 * by)));
         let second = second(&net.0);
-        let mut products = [[0.0; 28]; 3];
+        let mut products = [[0.0; SEXTIC]; 3];
         add_product(&mut products[0], (3, &by_u), (3, &by_u));
         add_product(&mut products[1], (3, &by_u), (3, &by_v));
         add_product(&mut products[2], (3, &by_v), (3, &by_v));
         // The mean over the piece is that of the coefficients.
-        let [e, f, g] = products.map(|product| unscaled(product).iter().sum::<f64>() / 28.0);
+        let [e, f, g] = products.map(|product| unscaled(product).iter().sum::<f64>() / SEXTIC as f64);
         let factors = orthonormal(e, f, g);
-        let whole = scaled(4, net.0);
+        let whole = scaled::<4, 15>(net.0);
         for (products, second) in products.iter_mut().zip(&second) {
-            add_product(products, (4, &whole), (2, &scaled(2, *second)));
+            add_product(products, (4, &whole), (2, &scaled::<2, 6>(*second)));
             *products = unscaled(*products);
         }
         let [uu, uv, vv] = &products;
@@ -103,80 +104,41 @@ fn turned([p, r, s]: [f64; 3], [uu, uv, vv]: [f64; 3]) -> [f64; 3] {
     [p * p * uu, p * (r * uu + s * uv), r * r * uu + 2.0 * r * s * uv + s * s * vv]
 }
 
-/// Where the row of constant k starts in a net of that degree.
-const fn row(degree: usize, k: usize) -> usize {
-    k * (degree + 1) - k * (k.saturating_sub(1)) / 2
-}
-
-/// The nets of the first derivatives of a quartic: degree 3.
-fn first(net: &[DVec3; 15]) -> [[DVec3; 10]; 2] {
-    let mut derivatives = [[DVec3::ZERO; 10]; 2];
-    for k in 0..4 {
-        for j in 0..4 - k {
-            let here = net[row(4, k) + j];
-            derivatives[0][row(3, k) + j] = 4.0 * (net[row(4, k) + j + 1] - here);
-            derivatives[1][row(3, k) + j] = 4.0 * (net[row(4, k + 1) + j] - here);
-        }
-    }
-    derivatives
-}
-
 /// The nets of the second derivatives of a quartic: degree 2.
 fn second(net: &[DVec3; 15]) -> [[DVec3; 6]; 3] {
     let mut derivatives = [[DVec3::ZERO; 6]; 3];
     for k in 0..3 {
         for j in 0..3 - k {
-            let at = |by_j: usize, by_k: usize| net[row(4, k + by_k) + j + by_j];
-            let place = row(2, k) + j;
-            derivatives[0][place] = 12.0 * ((at(2, 0) - at(1, 0)) - (at(1, 0) - at(0, 0)));
-            derivatives[1][place] = 12.0 * ((at(1, 1) - at(1, 0)) - (at(0, 1) - at(0, 0)));
-            derivatives[2][place] = 12.0 * ((at(0, 2) - at(0, 1)) - (at(0, 1) - at(0, 0)));
+            let at = |by_j: usize, by_k: usize| net[place(4, j + by_j, k + by_k)];
+            let own = place(2, j, k);
+            derivatives[0][own] = 12.0 * ((at(2, 0) - at(1, 0)) - (at(1, 0) - at(0, 0)));
+            derivatives[1][own] = 12.0 * ((at(1, 1) - at(1, 0)) - (at(0, 1) - at(0, 0)));
+            derivatives[2][own] = 12.0 * ((at(0, 2) - at(0, 1)) - (at(0, 1) - at(0, 0)));
         }
     }
     derivatives
 }
 
-/// `degree! / (i! j! k!)` in the order of nets, by degree.
-const MULTINOMIALS: [[f64; 28]; 7] = multinomials();
-
-const fn multinomials() -> [[f64; 28]; 7] {
-    const FACTORIALS: [f64; 7] = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0, 720.0];
-    let mut all = [[0.0; 28]; 7];
-    let mut degree = 0;
-    while degree < 7 {
-        let mut k = 0;
-        while k <= degree {
-            let mut j = 0;
-            while j + k <= degree {
-                let below = FACTORIALS[degree - j - k] * FACTORIALS[j] * FACTORIALS[k];
-                all[degree][row(degree, k) + j] = FACTORIALS[degree] / below;
-                j += 1;
-            }
-            k += 1;
-        }
-        degree += 1;
-    }
-    all
-}
-
 /// A net times its multinomial coefficients: products of such are sums.
-fn scaled<const N: usize>(degree: usize, mut net: [DVec3; N]) -> [DVec3; N] {
-    net.iter_mut().zip(&MULTINOMIALS[degree]).for_each(|(point, &weight)| *point *= weight);
+fn scaled<const DEGREE: usize, const SIZE: usize>(mut net: [DVec3; SIZE]) -> [DVec3; SIZE] {
+    let weights = const { &multinomials::<SIZE>(DEGREE) };
+    net.iter_mut().zip(weights).for_each(|(point, &weight)| *point *= weight);
     net
 }
 
-fn unscaled(mut net: [f64; 28]) -> [f64; 28] {
-    net.iter_mut().zip(&MULTINOMIALS[6]).for_each(|(value, weight)| *value /= weight);
+fn unscaled(mut net: [f64; SEXTIC]) -> [f64; SEXTIC] {
+    let weights = const { &multinomials::<SEXTIC>(6) };
+    net.iter_mut().zip(weights).for_each(|(value, weight)| *value /= weight);
     net
 }
 
 /// Adds the scalar product of two scaled nets, whose degrees add up to 6 (Farin, on products in Bernstein form).
-fn add_product(net: &mut [f64; 28], (m, a): (usize, &[DVec3]), (n, b): (usize, &[DVec3])) {
+fn add_product(net: &mut [f64; SEXTIC], (m, a): (usize, &[DVec3]), (n, b): (usize, &[DVec3])) {
     for (ka, kb) in (0..=m).flat_map(|ka| (0..=n).map(move |kb| (ka, kb))) {
         for ja in 0..=m - ka {
-            let own = a[row(m, ka) + ja];
-            let others = &b[row(n, kb)..row(n, kb) + n - kb + 1];
-            let first = row(6, ka + kb) + ja;
+            let own = a[place(m, ja, ka)];
+            let others = &b[place(n, 0, kb)..=place(n, n - kb, kb)];
+            let first = place(6, ja, ka + kb);
             net[first..].iter_mut().zip(others).for_each(|(sum, other)| *sum += own.dot(*other));
         }
     }
