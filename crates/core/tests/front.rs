@@ -226,6 +226,31 @@ fn cameras_that_move_a_little() {
     }
 }
 
+/// What a camera sees does not depend on how far away its target is, nor on how long its upward direction.
+#[test]
+fn lengths_of_a_cameras_directions_do_not_count() {
+    let control = lumpy(9, 7);
+    let away = control.positions().iter().map(|&[x, y, z]| [x, y, z - 2.0]).collect();
+    let control = control.with_positions(away).unwrap();
+    let camera = |length: f64| Camera {
+        eye: [0.0; 3],
+        target: [0.1 * length, 0.2 * length, -length],
+        up: [0.0, length, 0.0],
+        fov_degrees: 20.0,
+        width: 400,
+        height: 300,
+    };
+    let demand = |length: f64| Demand::pixels(0.5, &[camera(length)]);
+    let expected = fresh(&control, &Loop, &demand(1.0)).1;
+    for length in [2f64.powi(-600), 2f64.powi(-1000), 2f64.powi(400)] {
+        assert!(fresh(&control, &Loop, &demand(length)).1 == expected, "{length}");
+    }
+    // Much is outside the picture.
+    let all = Camera { fov_degrees: 120.0, ..camera(1.0) };
+    let all = Demand::pixels(0.5 * 10f64.to_radians().tan() / 60f64.to_radians().tan(), &[all]);
+    assert!(expected.len() < fresh(&control, &Loop, &all).1.len());
+}
+
 /// The samples of the surface over a mesh's triangles: each within the front's bound of the triangle's point at the same place.
 fn farthest(control: &Mesh, scheme: &dyn Scheme, front: &Front<'_>) -> f64 {
     let surface = LimitSurface::new(control, scheme).unwrap();

@@ -19,7 +19,7 @@ pub(crate) use criteria::{Apart, Criteria};
 pub(crate) use distance::Distance;
 pub use neighbour::NeighbourNormal;
 pub use pixels::Camera;
-pub(crate) use pixels::{Backs, Pixels};
+pub(crate) use pixels::{Backs, Lens, Pixels};
 pub(crate) use region::Region;
 pub use view::{AngleLimit, View, Viewpoint};
 

@@ -233,19 +233,19 @@ impl Glance {
 
 /// A camera's frame, ready for many regions.
 #[derive(Clone, Copy, Debug)]
-struct Lens {
-    eye: DVec3,
-    forward: DVec3,
+pub(crate) struct Lens {
+    pub(crate) eye: DVec3,
+    pub(crate) forward: DVec3,
     /// Unit vectors at right angles to the sides of the frame, pointing outwards.
-    sides: [DVec3; 4],
+    pub(crate) sides: [DVec3; 4],
     /// Pixels of a unit length at depth 1.
-    pixels: f64,
+    pub(crate) pixels: f64,
     /// 1/cos φ at the frame's corners.
-    greatest_stretch: f64,
+    pub(crate) greatest_stretch: f64,
 }
 
 impl Lens {
-    fn new(camera: &Camera) -> Result<Self, CriterionError> {
+    pub(crate) fn new(camera: &Camera) -> Result<Self, CriterionError> {
         let bad = |name, value, expected| Err(CriterionError::BadParameter { name, value, expected });
         let places = [camera.eye, camera.target, camera.up];
         if let Some(&value) = places.as_flattened().iter().find(|x| !x.is_finite()) {

@@ -12,8 +12,8 @@
 //! no faster than that times distance/Λ.
 
 use super::forest::Extent;
-use crate::criterion::{Camera, CriterionError};
-use crate::vector::{DVec3, vector};
+use crate::criterion::{Camera, CriterionError, Lens};
+use crate::vector::DVec3;
 
 /// Levels at most below a control face: paths take two bits a level.
 pub const MOST_LEVELS: u32 = 30;
@@ -105,18 +105,15 @@ pub(super) struct Eye {
 }
 
 impl Eye {
-    fn of(camera: &Camera) -> Self {
-        let at = vector(camera.eye);
-        let forward = (vector(camera.target) - at).normalize_or_zero();
-        let right = forward.cross(vector(camera.up).normalize_or_zero()).normalize_or_zero();
-        let up = right.cross(forward);
-        let (width, height) = (f64::from(camera.width), f64::from(camera.height));
-        let along = (0.5 * camera.fov_degrees).to_radians().tan();
-        let across = along * width / height;
-        let side = |axis: DVec3, tangent: f64| (axis - tangent * forward).normalize_or_zero();
-        let sides = [side(right, across), side(-right, across), side(up, along), side(-up, along), -forward];
-        let stretch = across.hypot(along).hypot(1.0);
-        Self { at, sides, stretch, pixels: 0.5 * height / along * stretch * stretch }
+    fn of(camera: &Camera) -> Result<Self, CriterionError> {
+        let Lens { eye, forward, sides: [right, left, top, bottom], pixels, greatest_stretch } =
+            Lens::new(camera)?;
+        Ok(Self {
+            at: eye,
+            sides: [right, left, top, bottom, -forward],
+            stretch: greatest_stretch,
+            pixels: pixels * greatest_stretch * greatest_stretch,
+        })
     }
 
     /// How far it is from another eye to this one, and how far clocks advance that count turns, too; infinitely far where their pictures
@@ -204,12 +201,17 @@ pub(super) struct Question {
 }
 
 impl Question {
-    pub(super) fn of(demand: &Demand) -> Self {
+    /// # Errors
+    /// A camera that looks nowhere.
+    pub(super) fn of(demand: &Demand) -> Result<Self, CriterionError> {
         let (eyes, limit) = match &demand.goal {
             Goal::Tolerance(distance) => (None, *distance),
-            Goal::Pixels(limit, cameras) => (Some(cameras.iter().map(Eye::of).collect()), *limit),
+            Goal::Pixels(limit, cameras) => {
+                let eyes: Result<Vec<Eye>, _> = cameras.iter().map(Eye::of).collect();
+                (Some(eyes?), *limit)
+            }
         };
-        Self { eyes, limit, max_levels: demand.max_levels }
+        Ok(Self { eyes, limit, max_levels: demand.max_levels })
     }
 
     /// What is compared with the limit.

@@ -218,8 +218,8 @@ impl<'a> Front<'a> {
             self.changes = Changes::default();
             return Ok(&self.changes);
         }
+        let question = Question::of(demand)?;
         self.demand = Some(demand.clone());
-        let question = Question::of(demand);
         let (mut counts, mut halt) = ((0, 0), Halt::new(observer));
         let most = demand.most.unwrap_or(demand::MOST_TRIANGLES);
         // What is asked for is mostly near what there is; what nobody asked for begins with the coarsest mesh.
