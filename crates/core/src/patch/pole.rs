@@ -53,11 +53,12 @@ impl PolePatch {
         self.near.corner
     }
 
-    /// Moves all so that the irregular vertex is at the origin, and gives where it was.
+    /// The point of a corner of the face.
     pub(super) fn control_point(&self, corner: usize) -> DVec3 {
         self.near.control_point(corner)
     }
 
+    /// Moves all so that the irregular vertex is at the origin, and gives where it was.
     pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
         let from = self.near.moved_to_origin();
         self.mean -= from;
