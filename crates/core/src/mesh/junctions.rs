@@ -5,6 +5,8 @@
 //! splits the copies of an edge together, and the building gives all copies of a vertex rules with the same
 //! outcome, so that no gap opens between the sheets.
 
+use std::collections::HashMap;
+
 use super::{MeshError, Topology};
 use crate::index::HalfEdgeId;
 
@@ -60,6 +62,12 @@ impl Junctions {
     /// Whether the mesh was never cut.
     pub fn is_empty(&self) -> bool {
         self.vertices.is_empty() && self.edges.is_empty()
+    }
+
+    /// For each vertex that is a copy, the first of its group.
+    pub(crate) fn first_copies(&self) -> HashMap<u32, u32> {
+        let groups = self.vertices.iter();
+        groups.flat_map(|group| group.iter().map(|&v| (v, group[0]))).collect()
     }
 
     /// Checks that copies stand at equal positions and that grouped half-edges are boundaries with the same ends.

@@ -1,7 +1,5 @@
 //! Keeps the copies of cut vertices and edges together through a step: the same splits, the same bits.
 
-use std::collections::HashMap;
-
 use super::split::{SplitEdges, SplitTopology};
 use crate::index::HalfEdgeId;
 use crate::mesh::{Groups, Mesh};
@@ -17,7 +15,7 @@ pub(super) fn vertex_groups(mesh: &Mesh, split: &SplitEdges, numbered: &SplitTop
 
 /// The edge groups after a step: the halves of each split edge, and unsplit edges under their new names.
 pub(super) fn edge_groups(mesh: &Mesh, split: &SplitEdges, numbered: &SplitTopology) -> Groups {
-    let place = places(mesh);
+    let place = mesh.junctions().first_copies();
     let origin_place = |h: HalfEdgeId| {
         let v = mesh.topology().origin(h).0;
         place.get(&v).copied().unwrap_or(v)
@@ -58,10 +56,4 @@ pub(super) fn agree(flags: &mut [bool], groups: &Groups, combine: fn(bool, bool)
 
 fn split_groups<'a>(mesh: &'a Mesh, split: &'a SplitEdges) -> impl Iterator<Item = &'a [u32]> {
     mesh.junctions().edges.iter().filter(|edge| edge.first().is_some_and(|&h| split.contains(HalfEdgeId(h))))
-}
-
-/// For each vertex in a group, the group's first vertex.
-fn places(mesh: &Mesh) -> HashMap<u32, u32> {
-    let groups = mesh.junctions().vertices.iter();
-    groups.flat_map(|group| group.iter().map(|&v| (v, group[0]))).collect()
 }

@@ -5,8 +5,6 @@
 //! one it is cut by `l`, near A, and `r`, near B, there is no centre, and it gives `(l, r, c)` with the face's third corner c.
 //! Seen from its other edges, such a face's apex is `r` across from B → c and `l` across from c → A. So numbers and twins are arithmetic.
 
-use std::collections::HashMap;
-
 use super::masks::{beside, centre, on_curve, smoothed};
 use super::origins::{Made, Origins};
 use super::sharp_edges::SharpEdges;
@@ -321,9 +319,7 @@ impl<'m> Numbering<'m> {
     /// Copies of the vertices and edges along which sheets were cut apart.
     fn junctions(&self, junctions: &Junctions) -> Junctions {
         let mut next = Junctions { vertices: junctions.vertices.clone(), edges: Groups::default() };
-        let groups = junctions.vertices.iter();
-        let first: HashMap<u32, u32> =
-            groups.flat_map(|group| group.iter().map(|&v| (v, group[0]))).collect();
+        let first = junctions.first_copies();
         let place = |v: u32| first.get(&v).copied().unwrap_or(v);
         for group in junctions.edges.iter() {
             let members = || group.iter().map(|&h| HalfEdgeId(h));

@@ -129,9 +129,7 @@ impl<'m> Forest<'m> {
     /// Sharp edges with all their sides: both of a crease, one of a boundary, all copies of an edge that was cut.
     fn add_rims(&mut self, sharp: &SharpEdges<'_>) {
         let (topology, junctions) = (self.control.topology(), self.control.junctions());
-        let first_copies = junctions.vertices.iter();
-        let first_copies: HashMap<u32, u32> =
-            first_copies.flat_map(|group| group.iter().map(|&v| (v, group[0]))).collect();
+        let first_copies = junctions.first_copies();
         let place = |h: HalfEdgeId| {
             let v = topology.origin(h).0;
             first_copies.get(&v).copied().unwrap_or(v)
