@@ -41,6 +41,15 @@ impl Extremes for f64 {
     }
 }
 
+/// The unit normal of a triangle of any size; zero where it has no area.
+#[inline]
+pub(crate) fn unit_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    let (ab, ac) = (b - a, c - a);
+    // Scaled first: areas of very large or small triangles overflow or vanish.
+    let size = ab.abs().max(ac.abs()).max_element();
+    if size > 0.0 { unit_or_zero((ab / size).cross(ac / size)) } else { DVec3::ZERO }
+}
+
 /// The length of a box's diagonal, for any size whose length is finite.
 pub(crate) fn diagonal(low: DVec3, high: DVec3) -> f64 {
     let sides = high - low;

@@ -36,7 +36,7 @@ pub use topology::{RingNeighbours, Topology};
 
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::ring::{EdgeShape, RingShape};
-use crate::vector::{DVec3, diagonal, unit_or_zero, vector};
+use crate::vector::{DVec3, diagonal, unit_normal, vector};
 
 /// What can be wrong with the data a mesh is made of.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -350,10 +350,7 @@ impl Mesh {
     /// The unit normal of a face of any size; zero where it has no area.
     #[inline]
     pub(crate) fn unit_face_normal(&self, face: usize) -> DVec3 {
-        let [a, b, c] = self.topology.triangles()[face].map(|v| vector(self.positions[v as usize]));
-        let (ab, ac) = (b - a, c - a);
-        let size = ab.abs().max(ac.abs()).max_element();
-        unit_or_zero((ab / size).cross(ac / size))
+        unit_normal(self.topology.triangles()[face].map(|v| vector(self.positions[v as usize])))
     }
 
     /// Checks every invariant of the mesh: topology, finite positions, tags and junctions.

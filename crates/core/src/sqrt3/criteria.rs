@@ -7,7 +7,7 @@ use super::Sqrt3Options;
 use super::forest::{Forest, Triangle};
 use crate::criterion::cone_ratio;
 use crate::geometry::closest_to_origin;
-use crate::vector::{DVec3, unit_or_zero};
+use crate::vector::{DVec3, unit_normal};
 
 /// What is asked of triangles.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +50,7 @@ impl Goals {
         let mut found = Found { ratio: 0.0, distance: 0.0 };
         if let Some(angle) = self.angle {
             let normals = vertices.map(|v| forest.normal(v));
-            found.ratio = cone_ratio(normal(corners), normals, angle);
+            found.ratio = cone_ratio(unit_normal(corners), normals, angle);
         }
         if self.has_distances() {
             found.distance = distance(forest, triangle, corners);
@@ -58,13 +58,6 @@ impl Goals {
         }
         found
     }
-}
-
-/// The unit normal of a triangle of any size; zero where it has no area.
-fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    let (ab, ac) = (b - a, c - a);
-    let size = ab.abs().max(ac.abs()).max_element();
-    if size > 0.0 { unit_or_zero((ab / size).cross(ac / size)) } else { DVec3::ZERO }
 }
 
 /// The greatest distance of the samples from the triangle.
