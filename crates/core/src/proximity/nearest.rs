@@ -7,7 +7,7 @@
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::pieces::{Form, Piece, RegularPiece};
+use super::pieces::{FacePieces, Form, Piece, RegularPiece};
 use super::{Closest, Proximity};
 use crate::geometry::box_tree::distance_to;
 use crate::geometry::closest_to_origin;
@@ -187,11 +187,12 @@ impl<'q> Query<'q> {
                     }
                 }
             }
-            None => proximity.with_pieces(face, |made| {
-                for piece in &made.pieces {
-                    self.wait(number, self.bound(piece), What::Own(Box::new(piece.clone()), face));
+            None => {
+                for piece in FacePieces::of(proximity.surface, &proximity.frame, FaceId(face)).pieces {
+                    let bound = self.bound(&piece);
+                    self.wait(number, bound, What::Own(Box::new(piece), face));
                 }
-            }),
+            }
         }
     }
 
