@@ -15,6 +15,7 @@
 //! none is worse than the whole: a half because its edges are no worse, one by one; a quarter since
 //! ½(Mₘλ₀λ₁ + ¼ max(Mₐ, M_b) λ₂(λ₀ + λ₁)) ≤ max(Mₐ, M_b)(1 − λ₂)/8.
 
+use super::greater;
 use super::quartic_cell::{Domain, quadratic_height};
 use crate::patch::Quartic;
 use crate::vector::DVec3;
@@ -51,8 +52,8 @@ impl SecondDerivatives {
             let edges = [uu, uu - 2.0 * uv + vv, vv];
             for edge in 0..3 {
                 let median = 0.5 * (edges[(edge + 1) % 3] + edges[(edge + 2) % 3]) - 0.25 * edges[edge];
-                along[edge] = greatest(along[edge], edges[edge].length_squared());
-                medians[edge] = greatest(medians[edge], median.length_squared());
+                along[edge] = greater(along[edge], edges[edge].length_squared());
+                medians[edge] = greater(medians[edge], median.length_squared());
             }
         };
         for edge in 0..3 {
@@ -64,11 +65,6 @@ impl SecondDerivatives {
     }
 }
 
-/// Infinite where the second is not a number.
-fn greatest(a: f64, b: f64) -> f64 {
-    if b.is_nan() { f64::INFINITY } else { a.max(b) }
-}
-
 /// The greatest of |S − T| over the whole and what may close it, by bounds along the edges and along the medians to them.
 fn worst(along: [f64; 3], medians: [f64; 3]) -> f64 {
     let mut most = quadratic_height(along);
@@ -77,12 +73,12 @@ fn worst(along: [f64; 3], medians: [f64; 3]) -> f64 {
         let median = medians[edge];
         if median > a.min(b) {
             for [p, q] in [[0.25 * own, a], [0.25 * own, b], [0.25 * a, 0.25 * b]] {
-                most = greatest(most, quadratic_height([median, p, q]));
+                most = greater(most, quadratic_height([median, p, q]));
             }
         }
     }
     // What overflowed on the way is no bound.
-    greatest(0.0, most)
+    greater(0.0, most)
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use smallvec::SmallVec;
 use super::halt::Halt;
 use super::measure::Measure;
 use super::pieces::{Ground, Pieces};
+use crate::criterion::Region;
 use crate::limit_surface::LimitSurface;
 use crate::node::{Along, Beyond, Edges, Place, beyond};
 use crate::parallel::{self, Cancelled};
@@ -478,9 +479,7 @@ impl Node {
 
 impl Extent {
     fn of(corners: [DVec3; 3], value: f64, level: u32) -> Self {
-        let centre = corners.into_iter().map(|corner| corner / 3.0).sum::<DVec3>();
-        let farthest = corners.iter().map(|corner| corner.distance_squared(centre)).fold(0.0, f64::max);
-        let radius = farthest.sqrt() + value;
+        let Region { centre, radius, .. } = Region::around(corners, DVec3::ZERO).grown(value);
         Self { centre, radius, value, stamp: 0, level: level as u8, wants: false }
     }
 }

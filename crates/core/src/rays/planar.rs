@@ -2,6 +2,7 @@
 //!
 //! Points stand in the ray's frame: x and y across, z along it, so the ray is the z axis, and all is decided in the plane.
 
+use crate::geometry::box_tree::{NO_BOUNDS, grown};
 use crate::patch::Quartic;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::normal_net::tangents;
@@ -130,8 +131,7 @@ fn on_triangle([a, b, c]: [DVec3; 3]) -> Option<[f64; 2]> {
 
 /// The greatest side of a box around points.
 pub(super) fn extent(points: impl Iterator<Item = DVec3>) -> f64 {
-    let [low, high] =
-        points.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)]);
+    let [low, high] = points.fold(NO_BOUNDS, grown);
     (high - low).max_element()
 }
 

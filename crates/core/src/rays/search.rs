@@ -148,7 +148,7 @@ impl<'a> RaySearch<'a> {
         }
         if self.is_first_enough {
             // What is met twice there is still found twice.
-            self.last = depth + self.tolerance;
+            self.last = self.last.min(depth + self.tolerance);
         }
         self.found.push(Found { depth, face, weights: spot.weights(at), crossing });
     }
