@@ -61,7 +61,7 @@ pub enum Stage {
     /// Edges are being collapsed; the units are triangles gone, and how many there will be is estimated where a tolerance
     /// decides it.
     Simplifying,
-    /// A hierarchy for closest points is being built; the units are triangles.
+    /// A hierarchy for closest points or rays is being built; the units are triangles.
     Indexing,
     /// Distances are being measured at points; the units are points.
     Sampling,

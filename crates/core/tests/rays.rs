@@ -212,7 +212,7 @@ fn boundaries_and_creases_are_met_as_well() {
     agrees("a dart", &tagged(&octahedron(), &edges[..1], f64::INFINITY), 300, 5);
 }
 
-/// Section by section of the closed forms: vertices, middles of edges and of faces of the solids.
+/// By closed forms of Loop's limits: vertices, middles of edges and of faces of the solids.
 #[test]
 fn rays_through_known_points_of_solids() {
     let far = |p: [f64; 3]| Ray { origin: p.map(|x| 10.0 * x), direction: p.map(|x| -x) };
@@ -237,14 +237,22 @@ fn rays_through_known_points_of_solids() {
         let towards = [0, 1, 2].map(|i| if i == axis { 1.0 } else { 0.0 });
         near_all(radii(&octahedron, towards), 24.0 / 55.0);
         let towards = [0, 1, 2].map(|i| if i == axis { 0.0 } else { 1.0 });
-        near_all(radii(&octahedron, towards), 0.414320379601493);
+        near_all(radii(&octahedron, towards), 75.0 * 2f64.sqrt() / 256.0);
     }
-    near_all(radii(&octahedron, [1.0; 3]), 0.407452924349970);
+    near_all(radii(&octahedron, [1.0; 3]), 271.0 * 3f64.sqrt() / 1152.0);
     let tetrahedron = tetrahedron();
     let [vertex, face] = radii(&tetrahedron, [1.0; 3]);
     near(vertex, 3f64.sqrt() / 5.0);
-    near(face, 0.259273037552749);
+    near(face, 97.0 * 3f64.sqrt() / 648.0);
     near_all(radii(&tetrahedron, [1.0, 0.0, 0.0]), 7.0 / 24.0);
+}
+
+#[test]
+fn the_search_can_be_cancelled_while_it_is_prepared() {
+    let mesh = lumpy(12, 7);
+    let surface = LimitSurface::new(&mesh, &Loop).unwrap();
+    let mut never = |_: &limitmesh::progress::Progress| ControlFlow::Break(());
+    assert!(matches!(RayCaster::new_observed(&surface, &mut never), Err(RayError::Cancelled(_))));
 }
 
 #[test]

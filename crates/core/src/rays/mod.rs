@@ -14,8 +14,7 @@ use crate::geometry::SurfaceFrame;
 use crate::geometry::box_tree::{Bounds, BoxTree, NO_BOUNDS, grown};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
-use crate::parallel::{self, Cancelled};
-use crate::progress::{Observer, SharedWatch, Stage, uncancelled};
+use crate::progress::{Cancelled, Observer, SharedWatch, Stage, uncancelled, unobserved};
 use crate::vector::vector;
 use pieces::Piece;
 use search::{Found, RayFrame, RaySearch};
@@ -112,6 +111,9 @@ pub enum RayError {
     /// A limit stencil failed.
     #[error(transparent)]
     Limit(#[from] crate::limit::LimitError),
+    /// The observer asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// A limit surface, ready for many rays.
@@ -145,6 +147,17 @@ impl<'a> RayCaster<'a> {
     /// # Errors
     /// A scheme outside the Loop family; a stencil that failed.
     pub fn new(surface: &'a LimitSurface<'a>) -> Result<Self, RayError> {
+        Self::new_observed(surface, &mut unobserved)
+    }
+
+    /// [`Self::new`], telling an observer how it goes on.
+    ///
+    /// # Errors
+    /// As for [`Self::new`], or the observer asked to stop.
+    pub fn new_observed(
+        surface: &'a LimitSurface<'a>,
+        observer: &mut Observer<'_>,
+    ) -> Result<Self, RayError> {
         if !surface.rules().is_certified() {
             return Err(RayError::Scheme { name: surface.rules().scheme().name().to_owned() });
         }
@@ -152,7 +165,11 @@ impl<'a> RayCaster<'a> {
         let frame = SurfaceFrame::of(mesh.positions().iter().map(|&p| vector(p)).fold(NO_BOUNDS, grown));
         let faces = mesh.face_count();
         let of_faces = |face: usize| pieces::pieces(surface, &frame, FaceId(face as u32), faces);
-        let blocks = parallel::pieces_of(faces, BLOCK, |block| block.flat_map(of_faces).collect::<Vec<_>>());
+        let watch = SharedWatch::new(observer, Stage::Indexing);
+        watch.triangles(faces);
+        watch.stage(Stage::Indexing, Some(faces))?;
+        let blocks = watch.pieces(faces, BLOCK, |block| block.flat_map(of_faces).collect::<Vec<_>>())?;
+        watch.done(faces)?;
         let (boxes, pieces): (Vec<Bounds>, Vec<Piece>) = blocks.into_iter().flatten().unzip();
         if let Some(why) = surface.failure() {
             return Err(why.clone().into());
