@@ -10,21 +10,7 @@ use limitmesh::measure::distances_to;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, limit_reference};
 use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{FaceId, LimitSurface, Mesh};
-use support::Random;
-
-type Point = [f64; 3];
-
-fn minus(a: Point, b: Point) -> Point {
-    [0, 1, 2].map(|i| a[i] - b[i])
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    (0..3).map(|i| a[i] * b[i]).sum()
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
+use support::{Point, Random, cross, dot, minus};
 
 fn built_in(name: &str) -> Mesh {
     Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0

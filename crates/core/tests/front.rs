@@ -151,7 +151,6 @@ fn updates_give_what_a_fresh_front_does() {
     }
 }
 
-/// A camera that moves a little from frame to frame is looked at node by node; a fresh front asks all nodes.
 /// Wherever an update is cancelled, there is a whole mesh, and the next one ends where a fresh front does.
 #[test]
 fn cancelled_updates_go_on_from_where_they_were() {
@@ -200,6 +199,7 @@ fn cancelled_updates_go_on_from_where_they_were() {
     assert!(matches!(found, Err(FrontError::Cancelled(_))));
 }
 
+/// A camera that moves a little from frame to frame is looked at node by node; a fresh front asks all nodes.
 #[test]
 fn cameras_that_move_a_little() {
     for (name, control) in [("lumpy", lumpy(9, 7)), ("sheet", sheet(4, 5, 3))] {

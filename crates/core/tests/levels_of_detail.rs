@@ -316,26 +316,43 @@ fn sizes_and_threads_change_nothing() {
     }
 }
 
-/// On a crease each side has its own normal on the coarser level; elsewhere it is that of the coarser triangle's shading.
+/// The weights of a triangle's corners at a place.
+fn weights(triangle: &Places, place: [f64; 3]) -> [f64; 3] {
+    let [a, b, c] = *triangle;
+    [cross(b, c, place), cross(c, a, place), cross(a, b, place)].map(|area| area / cross(a, b, c))
+}
+
+/// Each corner's normal is the mean of those of the coarser triangle beneath by its place there: on a crease each side has its own.
 #[test]
 fn normals_are_those_that_the_coarser_level_is_shaded_with() {
-    let mesh = octahedron().with_creases_above(1.0).unwrap();
-    let levels = levels_of_detail(&mesh, &Loop, &options(&mesh, &[0.05, 0.01])).unwrap();
-    let (split, normals) = levels[1].split_surface();
-    let (positions, own) = (levels[1].positions_at(0.0), &levels[1].exact);
-    assert!(split.positions.len() > own.mesh.vertex_count(), "creases have sides");
-    let (coarse, _) = levels[0].split_surface();
-    let bvh = Bvh::new(coarse.as_triangles()).unwrap();
-    for (v, normal) in normals.iter().enumerate() {
-        let at = positions[split.sources[v] as usize];
-        let nearest = bvh.closest(at);
-        let corners = coarse.triangles[nearest.face as usize];
-        let is_near = |p: Point| (0..3).map(|i| p[i] * split.normals[v][i]).sum::<f64>() > 0.5;
-        // All corners of the octahedron's faces look alike: within a face the normal is among its corners'.
-        if corners.iter().all(|&c| is_near(coarse.normals[c as usize])) {
-            assert!(is_near(*normal), "{normal:?} beside {:?}", split.normals[v]);
+    for (name, mesh) in all_samples() {
+        let levels = levels_of_detail(&mesh, &Loop, &options(&mesh, &[0.05, 0.01])).unwrap();
+        let [coarse, fine] = [0, 1].map(|level| &levels[level].exact);
+        let (split, normals) = levels[1].split_surface();
+        let has_sides = split.positions.len() > fine.mesh.vertex_count();
+        assert_eq!(has_sides, !mesh.tags().creases.is_empty(), "{name}: creases have sides");
+        let mut of_face: Vec<Vec<(Places, u32)>> = vec![Vec::new(); mesh.face_count()];
+        for triangle in 0..coarse.mesh.face_count() {
+            let own = places(&mesh, coarse, triangle);
+            of_face[coarse.parents[triangle] as usize].push((own, triangle as u32));
         }
-        assert!((0..3).map(|i| normal[i] * normal[i]).sum::<f64>() <= 1.0 + 1e-12);
+        let mut compared = 0;
+        for triangle in 0..fine.mesh.face_count() {
+            let own = places(&mesh, fine, triangle);
+            let beneath = of_face[fine.parents[triangle] as usize]
+                .iter()
+                .find(|(coarse, _)| own.iter().all(|&corner| holds(coarse, corner)));
+            let Some((around, under)) = beneath else { continue };
+            for (corner, &place) in own.iter().enumerate() {
+                let weights = weights(around, place);
+                let theirs = [0, 1, 2].map(|i| coarse.corner_normal(HalfEdgeId::of(FaceId(*under), i)));
+                let expected = std::array::from_fn(|axis| (0..3).map(|i| weights[i] * theirs[i][axis]).sum());
+                let found = normals[split.triangles[triangle][corner] as usize];
+                assert!(distance(found, expected) < 1e-12, "{name}: {found:?} and {expected:?}");
+                compared += 1;
+            }
+        }
+        assert!(compared > fine.mesh.face_count(), "{name}: {compared}");
     }
 }
 

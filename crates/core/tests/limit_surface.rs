@@ -434,20 +434,25 @@ fn weights_give_the_points() {
             let faces = spread.into_iter().filter(|face| face.index() < mesh.face_count());
             let at: Vec<(FaceId, [f64; 3])> =
                 faces.flat_map(|face| places().into_iter().take(9).map(move |at| (face, at))).collect();
+            let bent = |p: &[f64; 3]| [p[0] + 0.2 * p[1] * p[1], p[1] - 0.3 * p[2] * p[0], 0.7 * p[2]];
+            let moved = mesh.clone().with_positions(mesh.positions().iter().map(bent).collect()).unwrap();
             for scheme in [&Loop as &dyn Scheme, &ModifiedButterfly] {
                 let surface = LimitSurface::new(&mesh, scheme).unwrap();
+                let elsewhere = LimitSurface::new(&moved, scheme).unwrap();
                 let all = surface.weights_at(&at).unwrap();
                 assert_eq!(all.len(), at.len());
                 for (&(face, place), weights) in at.iter().zip(&all) {
                     assert!(weights.windows(2).all(|pair| pair[0].0 < pair[1].0));
                     near(weights.iter().map(|&(_, weight)| weight).sum(), 1.0, 1e-12);
-                    let point = surface.at(face, place).position;
-                    for (axis, &expected) in point.iter().enumerate() {
-                        let sum = weights
-                            .iter()
-                            .map(|&(v, weight)| weight * mesh.positions()[v.index()][axis])
-                            .sum();
-                        near(sum, expected, 1e-12);
+                    for (mesh, surface) in [(&mesh, &surface), (&moved, &elsewhere)] {
+                        let point = surface.at(face, place).position;
+                        for (axis, &expected) in point.iter().enumerate() {
+                            let sum = weights
+                                .iter()
+                                .map(|&(v, weight)| weight * mesh.positions()[v.index()][axis])
+                                .sum();
+                            near(sum, expected, 1e-12);
+                        }
                     }
                     if scheme.name() == Loop.name() {
                         assert!(weights.iter().all(|&(_, weight)| weight > -1e-15), "{name}: {weights:?}");

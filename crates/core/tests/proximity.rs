@@ -11,23 +11,10 @@ use limitmesh::refine::limit_reference;
 use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{Closest, FaceId, LimitSurface, Membership, Mesh, Proximity, ProximityError};
 
-use support::{Point, cross, distance, dot, minus};
+use support::{Point, cross, distance, dot, minus, octahedron};
 
 fn model(name: &str) -> Mesh {
     Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
-}
-
-fn octahedron() -> Mesh {
-    let positions = [
-        [1.0, 0.0, 0.0],
-        [-1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, -1.0, 0.0],
-        [0.0, 0.0, 1.0],
-        [0.0, 0.0, -1.0],
-    ];
-    let triangles = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
-    Mesh::from_triangles(positions.to_vec(), triangles.to_vec()).unwrap()
 }
 
 /// A double cone over a polygon: tips of any valence, the others of four.
@@ -132,14 +119,14 @@ fn where_the_nearest_point_is_smooth_the_way_there_is_along_the_normal() {
     }
 }
 
-/// Radii by section 4.7's closed forms of Loop's limits: a vertex at 24/55, the middle of a face nearest to the centre.
+/// Radii by closed forms of Loop's limits: a vertex at 24/55, the middle of a face nearest to the centre.
 #[test]
 fn the_octahedron_is_as_far_as_it_is() {
     let [corner, centre] = closest(&octahedron(), &[[3.0, 0.0, 0.0], [0.0; 3]], 1e-10)[..] else {
         unreachable!()
     };
     assert!((corner.distance - (3.0 - 24.0 / 55.0)).abs() < 1e-12);
-    assert!((centre.distance - 0.407_452_924_349_970).abs() < 1e-10, "{}", centre.distance);
+    assert!((centre.distance - 271.0 * 3f64.sqrt() / 1152.0).abs() < 1e-10, "{}", centre.distance);
 }
 
 /// A surface in a plane: the foot of the perpendicular, or the rim, which is straight where the boundary is.

@@ -93,6 +93,7 @@ impl From<RayError> for Failure {
     fn from(error: RayError) -> Self {
         match error {
             RayError::Limit(error) => error.into(),
+            RayError::Cancelled(cancelled) => cancelled.into(),
             error => Self::Option(error.to_string()),
         }
     }

@@ -54,7 +54,7 @@ pub(crate) fn intersect<'py>(
     let hits = run(py, threads, progress, move |observer| {
         let control = recipe.control(soup, observer)?;
         let surface = LimitSurface::new(&control.mesh, recipe.scheme)?;
-        let caster = RayCaster::new(&surface)?;
+        let caster = RayCaster::new_observed(&surface, observer)?;
         let mut options = RayOptions::default().between(casting.between.0, casting.between.1);
         if let Some(tolerance) = casting.tolerance {
             options = options.tolerance(tolerance.of(control.diagonal));

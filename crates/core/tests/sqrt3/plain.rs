@@ -26,11 +26,8 @@ pub(crate) fn step(mesh: &Plain, cuts: bool) -> Plain {
         }
     }
     let is_boundary = |[a, b]: [u32; 2]| left.contains_key(&[a, b]) && !left.contains_key(&[b, a]);
-    let before = |v: u32| {
-        left.keys().copied().find(|&[_, b]| b == v).filter(|_| true).map(|_| v).and_then(|v| {
-            left.keys().copied().find(|&edge| edge[1] == v && is_boundary(edge)).map(|[a, _]| a)
-        })
-    };
+    let before =
+        |v: u32| left.keys().copied().find(|&edge| edge[1] == v && is_boundary(edge)).map(|[a, _]| a);
     let after = |v: u32| left.keys().copied().find(|&edge| edge[0] == v && is_boundary(edge)).map(|[_, b]| b);
 
     let mut positions: Vec<Point> = Vec::new();
@@ -74,14 +71,13 @@ pub(crate) fn step(mesh: &Plain, cuts: bool) -> Plain {
     for &[a, b, c] in &parts {
         opposite.extend([([a, b], c), ([b, c], a), ([c, a], b)]);
     }
-    let is_flipped = |edge: [u32; 2]| left.contains_key(&edge) && !is_boundary(edge);
     let mut triangles = Vec::new();
     for &[a, b, c] in &parts {
         let old_edge = [[a, b, c], [b, c, a], [c, a, b]]
             .into_iter()
             .find(|&[a, b, _]| left.contains_key(&[a, b]) && left.contains_key(&[b, a]));
         match old_edge {
-            Some([a, b, c]) if is_flipped([a, b]) => {
+            Some([a, b, c]) => {
                 triangles.push([a, opposite[&[b, a]], c]);
             }
             _ => triangles.push([a, b, c]),
