@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use super::changes::Changes;
 use super::source::Source;
-use super::{Asset, Geometry, VertexAttribute};
+use super::{Asset, Geometry, GltfFlaw, VertexAttribute};
 use crate::channels::MATERIAL;
 use crate::error::WriteError;
 use crate::format::Format;
@@ -28,26 +28,55 @@ pub(crate) fn write_fresh(
     let source = Source::parse(groups.document().to_string().as_bytes(), None).map_err(flawed)?;
     let scene = source.scene().map_err(flawed)?;
     let mut asset = Asset { path: None, source, scene, changes: Changes::default() };
-    // Where vertices have several normals, the writer is given a vertex for each.
-    let normals = output.normals.filter(|_| output.corner_normals.is_none());
-    let channels = attributes(output);
-    for (number, triangles) in groups.triangles.iter().enumerate() {
-        let own = Part::of(output, &channels, triangles);
-        let at = |points: &[[f64; 3]]| own.vertices.iter().map(|&v| points[v as usize]).collect::<Vec<_>>();
-        let normals = normals.map(at);
-        let geometry = Geometry {
-            positions: &at(output.surface.positions),
-            normals: normals.as_deref(),
-            triangles: &own.triangles,
-            attributes: &own.attributes,
-            targets: &[],
-        };
-        asset.replace(0, number, &geometry).map_err(flawed)?;
-    }
+    fill(&mut asset, 0, &groups, output, None).map_err(flawed)?;
     match path {
         Some(path) => asset.write(path, format).map(|_| Vec::new()),
         None => asset.to_bytes(format),
     }
+}
+
+/// Puts triangles into the primitives of a mesh, one for each material; with their vertices' places and normals on a coarser level of
+/// detail as a morph target.
+pub(super) fn fill(
+    asset: &mut Asset,
+    mesh: usize,
+    groups: &Groups,
+    output: &Output<'_>,
+    coarser: Option<[&[[f64; 3]]; 2]>,
+) -> Result<(), GltfFlaw> {
+    let channels = attributes(output);
+    for (primitive, triangles) in groups.triangles.iter().enumerate() {
+        let own = Part::of(output, &channels, triangles);
+        let at = |points: &[[f64; 3]]| own.vertices.iter().map(|&v| points[v as usize]).collect::<Vec<_>>();
+        // Where vertices have several normals, the writer is given a vertex for each.
+        let (positions, normals) = (at(output.surface.positions), output.vertex_normals().map(at));
+        let target = coarser.map(|[places, shaded]| {
+            let shaded = normals.as_ref().map(|normals| displaced("NORMAL", normals, &at(shaded)));
+            core::iter::once(displaced("POSITION", &positions, &at(places))).chain(shaded).collect()
+        });
+        let targets: Vec<Vec<VertexAttribute>> = target.into_iter().collect();
+        let geometry = Geometry {
+            positions: &positions,
+            normals: normals.as_deref(),
+            triangles: &own.triangles,
+            attributes: &own.attributes,
+            targets: &targets,
+        };
+        asset.replace(mesh, primitive, &geometry)?;
+    }
+    Ok(())
+}
+
+/// What a morph target adds.
+fn displaced(name: &str, from: &[[f64; 3]], to: &[[f64; 3]]) -> VertexAttribute {
+    let values = from.iter().zip(to).flat_map(|(from, to)| [0, 1, 2].map(|i| to[i] - from[i])).collect();
+    VertexAttribute { name: name.to_owned(), width: 3, values, is_integer: false }
+}
+
+/// A document that holds nothing.
+pub(super) fn empty() -> Value {
+    let generator = concat!("limitmesh ", env!("CARGO_PKG_VERSION"));
+    json!({"asset": {"version": "2.0", "generator": generator}})
 }
 
 /// Triangles by material, in the order in which materials are met.
@@ -89,8 +118,7 @@ impl Groups {
 
     /// What geometry is put into.
     fn document(&self) -> Value {
-        let generator = concat!("limitmesh ", env!("CARGO_PKG_VERSION"));
-        let mut document = json!({"asset": {"version": "2.0", "generator": generator}});
+        let mut document = empty();
         if self.triangles.is_empty() {
             return document;
         }

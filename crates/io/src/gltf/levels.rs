@@ -8,15 +8,16 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use super::Asset;
 use super::changes::Changes;
 use super::edit::{Members, items_of, quoted};
 use super::flaw::Result;
-use super::fresh::{Groups, Part, attributes};
+use super::fresh::{Groups, empty, fill};
+use super::gone::Gone;
 use super::source::Source;
-use super::{Asset, Geometry, VertexAttribute};
 use crate::error::WriteError;
 use crate::format::Format;
-use crate::write::Output;
+use crate::write::{Output, WriteOptions, check};
 
 /// A level of detail.
 #[derive(Clone, Copy, Debug)]
@@ -47,11 +48,26 @@ impl<'a> DetailLevel<'a> {
         self.least_coverage = coverage;
         self
     }
+
+    /// Checks that its parts fit together and into the format.
+    fn check(&self, format: Format) -> core::result::Result<(), WriteError> {
+        check(&self.output, format, &WriteOptions::default())?;
+        let vertices = self.output.surface.positions.len();
+        let [places, normals] = self.coarser.map_or([vertices; 2], |own| own.map(<[_]>::len));
+        for (what, count) in
+            [("places on the coarser level", places), ("normals on the coarser level", normals)]
+        {
+            if count != vertices {
+                return Err(WriteError::AttributeCount { what, count, vertices });
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Writes levels of detail, the finest first, as one document, whose nodes and meshes are called `name` with `_LOD0` and so on. With the
 /// asset that the levels were made of, its materials, textures and images come along, and all of its bytes; not its nodes, skins,
-/// animations and cameras.
+/// animations and cameras, nor extensions that name them.
 ///
 /// # Errors
 /// The levels do not fit together, or have numbers that 32-bit floats cannot hold; or the system refuses.
@@ -62,37 +78,13 @@ pub fn write_levels(
     of: Option<&Asset>,
 ) -> core::result::Result<(), WriteError> {
     let flawed = |flaw| WriteError::Gltf { flaw };
+    levels.iter().try_for_each(|level| level.check(format))?;
     let groups: Vec<Groups> = levels.iter().map(|level| Groups::of(&level.output)).collect();
     let mut asset = document((name, levels), &groups, of).map_err(flawed)?;
     for (mesh, (level, groups)) in levels.iter().zip(&groups).enumerate() {
-        let channels = attributes(&level.output);
-        for (primitive, triangles) in groups.triangles.iter().enumerate() {
-            let own = Part::of(&level.output, &channels, triangles);
-            let at =
-                |points: &[[f64; 3]]| own.vertices.iter().map(|&v| points[v as usize]).collect::<Vec<_>>();
-            let (positions, normals) = (at(level.output.surface.positions), level.output.normals.map(at));
-            let target = level.coarser.map(|[coarse, shaded]| {
-                let shaded = normals.as_ref().map(|normals| displaced("NORMAL", normals, &at(shaded)));
-                core::iter::once(displaced("POSITION", &positions, &at(coarse))).chain(shaded).collect()
-            });
-            let targets: Vec<Vec<VertexAttribute>> = target.into_iter().collect();
-            let geometry = Geometry {
-                positions: &positions,
-                normals: normals.as_deref(),
-                triangles: &own.triangles,
-                attributes: &own.attributes,
-                targets: &targets,
-            };
-            asset.replace(mesh, primitive, &geometry).map_err(flawed)?;
-        }
+        fill(&mut asset, mesh, groups, &level.output, level.coarser).map_err(flawed)?;
     }
     asset.write(path, format).map(drop)
-}
-
-/// What a morph target adds.
-fn displaced(name: &str, from: &[[f64; 3]], to: &[[f64; 3]]) -> VertexAttribute {
-    let values = from.iter().zip(to).flat_map(|(from, to)| [0, 1, 2].map(|i| to[i] - from[i])).collect();
-    VertexAttribute { name: name.to_owned(), width: 3, values, is_integer: false }
 }
 
 /// The document that geometry is put into.
@@ -138,14 +130,18 @@ fn document(
         nodes[0]["extras"] = json!({ "MSFT_screencoverage": coverage });
     }
     let fresh: Vec<String> = materials.iter().map(|name| json!({ "name": name }).to_string()).collect();
-    let generator = concat!("limitmesh ", env!("CARGO_PKG_VERSION"));
-    let empty = json!({"asset": {"version": "2.0", "generator": generator}}).to_string();
+    let empty = empty().to_string();
     let text = of.map_or(&empty, |asset| &asset.source.container.text);
     let top = Members::of(text)?;
+    let gone = of.map_or_else(Gone::default, |asset| Gone::of(&asset.source.json));
     let list = |key: &str, new: Vec<String>| -> Result<Option<String>> {
         let old = top.get(key).map_or_else(|| Ok(Vec::new()), items_of)?;
-        let is_left = |item: &&str| key == "materials" || **item != quoted(LOD);
-        let all: Vec<String> = old.into_iter().filter(is_left).map(str::to_owned).chain(new).collect();
+        let is_left =
+            |item: &&str| key == "materials" || !gone.names.iter().any(|name| **item == quoted(name));
+        let mut all: Vec<String> = old.into_iter().filter(is_left).map(str::to_owned).collect();
+        let new: Vec<String> =
+            new.into_iter().filter(|item| key == "materials" || !all.contains(item)).collect();
+        all.extend(new);
         Ok((!all.is_empty()).then(|| format!("[{}]", all.join(","))))
     };
     let used = if levels.len() > 1 { vec![quoted(LOD)] } else { Vec::new() };
@@ -158,6 +154,7 @@ fn document(
         ("materials", list("materials", fresh)?),
         ("extensionsUsed", list("extensionsUsed", used)?),
         ("extensionsRequired", list("extensionsRequired", Vec::new())?),
+        ("extensions", gone.left_of_root(&top)?),
         ("skins", None),
         ("animations", None),
         ("cameras", None),
@@ -173,4 +170,4 @@ fn document(
 }
 
 /// The extension.
-const LOD: &str = "MSFT_lod";
+pub(super) const LOD: &str = "MSFT_lod";

@@ -24,6 +24,7 @@ mod edit;
 mod flaw;
 mod fresh;
 mod geometry;
+mod gone;
 mod idle;
 mod json;
 mod kinds;

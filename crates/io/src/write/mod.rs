@@ -142,7 +142,7 @@ impl<'a> Output<'a> {
 
 impl Output<'_> {
     /// Normals where each vertex has one.
-    fn vertex_normals(&self) -> Option<&[[f64; 3]]> {
+    pub(crate) fn vertex_normals(&self) -> Option<&[[f64; 3]]> {
         self.normals.filter(|_| self.corner_normals.is_none())
     }
 }
@@ -252,7 +252,7 @@ fn write_checked(
 }
 
 /// Checks that the parts of the output fit together and into the format.
-fn check(output: &Output<'_>, format: Format, options: &WriteOptions) -> Result<(), WriteError> {
+pub(crate) fn check(output: &Output<'_>, format: Format, options: &WriteOptions) -> Result<(), WriteError> {
     let Triangles { positions, triangles } = output.surface;
     let vertices = positions.len();
     let counts = [

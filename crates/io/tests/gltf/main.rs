@@ -9,6 +9,7 @@ mod extensions;
 mod flaws;
 mod fresh_documents;
 mod joining;
+mod levels;
 mod mutations;
 mod scenes;
 mod support;

@@ -1,0 +1,78 @@
+//! Extensions that say something of nodes, meshes, skins, animations, cameras and scenes, of a document that has others in their places.
+//!
+//! What stands in these goes with them. What the document's own `extensions` hold stays unless it has a member that is called as if it
+//! named some: what that would name now is another, or none. A name goes from the document's lists where nothing that stays has it.
+
+use std::collections::BTreeSet;
+
+use serde_json::Value;
+
+use super::edit::Members;
+use super::flaw::Result;
+use super::idle::without;
+use super::levels::LOD;
+
+/// The arrays that the document has others of.
+const ARRAYS: [&str; 6] = ["nodes", "meshes", "skins", "animations", "cameras", "scenes"];
+
+/// What members are called, in part and in whatever case, that name items of these, or bones.
+const NAMING: [&str; 8] = ["node", "mesh", "skin", "animation", "camera", "scene", "joint", "bone"];
+
+/// What goes.
+#[derive(Default)]
+pub(super) struct Gone {
+    /// Extensions of the document itself.
+    root: Vec<String>,
+    /// Names that its lists lose.
+    pub(super) names: BTreeSet<String>,
+}
+
+impl Gone {
+    /// What goes of a document.
+    pub(super) fn of(json: &Value) -> Self {
+        let own = json.get("extensions").and_then(Value::as_object).into_iter().flatten();
+        let (root, kept): (Vec<_>, Vec<_>) = own.partition(|(_, value)| names_some(value));
+        let root: Vec<String> = root.into_iter().map(|(name, _)| name.clone()).collect();
+        let mut names: BTreeSet<String> = root.iter().cloned().chain([LOD.to_owned()]).collect();
+        let mut needed = BTreeSet::new();
+        needed.extend(kept.iter().map(|(name, _)| (*name).clone()));
+        kept.iter().for_each(|(_, value)| used(value, &mut needed));
+        for (key, value) in json.as_object().into_iter().flatten().filter(|(key, _)| *key != "extensions") {
+            used(value, if ARRAYS.contains(&&key[..]) { &mut names } else { &mut needed });
+        }
+        Self { root, names: &names - &needed }
+    }
+
+    /// The document's own extensions without those that go; `None` where none is left.
+    pub(super) fn left_of_root(&self, top: &Members<'_>) -> Result<Option<String>> {
+        without(top, &self.root.iter().map(|name| &name[..]).collect::<Vec<_>>())
+    }
+}
+
+/// Whether a value has a member, however deep, that is called as if it named some.
+fn names_some(value: &Value) -> bool {
+    match value {
+        Value::Object(members) => members.iter().any(|(key, value)| {
+            let key = key.to_ascii_lowercase();
+            NAMING.iter().any(|name| key.contains(name)) || names_some(value)
+        }),
+        Value::Array(items) => items.iter().any(names_some),
+        _ => false,
+    }
+}
+
+/// Adds the names of all extensions of a value and of what is in it.
+fn used(value: &Value, names: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(members) => {
+            for (key, value) in members {
+                if let ("extensions", Value::Object(own)) = (&key[..], value) {
+                    names.extend(own.keys().cloned());
+                }
+                used(value, names);
+            }
+        }
+        Value::Array(items) => items.iter().for_each(|item| used(item, names)),
+        _ => {}
+    }
+}
