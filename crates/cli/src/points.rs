@@ -20,6 +20,9 @@ pub(crate) struct Points {
 /// Extensions of text files.
 const TEXT: [&str; 5] = ["xyz", "txt", "csv", "asc", "pts"];
 
+/// Of these, the one whose first line may be the number of points.
+const COUNTED: &str = "pts";
+
 /// Reads points.
 ///
 /// # Errors
@@ -28,34 +31,37 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
     let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
     let is_text = extension.and_then(|extension| extension.into_string().ok());
     let is_standard_input = path.as_os_str() == "-" && build.from.is_none();
-    let points = if is_standard_input || is_text.is_some_and(|extension| TEXT.contains(&&*extension)) {
-        let name = if is_standard_input { "standard input".into() } else { path.display().to_string() };
-        progress.stage(format!("reading {name}"));
-        let text = if is_standard_input {
-            std::io::read_to_string(std::io::stdin())
+    let points =
+        if is_standard_input || is_text.as_ref().is_some_and(|extension| TEXT.contains(&&**extension)) {
+            let name = if is_standard_input { "standard input".into() } else { path.display().to_string() };
+            progress.stage(format!("reading {name}"));
+            let text = if is_standard_input {
+                std::io::read_to_string(std::io::stdin())
+            } else {
+                std::fs::read_to_string(path)
+            };
+            let text = text.with_context(|| name.clone())?;
+            let has_count = is_text.is_some_and(|extension| extension == COUNTED);
+            let positions = coordinates(&text, has_count).with_context(|| name.clone())?;
+            Points { name, positions, triangles: Vec::new() }
         } else {
-            std::fs::read_to_string(path)
+            let input::Soup { name, soup, .. } = input::read(path, build, progress)?;
+            let count = soup.positions.len();
+            let triangle = |face: &[u32]| <[u32; 3]>::try_from(face).ok();
+            let triangles: Vec<[u32; 3]> = soup
+                .faces
+                .iter()
+                .filter_map(triangle)
+                .filter(|corners| corners.iter().all(|&v| (v as usize) < count))
+                .collect();
+            if triangles.len() < soup.faces.len() {
+                let left = counted(soup.faces.len() - triangles.len(), "face is", "faces are");
+                progress.note(format!(
+                    "{name}: {left} no triangles over its points and left out; all points are projected"
+                ));
+            }
+            Points { name, positions: soup.positions, triangles }
         };
-        let positions = coordinates(&text.with_context(|| name.clone())?).with_context(|| name.clone())?;
-        Points { name, positions, triangles: Vec::new() }
-    } else {
-        let input::Soup { name, soup, .. } = input::read(path, build, progress)?;
-        let count = soup.positions.len();
-        let triangle = |face: &[u32]| <[u32; 3]>::try_from(face).ok();
-        let triangles: Vec<[u32; 3]> = soup
-            .faces
-            .iter()
-            .filter_map(triangle)
-            .filter(|corners| corners.iter().all(|&v| (v as usize) < count))
-            .collect();
-        if triangles.len() < soup.faces.len() {
-            let left = counted(soup.faces.len() - triangles.len(), "face is", "faces are");
-            progress.note(format!(
-                "{name}: {left} no triangles over its points and left out; all points are projected"
-            ));
-        }
-        Points { name, positions: soup.positions, triangles }
-    };
     if let Some(index) = points.positions.iter().position(|at| !at.iter().all(|x| x.is_finite())) {
         bail!("{}: point {index} (from 0) is not finite", points.name);
     }
@@ -65,26 +71,58 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
     Ok(points)
 }
 
-/// Three numbers a line, between commas, semicolons or blanks; more are ignored, as is what follows `#`. A first line without numbers is a
-/// heading.
-fn coordinates(text: &str) -> anyhow::Result<Vec<[f64; 3]>> {
+/// Three numbers a line, between semicolons, or else between commas or blanks, each between quotes or without; more are ignored, as is
+/// what follows `#`. A first line without numbers is a heading; where a count may begin, one whole number is.
+fn coordinates(text: &str, has_count: bool) -> anyhow::Result<Vec<[f64; 3]>> {
     let mut found = Vec::new();
+    let mut count = None;
     // Editors may mark a file as UTF-8.
     for (line, row) in text.trim_start_matches('\u{feff}').lines().zip(1..) {
         let line = line.split('#').next().unwrap_or("").trim();
         if line.is_empty() {
             continue;
         }
-        let words = line.split(|c: char| c == ',' || c == ';' || c.is_whitespace());
-        let words: Vec<&str> = words.filter(|word| !word.is_empty()).take(3).collect();
+        if has_count
+            && row == 1
+            && let Ok(points) = line.parse::<usize>()
+        {
+            count = Some(points);
+            continue;
+        }
+        let words: Vec<&str> = words(line).take(3).collect();
         let numbers: Vec<f64> = words.iter().filter_map(|word| word.parse().ok()).collect();
         match <[f64; 3]>::try_from(numbers) {
             Ok(point) if point.iter().all(|x| x.is_finite()) => found.push(point),
-            Err(numbers) if numbers.is_empty() && found.is_empty() && row == 1 => {}
+            Err(_) if row == 1 && !words.iter().any(|word| is_like_number(word)) => {}
             _ => bail!("line {row}: three coordinates are expected, not '{}'", words.join(" ")),
         }
     }
+    if let Some(count) = count.filter(|&count| count != found.len()) {
+        bail!("line 1: {count} points are expected, there are {}", found.len());
+    }
     Ok(found)
+}
+
+/// What a line has between separators. Where there are semicolons a comma is none: it may be a decimal one, which is no number here.
+fn words(line: &str) -> impl Iterator<Item = &str> {
+    let separator = if line.contains(';') { ';' } else { ',' };
+    let mut is_quoted = false;
+    let fields = line.split(move |c: char| {
+        is_quoted ^= c == '"';
+        c == separator && !is_quoted
+    });
+    fields.flat_map(move |field| {
+        let field = field.trim();
+        let quoted = field.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).map(str::trim);
+        let is_whole = quoted.is_some() || separator == ';' || field.is_empty();
+        let whole = is_whole.then_some(quoted.unwrap_or(field));
+        whole.into_iter().chain(field.split_whitespace().filter(move |_| !is_whole))
+    })
+}
+
+/// Whether a word is a number, or would be one with a decimal point or without a quote: it is not of a heading.
+fn is_like_number(word: &str) -> bool {
+    word.replace(',', ".").replace('"', "").parse::<f64>().is_ok()
 }
 
 #[cfg(test)]
@@ -93,16 +131,56 @@ mod tests {
 
     #[test]
     fn lines_are_points() {
-        let text = "\u{feff}x;y;z\n1;2;3\n\n# none\n 4, 5 , 6, 255\n-1e-3\t0 7 # last\n";
-        let expected = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [-1e-3, 0.0, 7.0]];
-        assert_eq!(coordinates(text).expect("points"), expected);
+        let text = "\u{feff}x;y;z\n1;2;3\n\n# none\n 4, 5 , 6, 255\n-1e-3\t0 7 # last\n1, 2 3\n";
+        let expected = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [-1e-3, 0.0, 7.0], [1.0, 2.0, 3.0]];
+        assert_eq!(coordinates(text, false).expect("points"), expected);
     }
 
     #[test]
-    fn lines_that_are_none_are_named() {
-        for (text, row) in [("1 2\n", 1), ("1 2 3\nx y z\n", 2), ("1 2 nan\n", 1), ("x y z\nx y z\n", 2)] {
-            let error = coordinates(text).expect_err("no point").to_string();
-            assert!(error.starts_with(&format!("line {row}: ")), "{error}");
+    fn quoted_fields_are_read() {
+        let expected = [[1.0, 2.5, -3.0]];
+        for text in [
+            "\"1\",\"2.5\",\"-3\"\n",
+            "\"x, to the left\",y,z\n\"1\", 2.5 ,\"-3\",\"far\"\n",
+            "\"x;1\";\"y\";\"z\"\n\" 1 \";2.5;-3\n",
+        ] {
+            assert_eq!(coordinates(text, false).expect(text), expected, "{text}");
         }
+    }
+
+    /// Decimal commas, missing fields and broken quotes are no separators, and no heading.
+    #[test]
+    fn lines_that_are_none_are_named() {
+        for (text, row) in [
+            ("1 2\n", 1),
+            ("1 2 3\nx y z\n", 2),
+            ("1 2 nan\n", 1),
+            ("x y z\nx y z\n", 2),
+            ("1,5;2,5;3,5\n", 1),
+            ("x;y;z\n1,5;2,5;3,5\n", 2),
+            ("1;2;3\n1,5;2;3\n", 2),
+            ("1 2;3;4\n", 1),
+            ("1;;3;4\n", 1),
+            ("1,,3,4\n", 1),
+            ("\"1,5\",\"2,5\",\"3,5\"\n", 1),
+            ("1 2 3\n\"1,2,3\n", 2),
+            ("3\n1 2 3\n", 1),
+        ] {
+            let error = coordinates(text, false).expect_err(text).to_string();
+            assert!(error.starts_with(&format!("line {row}: ")), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_count_may_stand_first() {
+        let points = "1 2 3 -1200 90 80 70\n4 5 6 -1100 1 2 3\n";
+        let expected = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
+        for text in [format!("2\n{points}"), points.to_owned()] {
+            assert_eq!(coordinates(&text, true).expect("points"), expected);
+        }
+        let error = coordinates(&format!("3\n{points}"), true).expect_err("too few").to_string();
+        assert_eq!(error, "line 1: 3 points are expected, there are 2");
+        let error = coordinates(&format!("{points}2\n"), true).expect_err("another count").to_string();
+        assert!(error.starts_with("line 3: "), "{error}");
     }
 }

@@ -17,8 +17,9 @@ Examples:
 
 /// Project points onto a limit surface: distances, closest points, and which are inside
 ///
-/// POINTS are the vertices of a mesh, or a text file with three coordinates a line (.xyz, .txt, .csv, .asc). Each is projected onto the
-/// limit surface of CONTROL itself, not onto a mesh that stands for it: no point of the surface is nearer by more than --tolerance.
+/// POINTS are the vertices of a mesh, or a text file with three coordinates a line (.xyz, .txt, .csv, .asc; .pts, whose first line may
+/// be their number), between blanks, commas or semicolons. Each is projected onto the limit surface of CONTROL itself, not onto a mesh
+/// that stands for it: no point of the surface is nearer by more than --tolerance.
 /// Distances are below 0 inside of a closed surface; where it is open, behind it, as its normal at the closest point tells.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]

@@ -91,6 +91,11 @@ fn what_cannot_be_is_told() {
     let points = file(&folder, "points.xyz", "1 2 3\n4 five 6\n");
     let error = run("project {} --onto {}", &[&points, &control]).expect(1).stderr;
     assert!(error.contains("points.xyz") && error.contains("line 2"), "{error}");
+    let decimal = file(&folder, "decimal.csv", "x;y;z\n1,5;2,5;3,5\n");
+    let error = run("project {} --onto {}", &[&decimal, &control]).expect(1).stderr;
+    assert!(error.contains("decimal.csv") && error.contains("line 2") && error.contains("1,5"), "{error}");
+    let short = file(&folder, "short.pts", "3\n1 2 3\n2 3 4\n");
+    run("project {} --onto {}", &[&short, &control]).expect(1).saying("3 points are expected, there are 2");
     let none = file(&folder, "none.xyz", "# none\n");
     assert!(run("project {} --onto {}", &[&none, &control]).expect(1).stderr.contains("no points"));
     let points = file(&folder, "points.txt", "1 2 3\n");
