@@ -39,7 +39,7 @@ impl Bulk {
         if scheme.loop_family().is_none() {
             return Ok(None);
         }
-        let surface = LimitSurface::new(control, scheme)?;
+        let surface = LimitSurface::without_normals(control, scheme)?;
         let is_closed = control.topology().boundary_edge_count() == 0;
         match (surface.area(), surface.volume()) {
             (Some(area), volume) if volume.is_some() || !is_closed => Ok(Some(Self { area, volume })),

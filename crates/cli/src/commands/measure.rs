@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
     let b = reference.as_triangles();
     let report = MeasureReport {
         version: VERSION,
-        surface: describe(&surface),
+        surface: describe(&surface, Some(Bulk::of(&surface.mesh))),
         reference: reference_report,
         hausdorff: measured.report(whole),
         seconds: MeasureSeconds { prepare, measure: start.elapsed().as_secs_f64() },
@@ -129,17 +129,18 @@ fn load_reference(
     let Some(control) = &arguments.limit_of else {
         let name = arguments.reference.as_deref().unwrap_or(Path::new(""));
         let input = input::load(name, build, progress)?;
-        let report = describe(&input);
+        let report = describe(&input, Some(Bulk::of(&input.mesh)));
         let whole = Whole { diagonal: input.mesh.diagonal(), of: "second mesh" };
         return Ok((input.mesh, report, whole));
     };
     let input = input::load(control, build, progress)?;
     let scheme = arguments.scheme.unwrap_or_default();
-    let report = describe(&input);
+    let report = describe(&input, None);
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
     let interpolation = (arguments.interpolation, arguments.build.unit);
     let (mesh, _) = limit_control::prepared(input, &arguments.features, interpolation, scheme, progress)?;
-    let bulk = Bulk::of_limit(&mesh, scheme.scheme())?;
+    // Beyond what numbers hold they are not known; distances are.
+    let bulk = Bulk::of_limit(&mesh, scheme.scheme()).ok().flatten();
     let (mesh, levels) = if arguments.certified {
         (mesh, 0)
     } else {
@@ -171,14 +172,13 @@ fn load_reference(
     Ok((mesh, report, whole))
 }
 
-fn describe(input: &Input) -> SurfaceReport {
-    let bulk = Bulk::of(&input.mesh);
+fn describe(input: &Input, bulk: Option<Bulk>) -> SurfaceReport {
     SurfaceReport {
         path: input.name.clone(),
         vertices: input.mesh.vertex_count(),
         triangles: input.mesh.face_count(),
-        area: Some(bulk.area),
-        volume: bulk.volume,
+        area: bulk.map(|bulk| bulk.area),
+        volume: bulk.and_then(|bulk| bulk.volume),
         diagnosis: (&input.diagnosis).into(),
         limit: None,
     }

@@ -80,6 +80,24 @@ fn refinement_with_limit_vertices_approaches_the_limit_surface() {
     assert_eq!(same["reference"]["limit"]["chosen"], false);
 }
 
+/// Area and volume are beside what is asked for: where they are beyond what numbers hold, distances are not.
+#[test]
+fn distances_are_measured_where_areas_are_not_known() {
+    let folder = folder();
+    let octahedron = |r: &str| {
+        let corners = [[r, "0", "0"], ["0", r, "0"], ["0", "0", r]].map(|at| at.join(" "));
+        let opposite = corners.clone().map(|at| at.replace(r, &format!("-{r}")));
+        let vertices: String = corners.iter().chain(&opposite).map(|at| format!("v {at}\n")).collect();
+        format!("{vertices}f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n")
+    };
+    let [near, far] = ["1", "1e110"].map(|r| file(&folder, &format!("{r}.obj"), &octahedron(r)));
+    let of = |path: &Path| measure("{} --limit-of {}", &[path, path]);
+    let (near, far) = (of(&near), of(&far));
+    let percent = |report: &Value| number(&report["hausdorff"]["symmetric_percent"]);
+    assert!((percent(&near) - percent(&far)).abs() < 1e-6, "{near:#} {far:#}");
+    assert!(near["reference"]["volume"].is_f64() && far["reference"]["volume"].is_null(), "{far:#}");
+}
+
 #[test]
 fn the_text_says_that_samples_give_a_lower_bound() {
     let text = run("measure builtin:icosphere --limit-of builtin:icosphere", &[]).expect(0).stdout;
