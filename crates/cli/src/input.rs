@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
-use limitmesh::mesh::{BuildOptions, Channel, Diagnosis, MeshError, Weld};
+use limitmesh::mesh::{BuildOptions, Channel, Diagnosis, MeshError, Trace, Weld};
 use limitmesh::{Mesh, PolygonSoup};
 use limitmesh_io::channels::NORMALS;
 use limitmesh_io::gltf::Contents;
@@ -72,8 +72,8 @@ pub(crate) struct Input {
     pub(crate) mesh: Mesh,
     /// What was found and repaired.
     pub(crate) diagnosis: Diagnosis,
-    /// The input's face that each face of the mesh is from.
-    pub(crate) face_inputs: Vec<u32>,
+    /// The input's face that each face of the mesh is from, and the corners.
+    pub(crate) trace: Trace,
     /// Normals of the corners, as the file has them.
     pub(crate) normals: Option<Channel>,
     /// What corners and faces of the mesh carry.
@@ -231,13 +231,35 @@ pub(crate) fn load_for(
     (kept, channels): (&[&str], &ChannelArguments),
     progress: &Progress,
 ) -> anyhow::Result<Input> {
+    connect(read_for(path, build, channels, progress)?, build, kept, progress)
+}
+
+/// [`read`] for refinement, where channels are as `channels` asks.
+///
+/// # Errors
+/// As for [`read`]; or there is no channel of a name that is asked for.
+pub(crate) fn read_for(
+    path: &Path,
+    build: &BuildArguments,
+    channels: &ChannelArguments,
+    progress: &Progress,
+) -> anyhow::Result<Soup> {
     let mut read = read(path, build, progress)?;
     channels.check(&read.name, read.soup.channels.iter().map(|channel| channel.name.as_str()))?;
     channels.apply(&mut read.soup.channels)?;
-    connect(read, build, kept, progress)
+    Ok(read)
 }
 
-fn connect(read: Soup, build: &BuildArguments, kept: &[&str], progress: &Progress) -> anyhow::Result<Input> {
+/// A control mesh of what was read; says what was left out, but for what is `kept`, and what had to be repaired.
+///
+/// # Errors
+/// No mesh can be made of it, or only by a repair that `build` forbids.
+pub(crate) fn connect(
+    read: Soup,
+    build: &BuildArguments,
+    kept: &[&str],
+    progress: &Progress,
+) -> anyhow::Result<Input> {
     let options = &build.options()?;
     let Soup { name, format, mut soup, normals, asset, reading, .. } = read;
     progress.stage(format!("connecting {}", counted(soup.faces.len(), "face", "faces")));
@@ -265,14 +287,13 @@ fn connect(read: Soup, build: &BuildArguments, kept: &[&str], progress: &Progres
     if let Some(near) = near {
         progress.note(format!("{name}: {near}"));
     }
-    let face_inputs = trace.faces;
     Ok(Input {
         name,
         format,
         left_out,
         mesh,
         diagnosis,
-        face_inputs,
+        trace,
         normals,
         channels,
         material_libraries,

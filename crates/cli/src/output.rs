@@ -7,6 +7,8 @@ use anyhow::Context;
 use limitmesh_io::{Asset, Format, Output, WriteError, WriteOptions};
 use serde::Serialize;
 
+use crate::failure::usage;
+use crate::input;
 use crate::interrupt;
 
 /// Stands for standard output where a file is expected.
@@ -80,6 +82,24 @@ pub(crate) fn write_asset(
 /// Writes JSON to a file, or to standard output for `-`.
 pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
     write_file(path, json(value)?.as_bytes())
+}
+
+/// Refuses files that would replace an input; `what` they are.
+pub(crate) fn check_replaced(written: &[&Path], inputs: &[&Path], what: &str) -> anyhow::Result<()> {
+    let is_input = |path: &Path| inputs.iter().any(|input| input::same_file(input, path));
+    match written.iter().find(|path| !is_standard_output(path) && is_input(path)) {
+        Some(path) => usage(format!("{} is the input; {what} would replace it", path.display())),
+        None => Ok(()),
+    }
+}
+
+/// Refuses to write a file twice.
+pub(crate) fn check_once(written: &[&Path]) -> anyhow::Result<()> {
+    let is_twice = |i: &usize| written[..*i].iter().any(|earlier| input::same_file(earlier, written[*i]));
+    match (0..written.len()).find(is_twice) {
+        Some(i) => usage(format!("{} would be written twice", written[i].display())),
+        None => Ok(()),
+    }
 }
 
 /// Finds out before the work whether a file could be written where `path` says.

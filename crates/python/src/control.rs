@@ -48,8 +48,7 @@ impl Recipe {
         let (mesh, mut diagnosis, trace) = Mesh::from_soup_traced(&soup, &options.build())?;
         let channels = soup.channels.iter().map(|channel| channel.on_mesh(&soup, &mesh, &trace));
         let channels: Vec<Channel> = channels.collect::<Result<_, _>>()?;
-        let of_soup: Vec<u32> = soup.faces.iter().flatten().copied().collect();
-        let corners: Vec<u32> = trace.corners.iter().map(|&corner| of_soup[corner as usize]).collect();
+        let corners = trace.vertices(&soup);
         let mut vertices = vec![None; soup.positions.len()];
         for (&own, &input) in mesh.triangles().as_flattened().iter().zip(&corners) {
             vertices[input as usize].get_or_insert(own);

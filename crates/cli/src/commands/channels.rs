@@ -1,15 +1,37 @@
 //! What the input carries beside its shape, on its way to the output: texture coordinates, colours, materials, groups.
 
-use limitmesh::Mesh;
+use std::path::Path;
+
 use limitmesh::carry::carried;
 use limitmesh::mesh::{Channel, Domain, FaceParts};
 use limitmesh::refine::Traced;
+use limitmesh::scheme::Scheme;
+use limitmesh::{Mesh, Triangles};
 use limitmesh_io::{Format, Output, WriteOptions, holds, splits_vertices, values_lost};
 
 use super::linked;
-use crate::arguments::RefineArguments;
+use crate::arguments::{ChannelArguments, RefineArguments};
 use crate::format::counted;
 use crate::progress::Progress;
+
+/// Where channels go, and what was asked for them.
+pub(super) struct Destination<'a> {
+    /// Nothing is written without one.
+    pub(super) format: Option<Format>,
+    /// Whether it is written as text.
+    pub(super) ascii: bool,
+    pub(super) chosen: &'a ChannelArguments,
+    /// The file that they came from, and the one that they go to.
+    pub(super) files: (&'a Path, Option<&'a Path>),
+}
+
+impl<'a> Destination<'a> {
+    /// That of a refinement.
+    pub(super) fn of(arguments: &'a RefineArguments, format: Option<Format>) -> Self {
+        let files = (arguments.input(), arguments.output.as_deref());
+        Self { format, ascii: arguments.ascii, chosen: &arguments.channels, files }
+    }
+}
 
 fn names(channels: &[Channel]) -> String {
     let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
@@ -31,16 +53,16 @@ impl Channels {
     pub(super) fn of_input(
         channels: Vec<Channel>,
         [material_libraries, texture_files]: [Vec<String>; 2],
-        (format, arguments): (Option<Format>, &RefineArguments),
+        to: &Destination<'_>,
         progress: &Progress,
     ) -> Self {
-        let Some(format) = format else { return Self::default() };
-        let is_dropped = |channel: &Channel| arguments.channels.drops(&channel.name);
+        let Some(format) = to.format else { return Self::default() };
+        let is_dropped = |channel: &Channel| to.chosen.drops(&channel.name);
         let (dropped, channels): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(is_dropped);
         if !dropped.is_empty() {
             progress.note(format!("left out: {} (by --channel)", names(&dropped)));
         }
-        let options = WriteOptions::default().ascii(arguments.ascii);
+        let options = WriteOptions::default().ascii(to.ascii);
         let reaches = |channel: &Channel| holds(format, &options, channel);
         let (kept, lost): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(reaches);
         if !lost.is_empty() {
@@ -60,7 +82,7 @@ impl Channels {
             progress.note(format!("left out: {files} (only PLY files name pictures themselves)"));
         }
         let follow = |are_held: bool, files: Vec<String>| match are_held {
-            true => linked::from_output(files, arguments, progress),
+            true => linked::from_output(files, to.files, progress),
             false => files,
         };
         let material_libraries = follow(format == Format::Obj, material_libraries);
@@ -99,31 +121,32 @@ impl Channels {
         &self,
         control: &Mesh,
         found: &dyn Traced,
-        arguments: &RefineArguments,
+        scheme: &dyn Scheme,
     ) -> anyhow::Result<Self> {
         if self.channels.is_empty() {
             return Ok(Self::default());
         }
-        let channels = carried(&self.channels, control, arguments.scheme()?, found)?;
+        let channels = carried(&self.channels, control, scheme, found)?;
         let [material_libraries, texture_files] =
             [&self.material_libraries, &self.texture_files].map(Vec::clone);
         Ok(Self { channels, material_libraries, texture_files })
     }
 
     /// Whether the output has vertices several times, for texture coordinates that differ there.
-    pub(super) fn split_vertices(&self, format: Format, mesh: &Mesh) -> bool {
-        format == Format::Ply && splits_vertices(&self.channels, mesh.triangles(), mesh.vertex_count())
+    pub(super) fn split_vertices(&self, format: Format, surface: Triangles<'_>) -> bool {
+        let Triangles { positions, triangles } = surface;
+        format == Format::Ply && splits_vertices(&self.channels, triangles, positions.len())
     }
 
-    /// What becomes of vertices with several values: that they are written several times, or of which channels one value is, and for how
-    /// many.
-    pub(super) fn note(&self, format: Format, mesh: &Mesh) -> Option<String> {
-        if self.split_vertices(format, mesh) {
+    /// What becomes of vertices with several values: that they are written several times, if [`Self::split_vertices`] says so, or of which
+    /// channels one value is, and for how many.
+    pub(super) fn note(&self, format: Format, surface: Triangles<'_>, splits: bool) -> Option<String> {
+        if splits {
             let note = "vertices on seams of texture coordinates are written once for each side, as the input has them";
             return Some(note.to_owned());
         }
         let lost = |channel: &Channel| {
-            let vertices = values_lost(format, channel, mesh.triangles(), mesh.vertex_count());
+            let vertices = values_lost(format, channel, surface.triangles, surface.positions.len());
             (vertices > 0).then(|| format!("{} at {}", channel.name, counted(vertices, "vertex", "vertices")))
         };
         let lost: Vec<String> = self.channels.iter().filter_map(lost).collect();

@@ -19,10 +19,10 @@ pub(super) fn prepared(
     scheme: SchemeName,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, Vec<u32>)> {
-    let Input { mesh, face_inputs, .. } = input.with_creases(features.creases_from)?;
+    let Input { mesh, trace, .. } = input.with_creases(features.creases_from)?;
     let Featured { mesh, concave } = features.apply(mesh)?;
     let (mesh, _) = interpolation::apply(mesh, interpolation, scheme.scheme(), progress)?;
-    let input_of = |face| face_inputs[concave.parts.whole(face) as usize];
+    let input_of = |face| trace.faces[concave.parts.whole(face) as usize];
     let face_inputs = (0..mesh.face_count() as u32).map(input_of).collect();
     Ok((mesh, face_inputs))
 }

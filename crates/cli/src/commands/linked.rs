@@ -2,18 +2,15 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use crate::arguments::RefineArguments;
 use crate::progress::Progress;
 
 /// Names of files in an output, given those in the input; says which lead elsewhere now, and which lead nowhere.
 pub(super) fn from_output(
     names: Vec<String>,
-    arguments: &RefineArguments,
+    (input, output): (&Path, Option<&Path>),
     progress: &Progress,
 ) -> Vec<String> {
-    let (Some(from), Some(output)) =
-        (folder(arguments.input()), arguments.output.as_deref().and_then(folder))
-    else {
+    let (Some(from), Some(output)) = (folder(input), output.and_then(folder)) else {
         return names;
     };
     if from == output {

@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use limitmesh::Mesh;
-use limitmesh::carry::carried;
-use limitmesh::mesh::{Channel, SplitSurface};
+use limitmesh::mesh::SplitSurface;
 use limitmesh::refine::{ExactStop, Level, LodOptions, levels_of_detail_observed, switching_distance};
 use limitmesh_io::gltf::{DetailLevel, write_levels};
-use limitmesh_io::{Asset, Format, Output, Property, WriteOptions, holds};
+use limitmesh_io::{Asset, Format, Output, Property, WriteOptions};
 
+use super::channels::{Channels, Destination};
 use super::interpolation;
+use super::normals::Normals;
 use crate::arguments::{Extent, Featured, LodArguments, MOST_EXACT};
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, table, thousands, upper_bound};
@@ -28,12 +29,27 @@ const USUAL_LEVELS: usize = 4;
 const USUAL_TOLERANCE: Extent = Extent::Percent(0.1);
 const USUAL_RATIO: f64 = 0.25;
 
+/// What a scene's soup says that it leaves out, which comes along with the asset.
+const MATERIALS: &str = "materials but for their names";
+
 /// A level as it is written: a vertex for each side of sharp edges.
 struct Written {
     split: SplitSurface,
     /// By vertex, its place on the coarser level and its normal there.
     coarser: Option<[Vec<[f64; 3]>; 2]>,
-    channels: Vec<Channel>,
+    channels: Channels,
+}
+
+impl Written {
+    /// What becomes of vertices with several values.
+    fn note(&self, format: Format) -> Option<String> {
+        let surface = self.split.as_triangles();
+        self.channels.note(format, surface, self.channels.split_vertices(format, surface))
+    }
+
+    fn output(&self) -> Output<'_> {
+        self.channels.add_to(Output::new(self.split.as_triangles()).normals(&self.split.normals))
+    }
 }
 
 /// Makes the levels, writes them, and prints when to switch.
@@ -42,30 +58,31 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     if arguments.morph && !format.is_gltf() && format != Format::Ply {
         return usage("--morph needs a .glb, .gltf or .ply file: others have no place for it");
     }
-    output::check_writable(&arguments.output)?;
-    let input = input::load_for(&arguments.input, &arguments.build, (&[], &arguments.channels), progress)?;
+    if let Some(option) = arguments.channels.given_tolerance() {
+        return usage(format!(
+            "{option} is for `refine`; levels of detail go by --tolerance or --tolerances alone"
+        ));
+    }
+    check_files(arguments, format)?;
+    let kept = [Normals::kept(Some(format)), if format.is_gltf() { &[MATERIALS] } else { &[] }].concat();
+    let input = input::load_for(&arguments.input, &arguments.build, (&kept, &arguments.channels), progress)?;
     let input = input.with_creases(arguments.features.creases_from)?;
     let diagonal = input.mesh.diagonal();
     let told = input_report(&input, arguments);
-    let Input { mesh, mut channels, asset, .. } = input;
-    let options = WriteOptions::default().ascii(arguments.ascii);
-    let (kept, lost): (Vec<Channel>, Vec<Channel>) = channels
-        .drain(..)
-        .filter(|own| !arguments.channels.drops(&own.name))
-        .partition(|own| holds(format, &options, own));
-    if !lost.is_empty() {
-        let names: Vec<&str> = lost.iter().map(|own| own.name.as_str()).collect();
-        progress.note(format!("left out: {} (the output's format has no place for them)", names.join("; ")));
-    }
+    let Input { mesh, channels, material_libraries, texture_files, asset, .. } = input;
+    let to = Destination {
+        format: Some(format),
+        ascii: arguments.ascii,
+        chosen: &arguments.channels,
+        files: (&arguments.input, Some(&arguments.output)),
+    };
+    let mut channels = Channels::of_input(channels, [material_libraries, texture_files], &to, progress);
     let asset = asset.filter(|_| format.is_gltf());
     if asset.is_some() {
         progress.note("one mesh of all that the scene shows, in its coordinates, with its materials; nodes, skins, animations and cameras are left out");
     }
     let Featured { mesh, concave } = arguments.features.apply(mesh)?;
-    let on_parts = |own: &Channel| {
-        if concave.parts.is_empty() { own.clone() } else { own.on_parts(&concave.parts, &mesh) }
-    };
-    let channels: Vec<Channel> = kept.iter().map(on_parts).collect();
+    channels.on_parts(&concave.parts, &mesh);
     let scheme = arguments.scheme.scheme();
     let asked = (arguments.interpolation, arguments.build.unit);
     let (mesh, _) = interpolation::apply(mesh, asked, scheme, progress)?;
@@ -80,6 +97,9 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     leave_out_needless(&mut levels, progress);
     let written = levels.iter().rev().map(|level| written(level, &mesh, &channels, arguments));
     let written = written.collect::<anyhow::Result<Vec<_>>>()?;
+    if let Some(note) = written.first().and_then(|finest| finest.note(format)) {
+        progress.note(note);
+    }
     let reports = reports(&levels, &mesh, arguments, format);
     progress.stage(format!("writing {}", arguments.output.display()));
     write(arguments, format, &written, &reports, asset.as_ref())?;
@@ -102,6 +122,21 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
             exact_stop_name(stop)
         )),
     })
+}
+
+/// Checks before the work that what is to be written can be, replaces no input, and is written once.
+fn check_files(arguments: &LodArguments, format: Format) -> anyhow::Result<()> {
+    let levels = match arguments.tolerances.len() {
+        0 => arguments.levels.unwrap_or(USUAL_LEVELS),
+        given => given,
+    };
+    let files = if format.is_gltf() { 1 } else { levels };
+    let mut written: Vec<PathBuf> = (0..files).map(|lod| path(&arguments.output, format, lod)).collect();
+    written.extend(arguments.report.clone());
+    written.iter().try_for_each(|path| output::check_writable(path))?;
+    let written: Vec<&Path> = written.iter().map(PathBuf::as_path).collect();
+    output::check_replaced(&written, &[&arguments.input], "levels of detail or their report")?;
+    output::check_once(&written)
 }
 
 /// From the coarsest to the finest, in the mesh's unit.
@@ -151,13 +186,10 @@ fn input_report(input: &Input, arguments: &LodArguments) -> InputReport {
 fn written(
     level: &Level,
     control: &Mesh,
-    channels: &[Channel],
+    channels: &Channels,
     arguments: &LodArguments,
 ) -> anyhow::Result<Written> {
-    let channels = match channels {
-        [] => Vec::new(),
-        channels => carried(channels, control, arguments.scheme.scheme(), &level.exact)?,
-    };
+    let channels = channels.refined(control, &level.exact, arguments.scheme.scheme())?;
     let (split, normals) = level.split_surface();
     let coarser = level.geomorph.as_ref().map(|morph| {
         let positions = split.sources.iter().map(|&v| morph.positions[v as usize]).collect();
@@ -222,10 +254,6 @@ fn path(output: &Path, format: Format, lod: usize) -> PathBuf {
     output.with_file_name(name)
 }
 
-fn output(level: &Written) -> Output<'_> {
-    Output::new(level.split.as_triangles()).normals(&level.split.normals).channels(&level.channels)
-}
-
 fn write(
     arguments: &LodArguments,
     format: Format,
@@ -238,7 +266,7 @@ fn write(
             .iter()
             .zip(reports)
             .map(|(level, report)| {
-                let own = DetailLevel::new(output(level)).least_coverage(report.least_coverage);
+                let own = DetailLevel::new(level.output()).least_coverage(report.least_coverage);
                 match &level.coarser {
                     Some([positions, normals]) => own.coarser(positions, normals),
                     None => own,
@@ -263,7 +291,7 @@ fn write(
             None => Vec::new(),
         };
         let options = WriteOptions::default().ascii(arguments.ascii);
-        let written = output(level).vertex_properties(&properties);
+        let written = level.output().vertex_properties(&properties);
         output::write_mesh(&path(&arguments.output, format, lod), format, &written, &options)?;
     }
     Ok(())

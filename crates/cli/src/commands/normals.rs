@@ -36,6 +36,11 @@ impl Normals {
         matches!(format, Format::Ply | Format::Obj | Format::Gltf | Format::Glb)
     }
 
+    /// What a soup leaves out that an output has after all, of another source.
+    pub(super) fn kept(format: Option<Format>) -> &'static [&'static str] {
+        if format.is_some_and(Self::are_held) { &["normals"] } else { &[] }
+    }
+
     /// Adds them to what is written; `is_split` if a vertex is to stand once for each side where the format needs that.
     pub(super) fn add_to<'a>(&'a self, output: Output<'a>, format: Format, is_split: bool) -> Output<'a> {
         match self {

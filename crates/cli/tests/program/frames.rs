@@ -100,8 +100,32 @@ fn frames_of_other_meshes_are_refused_by_what_differs() {
         assert!(refused.stderr.contains(name) && refused.stderr.contains(what), "{}", refused.stderr);
     }
     assert!(crate::common::names(out.path()).is_empty());
-    for option in ["--triangles 500", "--balance", "--optimize", "--method uniform", "--interpolate"] {
+    for option in [
+        "--triangles 500",
+        "--balance",
+        "--optimize",
+        "--method uniform",
+        "--interpolate",
+        "--mesh box",
+        "--material red",
+        "--relative-to mesh",
+        "--link-resources",
+        "--weld-ignores skin",
+        "--morph-tolerance 1%",
+        "--scheme sqrt3",
+    ] {
         let command = format!("refine {{}} {{}} -o {{}} --shared-topology {option}");
         run(&command, &[first, &inputs[1], out.path()]).expect(2);
     }
+    // Before anything is read: there is no such file.
+    let none = folder.path().join("none.obj");
+    let command = "refine {} {} -o {} --shared-topology --scheme sqrt3";
+    run(command, &[first, &none, out.path()]).expect(2).saying("sqrt3");
+    let command = "refine {} {} -o {} --shared-topology --report {}";
+    let before = std::fs::read(first).expect("a frame");
+    run(command, &[first, &inputs[1], out.path(), first]).expect(2).saying("box_0.obj is the input");
+    assert_eq!(std::fs::read(first).expect("a frame"), before);
+    let own = out.path().join("box_1.obj");
+    run(command, &[first, &inputs[1], out.path(), &own]).expect(2).saying("would be written twice");
+    assert!(crate::common::names(out.path()).is_empty());
 }

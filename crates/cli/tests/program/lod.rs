@@ -1,11 +1,14 @@
 //! `lod`: levels of detail as files and in one document.
 
+use std::collections::BTreeSet;
+
 use limitmesh::refine::{LimitDistanceOptions, limit_distance};
 use limitmesh::scheme::Loop;
 use limitmesh::{Mesh, Triangles};
 use limitmesh_io::read;
 
-use crate::common::{folder, has_keys, run};
+use crate::asset::{cube, first_mesh};
+use crate::common::{file, folder, has_keys, names, run};
 
 fn control(name: &str) -> Mesh {
     let soup = limitmesh_models::find(name).expect("a model").soup();
@@ -17,14 +20,15 @@ fn control(name: &str) -> Mesh {
 fn files_are_within_their_tolerances_and_nested() {
     let folder = folder();
     let (out, report) = (folder.path().join("torus.ply"), folder.path().join("torus.json"));
-    let done = run("lod builtin:torus -o {} --tolerances 2%,0.5% --report {}", &[&out, &report]).expect(0);
-    assert!(done.stdout.contains("LOD1") || done.stderr.contains("LOD1"), "{}{}", done.stdout, done.stderr);
+    run("lod builtin:torus -o {} --tolerances 2%,0.5% --report {}", &[&out, &report])
+        .expect(0)
+        .saying("LOD1");
     let report: serde_json::Value =
         serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON");
     let levels = report["levels"].as_array().expect("a list");
     assert_eq!(levels.len(), 2);
     let control = control("torus");
-    let mut distances = Vec::new();
+    let (mut distances, mut vertices) = (Vec::new(), Vec::new());
     for (lod, (level, percent)) in levels.iter().zip([0.5, 2.0]).enumerate() {
         has_keys(level, "lod path vertices triangles tolerance lower upper parametric switching_distance");
         let soup = read(&folder.path().join(format!("torus_LOD{lod}.ply"))).expect("a mesh");
@@ -35,7 +39,9 @@ fn files_are_within_their_tolerances_and_nested() {
         let found = limit_distance(mesh.as_triangles(), &control, &Loop, &options).expect("a distance");
         assert!(found.distance.upper() <= (0.01 * percent + 2e-4) * control.diagonal());
         distances.push(level["switching_distance"].as_f64().expect("a number"));
+        vertices.push(soup.positions.iter().map(|p| p.map(f64::to_bits)).collect::<BTreeSet<_>>());
     }
+    assert!(vertices[0].is_superset(&vertices[1]), "vertices of the coarser level are the finer one's");
     assert!(distances[0] < distances[1], "{distances:?}");
     let count = |lod: usize| levels[lod]["triangles"].as_u64().expect("a number");
     assert!(count(0) > count(1));
@@ -89,6 +95,119 @@ fn what_cannot_be_is_told() {
     run("lod builtin:cup -o {} --tolerances 1%,2%", &[&out]).expect(2);
     run("lod builtin:cup -o {} --levels 0", &[&out]).expect(2);
     run("lod builtin:none -o {}", &[&out]).expect(1).saying("none");
+}
+
+/// A square with a texture and two materials that a library describes.
+const PAINTED: &str = "mtllib paint.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl red\n\
+    f 1/1 2/2 3/3\nusemtl blue\nf 1/1 3/3 4/4\n";
+
+/// What channels lead to, what is left out and why: as `refine` says it.
+#[test]
+fn what_channels_need_comes_along() {
+    let folder = folder();
+    let input = file(&folder, "in.obj", PAINTED);
+    file(&folder, "paint.mtl", "newmtl red\nnewmtl blue\n");
+    std::fs::create_dir(folder.path().join("deep")).expect("a folder");
+    let output = folder.path().join("deep/out.obj");
+    let said = run("lod {} -o {} --levels 2", &[&input, &output]).expect(0);
+    let said = said.saying("paint.mtl: left where it is, and named ../paint.mtl");
+    assert!(!said.stderr.contains("left out: normals"), "{}", said.stderr);
+    let levels = names(&folder.path().join("deep"));
+    assert!(!levels.is_empty() && levels[0] == "out_LOD0.obj", "{levels:?}");
+    for name in levels {
+        let text = std::fs::read_to_string(folder.path().join("deep").join(&name)).expect("a level");
+        for line in ["mtllib ../paint.mtl", "usemtl red", "usemtl blue"] {
+            assert!(text.lines().any(|own| own == line), "{line} in {name}");
+        }
+        assert!(text.contains("\nvt ") && text.contains("\nvn "), "{name}");
+    }
+    run("lod {} -o {} --levels 2 --channel materials=drop", &[&input, &output])
+        .expect(0)
+        .saying("left out: materials (by --channel)");
+    run("lod {} -o {} --levels 2", &[&input, &folder.path().join("out.glb")])
+        .expect(0)
+        .saying("left out: paint.mtl (of materials the names alone");
+}
+
+#[test]
+fn textures_of_ply_files_come_along() {
+    let folder = folder();
+    let seamed =
+        crate::seams::cube().replace("element vertex", "comment TextureFile wood.png\nelement vertex");
+    let input = file(&folder, "in.ply", &seamed);
+    file(&folder, "wood.png", "");
+    std::fs::create_dir(folder.path().join("deep")).expect("a folder");
+    let output = folder.path().join("deep/out.ply");
+    run("lod {} -o {} --levels 2 --ascii", &[&input, &output])
+        .expect(0)
+        .saying("wood.png: left where it is, and named ../wood.png")
+        .saying("vertices on seams of texture coordinates are written once for each side");
+    let text = std::fs::read_to_string(folder.path().join("deep/out_LOD0.ply")).expect("a level");
+    assert!(text.contains("comment TextureFile ../wood.png\n"), "{}", &text[..400]);
+    let other = run("lod {} -o {} --levels 2", &[&input, &folder.path().join("out.obj")]).expect(0);
+    other.saying("left out: wood.png (only PLY files name pictures themselves)");
+}
+
+/// Of an asset all but its nodes, skins and what names them.
+#[test]
+fn an_assets_materials_come_along() {
+    let folder = folder();
+    let nodes = r#"{"mesh":0,"skin":0},{"name":"hips"}"#;
+    let input = cube(&folder, "in.gltf", nodes, r#","JOINTS_0":4,"WEIGHTS_0":5"#);
+    let text = std::fs::read_to_string(&input).expect("text").replace(
+        r#""nodes":["#,
+        r#""skins":[{"joints":[0,1]}],"extensionsUsed":["VRM"],
+        "extensions":{"VRM":{"humanoid":{"humanBones":[{"bone":"hips","node":1}]}}},"nodes":["#,
+    );
+    std::fs::write(&input, text).expect("written");
+    let output = folder.path().join("out.gltf");
+    let said = run("lod {} -o {} --levels 2", &[&input, &output]).expect(0);
+    let said = said.saying("left out: joints and weights\n");
+    assert!(!said.stderr.contains("place for them"), "{}", said.stderr);
+    let document: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&output).expect("a document")).expect("JSON");
+    assert_eq!(
+        document["materials"],
+        serde_json::json!([{"name": "body"}, {"name": "lid", "extras": {"k": 1.5}}])
+    );
+    assert!(document["skins"].is_null() && document["extensions"].is_null(), "{document:#}");
+    assert_eq!(document["extensionsUsed"], serde_json::json!(["MSFT_lod"]));
+    let parts: Vec<Option<usize>> =
+        first_mesh(&output).parts.iter().map(|part| Some(part.primitive)).collect();
+    assert_eq!(parts, [Some(0), Some(1)], "a primitive for each material");
+    let materials = document["meshes"][0]["primitives"].as_array().expect("primitives");
+    assert_eq!([&materials[0]["material"], &materials[1]["material"]], [0, 1]);
+    let all = run("lod {} -o {} --levels 2", &[&input, &folder.path().join("out.ply")]).expect(0);
+    all.saying("materials but for their names");
+}
+
+/// Before any work, and of the files that are written, not of the name that they are called after.
+#[test]
+fn files_in_the_way_and_options_without_effect_are_refused() {
+    let folder = folder();
+    let input = file(&folder, "rock_LOD0.obj", PAINTED);
+    let rock = folder.path().join("rock.obj");
+    run("lod {} -o {}", &[&input, &rock]).expect(2).saying("rock_LOD0.obj is the input; levels of detail");
+    assert_eq!(std::fs::read_to_string(&input).expect("the input"), PAINTED);
+    run("lod {} -o {} --report {}", &[&input, &folder.path().join("a.glb"), &input])
+        .expect(2)
+        .saying("rock_LOD0.obj is the input");
+    let own = folder.path().join("a_LOD1.obj");
+    run("lod {} -o {} --report {}", &[&input, &folder.path().join("a.obj"), &own])
+        .expect(2)
+        .saying("a_LOD1.obj would be written twice");
+    std::fs::create_dir(folder.path().join("b_LOD3.obj")).expect("a folder");
+    run("lod {} -o {}", &[&input, &folder.path().join("b.obj")]).expect(1).saying("it is a folder");
+    let nowhere = folder.path().join("none/report.json");
+    run("lod {} -o {} --report {}", &[&input, &folder.path().join("c.obj"), &nowhere])
+        .expect(1)
+        .saying("no folder");
+    for (option, value) in [("--uv-tolerance", "0.1"), ("--attribute-tolerance", "heat=1")] {
+        run(&format!("lod {{}} -o {{}} {option} {value}"), &[&input, &folder.path().join("d.obj")])
+            .expect(2)
+            .saying(&format!("{option} is for `refine`"));
+    }
+    assert_eq!(names(folder.path()), ["b_LOD3.obj", "rock_LOD0.obj"], "nothing is written");
 }
 
 /// Levels that would be as coarse as the control mesh allows are told and left out, and whoever goes away meets levels in order.

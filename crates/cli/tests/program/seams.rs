@@ -5,7 +5,7 @@ use crate::hints::{CORNERS, SIDES};
 
 /// A cube as Blender writes it: a vertex for each corner of each side, with its normal and its place on the picture, of which each side
 /// has all.
-fn cube() -> String {
+pub(crate) fn cube() -> String {
     let mut text = "ply\nformat ascii 1.0\nelement vertex 24\n".to_owned();
     for name in ["x", "y", "z", "nx", "ny", "nz", "s", "t"] {
         text += &format!("property float {name}\n");

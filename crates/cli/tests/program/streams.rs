@@ -39,6 +39,10 @@ fn a_mesh_goes_from_standard_input_to_standard_output() {
     assert_eq!(piped.status.code(), Some(0), "{}", String::from_utf8_lossy(&piped.stderr));
     assert!(piped.stdout == expected);
     assert!(String::from_utf8_lossy(&piped.stderr).contains("standard output: "));
+    // As a frame, too, which is read once.
+    let frame = fed(TETRAHEDRON.as_bytes(), "refine - --from obj -o - --to ply --shared-topology", &[]);
+    assert_eq!(frame.status.code(), Some(0), "{}", String::from_utf8_lossy(&frame.stderr));
+    assert!(frame.stdout.starts_with(b"ply\n"));
     // Half of it by name.
     let half = fed(&expected, "refine - --from ply -o {} --quiet", &[&folder.path().join("half.off")]);
     assert_eq!(half.status.code(), Some(0));

@@ -197,6 +197,13 @@ pub struct Trace {
     pub corners: Vec<u32>,
 }
 
+impl Trace {
+    /// By corner of the mesh, the vertex of the soup that it was made of.
+    pub fn vertices(&self, soup: &PolygonSoup) -> Vec<u32> {
+        self.corners.iter().map(|&corner| soup.faces.corner(corner as usize)).collect()
+    }
+}
+
 impl Channel {
     /// A channel that is interpolated as usual for what it means.
     pub fn new(name: impl Into<String>, semantic: Semantic, domain: Domain, arity: usize) -> Self {

@@ -14,9 +14,9 @@ use limitmesh_io::gltf::{CornerAttribute, KeptApart, MeshSoup};
 use limitmesh_io::{Asset, Format};
 use limitmesh_render::Style;
 
+use super::super::channels::Channels;
 use super::attribute_goals::AttributeGoals;
 use super::carried::Carried;
-use super::channels::Channels;
 use super::control::Control;
 use super::exact::{self, Goals};
 use super::put_back::{MOST_WIDE, PutBack, channel, moved_positions};
@@ -189,8 +189,7 @@ impl Job {
         let on_mesh = |channel: &Channel| channel.on_mesh(&own.soup, &built, &trace);
         let narrow = own.soup.channels.iter().filter(|channel| channel.arity <= MOST_WIDE);
         let channels = narrow.map(on_mesh).collect::<Result<_, _>>()?;
-        let of_corners: Vec<u32> = own.soup.faces.iter().flatten().copied().collect();
-        let vertices: Vec<u32> = trace.corners.iter().map(|&corner| of_corners[corner as usize]).collect();
+        let vertices = trace.vertices(&own.soup);
         let arguments = self.of_mesh(&own, done);
         let control = Control::new((built, diagnosis, trace.faces), diagonal, &arguments, progress)?;
         let mut channels = Channels::of_asset(channels, &arguments);

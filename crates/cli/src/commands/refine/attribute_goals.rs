@@ -4,7 +4,7 @@ use limitmesh::Mesh;
 use limitmesh::carry::goal;
 use limitmesh::refine::{AttributeGoal, Exact};
 
-use super::channels::Channels;
+use super::super::channels::Channels;
 use crate::arguments::ChannelArguments;
 use crate::format::upper_bound;
 use crate::report::AttributeReport;

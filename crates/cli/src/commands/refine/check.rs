@@ -9,7 +9,6 @@ use super::{picture, restricted, sqrt3};
 use crate::arguments::{Method, MorphTolerance, RefineArguments, RefiningScheme};
 use crate::failure::usage;
 use crate::format::thousands;
-use crate::input;
 use crate::output;
 
 /// Checks options; gives the format to write, none for a dry run without a name.
@@ -155,8 +154,7 @@ fn uniform(arguments: &RefineArguments) -> anyhow::Result<()> {
 
 /// Checks that what is to be written can be, replaces no input, and is written once.
 pub(super) fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
-    let input = arguments.input();
-    let mut written = Vec::with_capacity(3);
+    let mut written: Vec<&Path> = Vec::with_capacity(3);
     if let Some(output) = arguments.output.as_deref() {
         output::check_writable(output)?;
         let binary = match arguments.format()? {
@@ -179,14 +177,6 @@ pub(super) fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
         output::check_writable(report)?;
         written.push(report);
     }
-    let replaces = |path: &&&Path| !output::is_standard_output(path) && input::same_file(input, path);
-    if let Some(path) = written[beside_mesh..].iter().find(replaces) {
-        return usage(format!("{} is the input; a report or picture would replace it", path.display()));
-    }
-    for (i, path) in written.iter().enumerate() {
-        if written[..i].iter().any(|earlier| input::same_file(earlier, path)) {
-            return usage(format!("{} would be written twice", path.display()));
-        }
-    }
-    Ok(())
+    output::check_replaced(&written[beside_mesh..], &[arguments.input()], "a report or picture")?;
+    output::check_once(&written)
 }

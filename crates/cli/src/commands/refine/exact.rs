@@ -8,11 +8,11 @@ use limitmesh::refine::{Exact, ExactOptions, ExactStop, Origin, exact_observed};
 use limitmesh::{Mesh, Triangles};
 use limitmesh_io::{Format, WriteOptions};
 
+use super::super::channels::Channels;
+use super::super::normals::Normals;
 use super::attribute_goals::AttributeGoals;
 use super::carried::Trail;
-use super::channels::Channels;
 use super::input_distance::InputDistance;
-use super::normals::Normals;
 use super::provenance::Provenance;
 use super::{INTERPOLATE, Refined, cameras, view, view_report};
 use crate::arguments::{ConcaveCorners, Extent, Featured, Length, MOST_EXACT, RefineArguments, Unit};
@@ -232,7 +232,7 @@ pub(super) fn run(
     }
     let outcome = outcome(&found, control, goals, &achieved, arguments);
     let inverted = found.inverted_triangles();
-    let channels = channels.refined(control, &found, arguments)?;
+    let channels = channels.refined(control, &found, arguments.scheme()?)?;
     let wanted = written(arguments).is_some_and(|(format, _)| Normals::are_held(format))
         || arguments.picture.is_some();
     let normals = wanted.then(|| Normals::of_exact(&mut found));

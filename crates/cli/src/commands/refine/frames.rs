@@ -2,19 +2,20 @@
 //!
 //! Takes files that share faces and tags; writes a file for each, and a report with what is proven of every frame.
 
+use std::path::Path;
 use std::time::Instant;
 
 use anyhow::Context;
-use limitmesh::mesh::{Tags, Trace};
+use limitmesh::mesh::Tags;
 use limitmesh::refine::{Exact, ExactStop, Frame, Frames, exact_frames_observed};
 use limitmesh::{Mesh, PolygonSoup};
 use limitmesh_io::{Format, WriteOptions};
 
+use super::super::channels::{Channels, Destination};
+use super::super::normals::Normals;
 use super::carried::Trail;
-use super::channels::Channels;
 use super::control::Control;
 use super::exact::{self, Goals};
-use super::normals::Normals;
 use super::{Refined, check, jobs, write};
 use crate::arguments::{Method, RefineArguments};
 use crate::failure::{Outcome, usage};
@@ -38,16 +39,14 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     }
     jobs::make_folders(&each)?;
     jobs.iter().try_for_each(check::files)?;
-    if let Some(report) = &arguments.report {
-        output::check_writable(report)?;
-    }
+    check_report(arguments, &jobs)?;
     let (first, frames) = read(&jobs, formats[0], progress)?;
-    let Input { mesh, diagnosis, face_inputs, name, channels, material_libraries, texture_files, .. } = first;
+    let Input { mesh, diagnosis, trace, name, channels, material_libraries, texture_files, .. } = first;
     let files = [material_libraries, texture_files];
-    let channels = Channels::of_input(channels, files, (formats[0], &jobs[0]), progress);
+    let channels = Channels::of_input(channels, files, &Destination::of(&jobs[0], formats[0]), progress);
     let arguments_of_one = RefineArguments { exact: without_input_distance(arguments), ..jobs[0].clone() };
     let count = mesh.vertex_count();
-    let control = Control::new((mesh, diagnosis, face_inputs), None, &arguments_of_one, progress)?;
+    let control = Control::new((mesh, diagnosis, trace.faces), None, &arguments_of_one, progress)?;
     let (control, diagonal) = (control.featured.mesh, control.diagonal);
     if control.vertex_count() != count {
         return usage(format!(
@@ -67,7 +66,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     let found = exact_frames_observed(&control, scheme, &frames, &options, &mut progress.observer())?;
     let refining = start.elapsed();
     let start = Instant::now();
-    let carried = channels.refined(&control, &found.refined, &jobs[0])?;
+    let carried = channels.refined(&control, &found.refined, scheme)?;
     let errors = write_all(&found, &frames, (&jobs, &formats), carried, progress)?;
     let writing = start.elapsed();
     let worst = errors.iter().map(|error| error.upper).fold(0.0, f64::max);
@@ -125,6 +124,16 @@ fn is_scene(format: Format) -> bool {
     format.is_gltf() || format == Format::ThreeMf
 }
 
+/// Checks that the report of all frames can be written, and replaces none.
+fn check_report(arguments: &RefineArguments, jobs: &[RefineArguments]) -> anyhow::Result<()> {
+    let Some(report) = arguments.report.as_deref() else { return Ok(()) };
+    output::check_writable(report)?;
+    let inputs: Vec<&Path> = jobs.iter().map(RefineArguments::input).collect();
+    output::check_replaced(&[report], &inputs, "a report")?;
+    let outputs = jobs.iter().filter_map(|job| job.output.as_deref());
+    output::check_once(&outputs.chain([report]).collect::<Vec<_>>())
+}
+
 /// Refuses what has no meaning for frames, or is not done for them.
 fn refuse(arguments: &RefineArguments) -> anyhow::Result<()> {
     let given = [
@@ -141,10 +150,10 @@ fn refuse(arguments: &RefineArguments) -> anyhow::Result<()> {
     if let Some((option, _)) = given.into_iter().find(|&(_, given)| given) {
         return usage(format!("{option} does not go with --shared-topology"));
     }
-    if let Some(option) = arguments.channels.given_tolerance() {
+    if let Some(option) = arguments.channels.given_tolerance().or(arguments.asset.given()) {
         return usage(format!("{option} does not go with --shared-topology"));
     }
-    Ok(())
+    arguments.scheme().map(drop)
 }
 
 /// How far results are from the inputs is not looked at.
@@ -161,15 +170,14 @@ fn read(
     format: Option<Format>,
     progress: &Progress,
 ) -> anyhow::Result<(Input, Vec<Vec<[f64; 3]>>)> {
-    let kept: &[&str] = if format.is_some_and(Normals::are_held) { &["normals"] } else { &[] };
-    let load =
-        |job: &RefineArguments| input::load_for(job.input(), &job.build, (kept, &job.channels), progress);
-    let first = load(&jobs[0])?;
+    let (job, kept) = (&jobs[0], Normals::kept(format));
+    let read = input::read_for(job.input(), &job.build, &job.channels, progress)?;
+    let soup = read.soup.clone();
     // Polygons are cut into triangles by where their corners are: as in the first frame, in all.
-    let soup = input::read(jobs[0].input(), &jobs[0].build, progress)?.soup;
-    let (mesh, _, trace) = Mesh::from_soup_traced(&soup, &jobs[0].build.options()?)?;
-    let own = Own { name: &first.name, mesh: &mesh, vertices: vertices(&soup, &trace), soup: &soup };
-    if mesh.triangles() != first.mesh.triangles() || own.positions(&soup)? != first.mesh.positions() {
+    let first = input::connect(read, &job.build, kept, progress)?;
+    let own =
+        Own { name: &first.name, mesh: &first.mesh, vertices: first.trace.vertices(&soup), soup: &soup };
+    if own.positions(&soup)? != first.mesh.positions() {
         anyhow::bail!("{}: sheets are cut apart within edges there, which frames do not share", first.name);
     }
     let mut frames = vec![first.mesh.positions().to_vec()];
@@ -182,12 +190,6 @@ fn read(
     }
     let first = first.with_creases(jobs[0].features.creases_from)?;
     Ok((first, frames))
-}
-
-/// The vertex of a soup that each corner of the mesh that was built of it is.
-fn vertices(soup: &PolygonSoup, trace: &Trace) -> Vec<u32> {
-    let of_corners: Vec<u32> = soup.faces.iter().flatten().copied().collect();
-    trace.corners.iter().map(|&corner| of_corners[corner as usize]).collect()
 }
 
 /// What all frames must share with the first.
@@ -288,14 +290,16 @@ fn write_all(
         errors.push(error);
         refined.normals = Normals::are_held(format).then(|| Normals::of_exact(&mut moved));
         if number == 0 {
+            let splits = refined.channels.split_vertices(format, moved.mesh.as_triangles());
             let notes = [
                 refined.normals.as_ref().and_then(|all| all.note(format, false)).map(str::to_owned),
-                refined.channels.note(format, &moved.mesh),
+                refined.channels.note(format, moved.mesh.as_triangles(), splits),
             ];
             notes.into_iter().flatten().for_each(|note| progress.note(note));
         }
         refined.mesh = moved.mesh;
-        write(path, format, job, &refined)?;
+        // Frames have as many vertices as each other, whatever their normals.
+        write(path, (format, false), job, &refined)?;
     }
     Ok(errors)
 }

@@ -4,7 +4,6 @@ mod asset;
 mod attribute_goals;
 mod cameras;
 mod carried;
-mod channels;
 mod check;
 mod control;
 mod estimate;
@@ -12,8 +11,6 @@ mod exact;
 mod frames;
 mod input_distance;
 mod jobs;
-mod linked;
-mod normals;
 mod package;
 mod provenance;
 mod put_back;
@@ -33,6 +30,8 @@ use limitmesh::mesh::{Channel, Semantic, Tags};
 use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
 
+use super::channels::{Channels, Destination};
+use super::normals::Normals;
 use super::{interpolation, picture};
 use crate::arguments::{CreasesFrom, Method, RefineArguments, RefiningScheme, Unit};
 use crate::bulk::Bulk;
@@ -46,10 +45,8 @@ use crate::report::{
     ChannelReport, InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport,
     SizeReport, VERSION, ViewReport,
 };
-use channels::Channels;
 use control::Control;
 use exact::Goals;
-use normals::Normals;
 use provenance::Provenance;
 
 /// The dilatant factor where none is given: the paper's in most of its experiments.
@@ -109,8 +106,8 @@ fn refine(
         arguments.features.check_of_package()?;
         return package.run(progress);
     }
-    let kept: &[&str] = if format.is_some_and(Normals::are_held) { &["normals"] } else { &[] };
-    let input = input::load_for(arguments.input(), &arguments.build, (kept, &arguments.channels), progress)?;
+    let asked = (Normals::kept(format), &arguments.channels);
+    let input = input::load_for(arguments.input(), &arguments.build, asked, progress)?;
     if let Some(note) = format.and_then(|format| lost_tags(input.mesh.tags(), format)) {
         progress.note(note);
     }
@@ -130,12 +127,12 @@ fn refine(
     };
     let files = [input.material_libraries, input.texture_files];
     let own = if is_sqrt3 { sqrt3::without_channels(input.channels, progress) } else { input.channels };
-    let mut channels = Channels::of_input(own, files, (format, arguments), progress);
+    let mut channels = Channels::of_input(own, files, &Destination::of(arguments, format), progress);
     let texture = |own: &Channel| own.semantic == Semantic::TextureCoordinates;
     let names = channels.all().iter().map(|own| (own.name.as_str(), texture(own)));
     arguments.channels.check_tolerances(&input_report.path, names)?;
-    let Input { mesh, diagnosis, face_inputs, reading, building, .. } = input;
-    let control = Control::new((mesh, diagnosis, face_inputs), None, arguments, progress)?;
+    let Input { mesh, diagnosis, trace, reading, building, .. } = input;
+    let control = Control::new((mesh, diagnosis, trace.faces), None, arguments, progress)?;
     let Control { featured: control, diagnosis, before: read, bulk: before, interpolation, diagonal } =
         control;
     channels.on_parts(&control.concave.parts, &control.mesh);
@@ -179,14 +176,16 @@ fn refine(
 
     progress.stage(format!("writing {}", arguments.output_name()));
     let start = Instant::now();
-    let is_split = is_split(format, arguments, &refined);
+    let splits = refined.channels.split_vertices(format, refined.mesh.as_triangles());
+    // Vertices on sharp edges stand once for each side as asked for, or as a file has vertices several times anyway.
+    let is_split = arguments.split_normals || splits;
     if let Some(note) = refined.normals.as_ref().and_then(|all| all.note(format, is_split)) {
         progress.note(note);
     }
-    if let Some(note) = refined.channels.note(format, &refined.mesh) {
+    if let Some(note) = refined.channels.note(format, refined.mesh.as_triangles(), splits) {
         progress.note(note);
     }
-    write(path, format, arguments, &refined)?;
+    write(path, (format, is_split), arguments, &refined)?;
     let writing = start.elapsed();
     progress.note(summary(&arguments.output_name(), &refined, refining));
 
@@ -271,15 +270,13 @@ fn turned_over(inverted: usize) -> Option<String> {
     (inverted > 0).then(|| format!("{triangles} turned over against the limit surface: it folds there"))
 }
 
-/// Whether vertices on sharp edges stand once for each side: as asked for, or as a file has vertices several times anyway. Frames
-/// have as many vertices as each other, whatever their normals.
-fn is_split(format: Format, arguments: &RefineArguments, refined: &Refined) -> bool {
-    arguments.split_normals
-        || !arguments.shared_topology && refined.channels.split_vertices(format, &refined.mesh)
-}
-
-fn write(path: &Path, format: Format, arguments: &RefineArguments, refined: &Refined) -> anyhow::Result<()> {
-    let is_split = is_split(format, arguments, refined);
+/// Writes a mesh; vertices on sharp edges once for each side if it `is_split`.
+fn write(
+    path: &Path,
+    (format, is_split): (Format, bool),
+    arguments: &RefineArguments,
+    refined: &Refined,
+) -> anyhow::Result<()> {
     let Refined { mesh, normals, channels, provenance, .. } = refined;
     let mut output = channels.add_to(Output::new(mesh.as_triangles()));
     if let Some(normals) = normals {

@@ -11,8 +11,8 @@ use limitmesh_io::threemf::{Inherited, LengthUnit, NewTriangles, ObjectSoup, Sou
 use limitmesh_io::{Format, Package};
 use limitmesh_render::Style;
 
+use super::super::channels::Channels;
 use super::carried::Carried;
-use super::channels::Channels;
 use super::control::Control;
 use super::exact::{self, Goals};
 use super::{Refined, estimate, picture, stepwise, summary, turned_over};

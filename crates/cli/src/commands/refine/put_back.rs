@@ -12,9 +12,9 @@ use limitmesh::{FaceId, LimitSurface, Mesh};
 use limitmesh_io::Asset;
 use limitmesh_io::gltf::{CornerAttribute, Geometry, MeshSoup, Part, VertexAttribute, WithTangents};
 
+use super::super::channels::Channels;
 use super::Refined;
 use super::carried::{Carried, Vertices};
-use super::channels::Channels;
 use super::weights::{Weights, weights};
 use crate::arguments::SchemeName;
 

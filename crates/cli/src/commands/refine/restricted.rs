@@ -8,10 +8,10 @@ use limitmesh::scheme::Scheme;
 use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
 use limitmesh_io::Format;
 
+use super::super::channels::Channels;
+use super::super::normals::Normals;
 use super::carried::Trail;
-use super::channels::Channels;
 use super::exact::Before;
-use super::normals::Normals;
 use super::provenance::Provenance;
 use super::stepwise;
 use super::{Refined, has_more};
@@ -209,7 +209,7 @@ pub(super) fn run(
     let (worst, levels, stop) = (front.worst(), front.depth() as usize, goal.stop(&front, arguments));
     let found = front.snapshot()?;
     drop(front);
-    let channels = channels.refined(&control.mesh, &found, arguments)?;
+    let channels = channels.refined(&control.mesh, &found, arguments.scheme()?)?;
     let wanted = Normals::are_held(format) || arguments.picture.is_some();
     let normals = if wanted { Some(normals(&found, &control.mesh, scheme)?) } else { None };
     let Snapshot { mesh, origins, parents, .. } = found;

@@ -6,10 +6,10 @@ use limitmesh::refine::{ExactStop, Refinement, Stop, UniformOptions};
 use limitmesh::sqrt3::{Sqrt3, Sqrt3Options, adaptive_observed, uniform_observed};
 use limitmesh_io::Format;
 
+use super::super::channels::Channels;
+use super::super::normals::Normals;
 use super::carried::Trail;
-use super::channels::Channels;
 use super::exact::Before;
-use super::normals::Normals;
 use super::provenance::Provenance;
 use super::stepwise;
 use super::{Refined, has_more};

@@ -9,9 +9,9 @@ use limitmesh::refine::{
 };
 use limitmesh_io::Format;
 
+use super::super::channels::Channels;
+use super::super::normals::Normals;
 use super::carried::Trail;
-use super::channels::Channels;
-use super::normals::Normals;
 use super::{Refined, view, view_report};
 use crate::arguments::{Method, RefineArguments, Seam};
 use crate::failure::Outcome;
@@ -42,7 +42,7 @@ pub(super) fn run(
     // Where nothing moves, values stay what they are, too.
     let is_same = refined.mesh.positions() == control.positions() && !arguments.limit;
     let channels =
-        if is_same { channels.clone() } else { channels.refined(&control, &refined, arguments)? };
+        if is_same { channels.clone() } else { channels.refined(&control, &refined, arguments.scheme()?)? };
     drop(control);
     let Refinement { mesh, steps, stop, origins, parents, .. } = refined;
     let (mesh, normals) = finish(mesh, arguments, format, progress)?;
