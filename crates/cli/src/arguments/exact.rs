@@ -1,4 +1,4 @@
-//! Options of `limitmesh refine --method exact`: its goals and its caps.
+//! Options of `limitmesh refine --method exact`: its goals and its caps, some of which other methods have, too.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use super::camera;
 use super::values::{self, Extent};
 
 /// The heading of these options in the help.
-const HEADING: &str = "Goals and caps of --method exact";
+const HEADING: &str = "Goals and caps of --method exact, and of others where they say so";
 
 /// What exact refinement is to reach, and what it must not exceed.
 #[derive(Args, Clone, Debug)]
@@ -18,13 +18,14 @@ pub(crate) struct ExactArguments {
     /// Greatest distance between the mesh and the limit surface, either way [default without another goal: 0.1%]
     ///
     /// A length in the mesh's unit, with a unit where --unit tells the mesh's, or with % in per cent of the diagonal of the
-    /// control mesh's bounding box.
+    /// control mesh's bounding box. With --scheme sqrt3 it is kept by an estimate; with --method planarity it is how far the middles of
+    /// edges are off, with vertex-error how far control points are from their limits [default for that: 0.1%].
     #[arg(long, value_name = "T", value_parser = values::tolerance, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<Extent>,
 
     /// The best mesh with at most so many triangles, the worst places refined first
     ///
-    /// With other goals, whichever is reached first ends the refinement.
+    /// With other goals, whichever is reached first ends the refinement. Also with --method planarity and vertex-error and with --scheme sqrt3.
     #[arg(long, value_name = "N", value_parser = values::positive)]
     pub(crate) triangles: Option<usize>,
 
@@ -66,7 +67,8 @@ pub(crate) struct ExactArguments {
 
     /// Divide no part of a control face more often [1 to 24; default: 24]
     ///
-    /// What was reached by then is written, and the exit code is 3.
+    /// What was reached by then is written, and the exit code is 3. Also with --method planarity and vertex-error [default: 30] and with
+    /// --scheme sqrt3, where two levels divide an edge in three [default: 20].
     #[arg(long, value_name = "N", value_parser = values::exact_levels)]
     pub(crate) max_levels: Option<usize>,
 
@@ -88,7 +90,7 @@ pub(crate) struct ExactArguments {
     ///
     /// Vertices have parent_face and the barycentric coordinates parent_a, parent_b and parent_c there, triangles
     /// have parent_face (with --optimize one of several): faces of the control mesh, counted from 0. Both have input_face, that face's
-    /// polygon in the input, as the diagnosis counts them.
+    /// polygon in the input, as the diagnosis counts them. Also with --method planarity and vertex-error and with --scheme sqrt3.
     #[arg(long)]
     pub(crate) provenance: bool,
 }

@@ -45,7 +45,7 @@ pub(crate) struct LodArguments {
     #[arg(conflicts_with_all = ["levels", "tolerance", "ratio"])]
     pub(crate) tolerances: Vec<Extent>,
 
-    /// Number of levels, whose tolerances are --tolerance and its multiples [default: 4]
+    /// Number of levels, whose tolerances are --tolerance and its multiples [1 to 12; default: 4]
     #[arg(long, value_name = "N", value_parser = values::detail_levels)]
     pub(crate) levels: Option<usize>,
 
