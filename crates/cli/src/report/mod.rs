@@ -27,7 +27,7 @@ pub(crate) use lod::{LevelReport, LodReport, MorphReport, PictureReport};
 pub(crate) use measurement::{DistanceReport, LimitReport, MeasureReport, SurfaceReport};
 pub(crate) use refinement::{
     AssetMeshReport, AssetReport, AttributeReport, CameraReport, ErrorReport, EstimateReport,
-    ExactParametersReport, InputDistanceReport, MethodReport, OutputReport, ParametersReport,
+    ExactParametersReport, InputDistanceReport, MeshReport, MethodReport, OutputReport, ParametersReport,
     PredictionReport, RefineReport, RoundEntry, SecondsReport, SizeReport, StepEntry, ViewReport,
 };
 pub(crate) use whole::Whole;

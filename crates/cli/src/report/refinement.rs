@@ -19,6 +19,14 @@ use crate::format::{lower_bound, upper_bound};
 #[derive(Debug, Serialize)]
 pub(crate) struct RefineReport {
     pub(crate) version: &'static str,
+    #[serde(flatten)]
+    pub(crate) of: MeshReport,
+    pub(crate) seconds: SecondsReport,
+}
+
+/// What became of a mesh.
+#[derive(Debug, Serialize)]
+pub(crate) struct MeshReport {
     pub(crate) input: InputReport,
     pub(crate) diagnosis: DiagnosisReport,
     pub(crate) parameters: ParametersReport,
@@ -28,7 +36,6 @@ pub(crate) struct RefineReport {
     pub(crate) method: MethodReport,
     pub(crate) size: SizeReport,
     pub(crate) output: OutputReport,
-    pub(crate) seconds: SecondsReport,
 }
 
 /// The report on an asset of several meshes.
@@ -51,14 +58,8 @@ pub(crate) struct AssetMeshReport {
     pub(crate) mesh: usize,
     /// How many times larger it appears in the scene than in its own coordinates, at most.
     pub(crate) scale: f64,
-    pub(crate) input: InputReport,
-    pub(crate) diagnosis: DiagnosisReport,
-    pub(crate) parameters: ParametersReport,
-    pub(crate) interpolation: Option<InterpolationReport>,
     #[serde(flatten)]
-    pub(crate) method: MethodReport,
-    pub(crate) size: SizeReport,
-    pub(crate) output: OutputReport,
+    pub(crate) of: MeshReport,
 }
 
 /// Area and volume of the mesh that was read and of the one that was written.

@@ -12,31 +12,26 @@ use limitmesh::carry::borders;
 use limitmesh::mesh::{BuildOptions, Channel, Domain, MeshError, Semantic, Trace, Weld};
 use limitmesh_io::gltf::{CornerAttribute, KeptApart, MeshSoup};
 use limitmesh_io::{Asset, Format};
-use limitmesh_render::Style;
 
 use super::super::channels::Channels;
 use super::attribute_goals::AttributeGoals;
 use super::carried::Carried;
 use super::control::Control;
-use super::exact::{self, Goals};
+use super::exact::Goals;
 use super::put_back::{MOST_WIDE, PutBack, channel, moved_positions};
 use super::selection::Selection;
-use super::{estimate, picture, split_normals, stepwise, summary, turned_over};
+use super::several::{self, Progressed};
+use super::{estimate, split_normals};
 use crate::arguments::{
-    ConcaveCorners, CreasesFrom, Extent, Featured, Length, Method, MorphTolerance, RefineArguments,
-    RelativeTo,
+    ConcaveCorners, CreasesFrom, Featured, Method, MorphTolerance, RefineArguments, RelativeTo,
 };
-use crate::bulk::Bulk;
 use crate::creases::Hints;
 use crate::failure::{Outcome, usage};
 use crate::format::counted;
 use crate::input;
 use crate::output;
 use crate::progress::Progress;
-use crate::report::{
-    AssetMeshReport, AssetReport, ChannelReport, InputReport, OutputReport, SecondsReport, SizeReport,
-    VERSION,
-};
+use crate::report::{ChannelReport, InputReport};
 
 /// An asset to be refined.
 pub(super) struct Job {
@@ -47,25 +42,17 @@ pub(super) struct Job {
     output: Option<Format>,
 }
 
-/// What became of the meshes so far.
-#[derive(Default)]
-struct Progressed {
-    reports: Vec<AssetMeshReport>,
-    /// Names of attributes that were left out.
-    left_out: Vec<String>,
-    short: Vec<String>,
-    triangles: usize,
-    refining: Duration,
-}
-
-impl Progressed {
-    /// Notes which attributes of a mesh were left out: those that are lost or too wide, and `others`.
-    fn leave_out(&mut self, own: &MeshSoup, is_lost: impl Fn(&CornerAttribute) -> bool, others: Vec<String>) {
-        let tables = own.attributes.iter().filter(|table| is_lost(table) || table.width > MOST_WIDE);
-        for name in tables.map(|table| table.name.clone()).chain(others) {
-            if !self.left_out.contains(&name) {
-                self.left_out.push(name);
-            }
+/// Notes which attributes of a mesh were left out: those that are lost or too wide, and `others`.
+fn leave_out(
+    left_out: &mut Vec<String>,
+    own: &MeshSoup,
+    is_lost: impl Fn(&CornerAttribute) -> bool,
+    others: Vec<String>,
+) {
+    let tables = own.attributes.iter().filter(|table| is_lost(table) || table.width > MOST_WIDE);
+    for name in tables.map(|table| table.name.clone()).chain(others) {
+        if !left_out.contains(&name) {
+            left_out.push(name);
         }
     }
 }
@@ -130,19 +117,15 @@ impl Job {
         self.check_channels(&asset, &name)?;
         let bounds = asset.bounding_box()?;
         let reading = start.elapsed();
-        let Some([low, high]) = bounds else {
+        let Some(bounds) = bounds else {
             anyhow::bail!("{name}: the scene shows no triangles that could be refined");
         };
-        let diagonal = low.iter().zip(high).map(|(a, b)| (b - a).powi(2)).sum::<f64>().sqrt();
         let diagonal = match self.arguments.asset.relative_to {
-            RelativeTo::Scene => Some(diagonal),
+            RelativeTo::Scene => Some(several::diagonal(bounds)),
             RelativeTo::Mesh => None,
         };
-        if let Some(diagonal) = diagonal
-            && let Some(within) = self.arguments.interpolation.within(diagonal, self.arguments.build.unit)?
-        {
-            self.arguments.interpolation.interpolate_within =
-                Some(Extent::Length(Length { value: within, unit: None }));
+        if let Some(diagonal) = diagonal {
+            several::set_lengths(&mut self.arguments, diagonal)?;
         }
         let selection = Selection::new(&asset, &self.arguments.asset)?;
         let mut done = Progressed::default();
@@ -198,32 +181,16 @@ impl Job {
         let goals = Goals::new(&arguments, &control.featured.mesh, control.diagonal)?.keeping_origins(kept);
         let attributes = attribute_goals((&own, stretch), &control, &channels, (&arguments, goals.length()))?;
         let goals = goals.with_attributes(attributes);
-        let parameters = match arguments.method {
-            Method::Exact => exact::parameters(&arguments, &goals),
-            _ => stepwise::parameters(&arguments),
-        };
+        let parameters = several::parameters(&arguments, &goals);
         if self.output.is_none() || arguments.exact.dry_run {
             let told = (self.input_report(&name, &own), (&control.diagnosis).into(), parameters);
             return estimate::run(&control.featured.mesh, &goals, &arguments, told, progress);
         }
-        let Control { featured, before, bulk, diagnosis, interpolation, .. } = control;
-        let start = Instant::now();
-        let mut refined = match arguments.method {
-            Method::Exact => exact::run((&featured, &before, &channels), &goals, &arguments, progress)?,
-            _ => {
-                let traced = (featured.mesh.clone(), &channels, true);
-                stepwise::run(traced, &arguments, self.output, progress)?
-            }
-        };
-        let refining = start.elapsed();
-        let after = Bulk::of(&refined.mesh);
-        refined.tell_size([bulk, after], &arguments);
-        progress.note(summary(&name, &refined, refining));
-        if let Some(note) = refined.inverted.and_then(turned_over) {
-            progress.note(format!("{name}: {note}"));
-        }
+        let one =
+            several::one(&name, (&control, &channels, &goals), (true, self.output), &arguments, progress)?;
+        let Control { featured, before, .. } = &control;
         let carried = Carried {
-            trail: &refined.trail,
+            trail: &one.refined.trail,
             control: featured.mesh.triangles(),
             parts: &featured.concave.parts,
             faces: &before.faces,
@@ -233,30 +200,17 @@ impl Job {
             own: &own,
             control: &featured.mesh,
             channels: &channels,
-            refined: &refined,
+            refined: &one.refined,
             carried: &carried,
         };
         let told = back.put(asset, mesh, (stretch, arguments.scheme.in_quarters()?))?;
         for note in told.notes {
             progress.note(format!("{name}: {note}"));
         }
-        done.triangles += refined.mesh.face_count();
-        done.refining += refining;
-        if let Outcome::StoppedShort(why) = refined.outcome {
-            done.short.push(format!("{name}: {why}"));
-        }
-        done.leave_out(&own, |table| arguments.channels.drops(&table.name), told.left_out);
-        done.reports.push(AssetMeshReport {
-            mesh,
-            scale: stretch,
-            input: self.input_report(&name, &own),
-            diagnosis: (&diagnosis).into(),
-            parameters,
-            interpolation,
-            output: OutputReport::of(arguments.output_name(), &refined.mesh, refined.inverted),
-            method: refined.report,
-            size: SizeReport { before: bulk, after },
-        });
+        let is_dropped = |table: &CornerAttribute| arguments.channels.drops(&table.name);
+        leave_out(&mut done.left_out, &own, is_dropped, told.left_out);
+        let told = (self.input_report(&name, &own), control, parameters);
+        done.add((&name, mesh, stretch), one, told, &arguments);
         Ok(())
     }
 
@@ -311,10 +265,9 @@ impl Job {
 
     /// The arguments for a mesh: its share of the cap, and what keeps the borders of several primitives.
     fn of_mesh(&self, own: &MeshSoup, done: &Progressed) -> RefineArguments {
-        let mut arguments = self.arguments.clone();
-        arguments.max_triangles = Some(arguments.max_triangles().saturating_sub(done.triangles).max(1));
+        let mut arguments = done.share(&self.arguments);
         // A flat region has triangles across borders, and across the faces that values belong to.
-        let is_kept = |own: &CornerAttribute| !arguments.channels.drops(&own.name);
+        let is_kept = |own: &CornerAttribute| !self.arguments.channels.drops(&own.name);
         let has_values = own.attributes.iter().any(is_kept) || !own.influences.is_empty();
         if own.borders > 0 {
             // Where they stay straight around a corner of 180° and more, the surface would fold over.
@@ -367,47 +320,13 @@ impl Job {
             }
         }
         let writing = start.elapsed();
-        let meshes = counted(done.reports.len(), "mesh", "meshes");
-        let triangles = counted(done.triangles, "triangle", "triangles");
-        progress.note(format!("{}: {meshes} with {triangles}", arguments.output_name()));
-        if let Some(report) = &arguments.report {
-            let seconds = SecondsReport {
-                read: reading.as_secs_f64(),
-                repair: 0.0,
-                refine: done.refining.as_secs_f64(),
-                write: writing.as_secs_f64(),
-                total: (reading + done.refining + writing).as_secs_f64(),
-            };
-            let left_out = done.left_out;
-            let report_of = AssetReport {
-                version: VERSION,
-                path: name.to_owned(),
-                left_out,
-                meshes: done.reports,
-                seconds,
-            };
-            progress.clear();
-            output::write_json(report, &report_of)?;
-        }
+        let outcome = done.finish(name, [reading, writing], (arguments, ["mesh", "meshes"]), progress)?;
         if let Some(picture) = &arguments.picture {
-            progress.stage(format!("drawing {}", picture.display()));
             let folder = arguments.input().parent();
             let scene = Asset::from_bytes(&asset.to_bytes(Format::Glb)?, folder)?.scene_soup()?;
-            let (mesh, _) = Mesh::from_soup(&scene, &Default::default())?;
-            let style = Style::default().wireframe(true);
-            picture::draw(
-                picture,
-                mesh.as_triangles(),
-                None,
-                picture::view_direction(arguments.view),
-                &style,
-                picture::SIZE,
-            )?;
+            several::draw(picture, &scene, arguments, progress)?;
         }
-        Ok(match done.short.is_empty() {
-            true => Outcome::Done,
-            false => Outcome::StoppedShort(done.short.join("\n")),
-        })
+        Ok(outcome)
     }
 }
 

@@ -16,6 +16,7 @@ mod provenance;
 mod put_back;
 mod restricted;
 mod selection;
+mod several;
 mod sqrt3;
 mod stepwise;
 mod weights;
@@ -42,8 +43,8 @@ use crate::input::{self, Input};
 use crate::output;
 use crate::progress::Progress;
 use crate::report::{
-    ChannelReport, InputReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport,
-    SizeReport, VERSION, ViewReport,
+    ChannelReport, InputReport, MeshReport, MethodReport, OutputReport, ParametersReport, RefineReport,
+    SecondsReport, SizeReport, VERSION, ViewReport,
 };
 use control::Control;
 use exact::Goals;
@@ -197,13 +198,15 @@ fn refine(
         progress.stage("examining the result");
         let report = RefineReport {
             version: VERSION,
-            input: input_report,
-            diagnosis: (&diagnosis).into(),
-            parameters,
-            interpolation,
-            method: report,
-            size: SizeReport { before, after },
-            output: OutputReport::of(arguments.output_name(), &mesh, inverted),
+            of: MeshReport {
+                input: input_report,
+                diagnosis: (&diagnosis).into(),
+                parameters,
+                interpolation,
+                method: report,
+                size: SizeReport { before, after },
+                output: OutputReport::of(arguments.output_name(), &mesh, inverted),
+            },
             seconds: phases(reading, building, refining, writing),
         };
         progress.clear();

@@ -9,39 +9,26 @@ use limitmesh::Mesh;
 use limitmesh::mesh::{BuildOptions, MeshError, Trace, Weld};
 use limitmesh_io::threemf::{Inherited, LengthUnit, NewTriangles, ObjectSoup, Source};
 use limitmesh_io::{Format, Package};
-use limitmesh_render::Style;
 
 use super::super::channels::Channels;
 use super::carried::Carried;
 use super::control::Control;
-use super::exact::{self, Goals};
-use super::{Refined, estimate, picture, stepwise, summary, turned_over};
-use crate::arguments::{Extent, Length, Method, RefineArguments, Unit};
-use crate::bulk::Bulk;
+use super::exact::Goals;
+use super::several::{self, Progressed};
+use super::{Refined, estimate};
+use crate::arguments::{RefineArguments, Unit};
 use crate::failure::{Outcome, usage};
 use crate::format::counted;
 use crate::input;
 use crate::output;
 use crate::progress::Progress;
-use crate::report::{
-    AssetMeshReport, AssetReport, ChannelReport, InputReport, OutputReport, SecondsReport, SizeReport,
-    VERSION,
-};
+use crate::report::{ChannelReport, InputReport};
 
 /// A package to be refined.
 pub(super) struct Job {
     /// With lengths instead of per cents.
     arguments: RefineArguments,
     writes: bool,
-}
-
-/// What became of the objects so far.
-#[derive(Default)]
-struct Progressed {
-    reports: Vec<AssetMeshReport>,
-    short: Vec<String>,
-    triangles: usize,
-    refining: Duration,
 }
 
 impl Job {
@@ -71,7 +58,7 @@ impl Job {
         let mut package = input::package(self.arguments.input())?;
         let bounds = package.bounding_box()?;
         let reading = start.elapsed();
-        let Some([low, high]) = bounds else {
+        let Some(bounds) = bounds else {
             anyhow::bail!("{name}: nothing is built that has triangles");
         };
         self.set_unit(package.unit(), &name)?;
@@ -79,12 +66,9 @@ impl Job {
         let names = contents.objects.iter().flat_map(|object| &object.attributes).map(String::as_str);
         self.arguments.channels.check(&name, names)?;
         self.arguments.channels.check_inherited()?;
-        let diagonal = low.iter().zip(high).map(|(a, b)| (b - a).powi(2)).sum::<f64>().sqrt();
-        if let Some(within) = self.arguments.interpolation.within(diagonal, self.arguments.build.unit)? {
-            self.arguments.interpolation.interpolate_within =
-                Some(Extent::Length(Length { value: within, unit: None }));
-        }
-        let mut done = Progressed::default();
+        let diagonal = several::diagonal(bounds);
+        several::set_lengths(&mut self.arguments, diagonal)?;
+        let mut done = Progressed { left_out: self.arguments.channels.dropped(), ..Progressed::default() };
         for object in 0..package.object_count() {
             self.object(object, &mut package, diagonal, &mut done, progress)?;
         }
@@ -136,66 +120,36 @@ impl Job {
             progress.note(format!("{name}: {line}"));
         }
         let Trace { faces, corners, .. } = trace;
-        let mut arguments = self.arguments.clone();
-        arguments.max_triangles = Some(arguments.max_triangles().saturating_sub(done.triangles).max(1));
+        let mut arguments = done.share(&self.arguments);
         // A flat region has triangles across faces that carry different things.
         arguments.exact.divide_flat |= self.is_traced() && (own.varies_within || !own.is_uniform);
         let control = Control::new((built, diagnosis, faces), Some(diagonal), &arguments, progress)?;
         let goals = Goals::new(&arguments, &control.featured.mesh, diagonal)?;
         let goals = if self.is_traced() { goals.keeping_origins(Vec::new()) } else { goals };
-        let parameters = match arguments.method {
-            Method::Exact => exact::parameters(&arguments, &goals),
-            _ => stepwise::parameters(&arguments),
-        };
+        let parameters = several::parameters(&arguments, &goals);
         if !self.writes {
             let told = (self.input_report(&name, &own), (&control.diagnosis).into(), parameters);
             return estimate::run(&control.featured.mesh, &goals, &arguments, told, progress);
         }
-        let Control { featured, before, bulk, diagnosis, interpolation, .. } = control;
-        let start = Instant::now();
-        let mut refined = match arguments.method {
-            Method::Exact => {
-                exact::run((&featured, &before, &Channels::default()), &goals, &arguments, progress)?
-            }
-            _ => stepwise::run(
-                (featured.mesh.clone(), &Channels::default(), self.is_traced()),
-                &arguments,
-                Some(Format::ThreeMf),
-                progress,
-            )?,
-        };
-        let refining = start.elapsed();
-        let after = Bulk::of(&refined.mesh);
-        refined.tell_size([bulk, after], &arguments);
-        progress.note(summary(&name, &refined, refining));
-        if let Some(note) = refined.inverted.and_then(turned_over) {
-            progress.note(format!("{name}: {note}"));
-        }
+        let one = several::one(
+            &name,
+            (&control, &Channels::default(), &goals),
+            (self.is_traced(), Some(Format::ThreeMf)),
+            &arguments,
+            progress,
+        )?;
+        let Control { featured, before, .. } = &control;
         let carried = Carried {
-            trail: &refined.trail,
+            trail: &one.refined.trail,
             control: featured.mesh.triangles(),
             parts: &featured.concave.parts,
             faces: &before.faces,
             vertices: &corners,
         };
-        let told = self.put_back((package, object), (&refined, &carried), stretch)?;
+        let told = self.put_back((package, object), (&one.refined, &carried), stretch)?;
         inherited_in_words(told).iter().for_each(|line| progress.note(format!("{name}: {line}")));
-        done.triangles += refined.mesh.face_count();
-        done.refining += refining;
-        if let Outcome::StoppedShort(why) = refined.outcome {
-            done.short.push(format!("{name}: {why}"));
-        }
-        done.reports.push(AssetMeshReport {
-            mesh: object,
-            scale: stretch,
-            input: self.input_report(&name, &own),
-            diagnosis: (&diagnosis).into(),
-            parameters,
-            interpolation,
-            output: OutputReport::of(arguments.output_name(), &refined.mesh, refined.inverted),
-            method: refined.report,
-            size: SizeReport { before: bulk, after },
-        });
+        let told = (self.input_report(&name, &own), control, parameters);
+        done.add((&name, object, stretch), one, told, &arguments);
         Ok(())
     }
 
@@ -278,33 +232,11 @@ impl Job {
         let bytes = package.to_bytes()?;
         output::write_file(path, &bytes)?;
         let writing = start.elapsed();
-        let objects = counted(done.reports.len(), "object", "objects");
-        let triangles = counted(done.triangles, "triangle", "triangles");
-        progress.note(format!("{}: {objects} with {triangles}", arguments.output_name()));
-        if let Some(report) = &arguments.report {
-            let seconds = SecondsReport {
-                read: reading.as_secs_f64(),
-                repair: 0.0,
-                refine: done.refining.as_secs_f64(),
-                write: writing.as_secs_f64(),
-                total: (reading + done.refining + writing).as_secs_f64(),
-            };
-            let (path, meshes) = (name.to_owned(), done.reports);
-            let left_out = arguments.channels.dropped();
-            progress.clear();
-            output::write_json(report, &AssetReport { version: VERSION, path, left_out, meshes, seconds })?;
-        }
+        let outcome = done.finish(name, [reading, writing], (arguments, ["object", "objects"]), progress)?;
         if let Some(picture) = &arguments.picture {
-            progress.stage(format!("drawing {}", picture.display()));
-            let (mesh, _) = Mesh::from_soup(&Package::from_bytes(bytes)?.scene_soup()?, &Default::default())?;
-            let style = Style::default().wireframe(true);
-            let view = picture::view_direction(arguments.view);
-            picture::draw(picture, mesh.as_triangles(), None, view, &style, picture::SIZE)?;
+            several::draw(picture, &Package::from_bytes(bytes)?.scene_soup()?, arguments, progress)?;
         }
-        Ok(match done.short.is_empty() {
-            true => Outcome::Done,
-            false => Outcome::StoppedShort(done.short.join("\n")),
-        })
+        Ok(outcome)
     }
 }
 
