@@ -69,10 +69,8 @@ fn tolerances(control: &Mesh) -> Result<()> {
 /// The limit in pixels at which a front has its number of triangles, kept along a way around the model.
 fn camera(control: &Mesh, degrees: f64) -> Result<()> {
     let size = control.diagonal();
-    let middle = [0, 1, 2].map(|axis| {
-        let along = control.positions().iter().map(|p| p[axis]);
-        0.5 * (along.clone().fold(f64::INFINITY, f64::min) + along.fold(f64::NEG_INFINITY, f64::max))
-    });
+    let [low, high] = control.as_triangles().bounding_box().unwrap_or_default();
+    let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
     let camera = |frame: usize| {
         let (sine, cosine) = (degrees.to_radians() * frame as f64 / (FRAMES - 1) as f64).sin_cos();
         let eye = [middle[0] + 0.9 * size * sine, middle[1] + 0.2 * size, middle[2] + 0.9 * size * cosine];

@@ -60,14 +60,16 @@ pub fn uniform_plain(control: &Mesh, levels: usize) -> Result<Refinement, Refine
     uniform(control, &Loop, &UniformOptions::default().levels(levels))
 }
 
-/// A criterion of the literature over a restricted quadtree: the least limit that takes at most so many faces, within eight levels, since
-/// where the surface has no tangent plane some criteria are never met.
+/// Levels at most of restricted quadtrees: where the surface has no tangent plane, some criteria are never met.
+pub const DEEPEST: u32 = 8;
+
+/// A criterion of the literature over a restricted quadtree: the least limit that takes at most so many faces, within [`DEEPEST`] levels.
 ///
 /// # Errors
 /// See [`FrontError`].
 pub fn restricted(control: &Mesh, measure: Measure, faces: usize) -> Result<Mesh, FrontError> {
     let mut front = Front::measured_by(control, &Loop, measure)?;
-    front.update(&Demand::tolerance(0.0).triangles(faces).max_levels(8))?;
+    front.update(&Demand::tolerance(0.0).triangles(faces).max_levels(DEEPEST))?;
     front.mesh()
 }
 
@@ -79,13 +81,13 @@ pub fn sqrt3_with(control: &Mesh, faces: usize) -> Result<Mesh, RefineError> {
     Ok(sqrt3::adaptive(control, &Sqrt3Options::default().triangles(Some(faces)))?.mesh)
 }
 
-/// What stands for the limit surface of √3-subdivision: an even number of uniform steps, six at least and more while they give no more than
-/// `most` faces. (Every second step divides boundaries.)
+/// What stands for the limit surface of √3-subdivision, and its number of uniform steps: an even one, `least` at least and more while they
+/// give no more than `most` faces. (Every second step divides boundaries.)
 ///
 /// # Errors
 /// See [`RefineError`].
-pub fn sqrt3_reference(control: &Mesh, most: usize) -> Result<(Mesh, usize), RefineError> {
-    let mut steps = 6;
+pub fn sqrt3_reference(control: &Mesh, least: u32, most: usize) -> Result<(Mesh, usize), RefineError> {
+    let mut steps = least.next_multiple_of(2);
     while control.face_count().saturating_mul(3usize.saturating_pow(steps + 2)) <= most {
         steps += 2;
     }

@@ -106,6 +106,9 @@ pub(super) struct Study {
 pub(super) const SEAMS: [(SeamRule, &str); 3] =
     [(SeamRule::All, "all"), (SeamRule::Any, "any"), (SeamRule::Inner, "inner")];
 
+/// Steps at least of what stands for the limit surface of √3-subdivision.
+const SQRT3_STEPS: u32 = 6;
+
 /// Refines and measures one model; `stage` is told what comes next.
 ///
 /// # Errors
@@ -118,7 +121,7 @@ pub(super) fn study(player: &Player, settings: &Settings, stage: &dyn Fn(&str)) 
     let reference = limit_reference(control, &Loop, level)?;
     let reference_triangles = reference.face_count();
     let tree = Bvh::new(reference.as_triangles())?;
-    let (sqrt3, _) = methods::sqrt3_reference(control, settings.reference_triangles)?;
+    let sqrt3 = methods::sqrt3_reference(control, SQRT3_STEPS, settings.reference_triangles)?.0;
     let trees = [&tree, &Bvh::new(sqrt3.as_triangles())?];
     let mut bench = Bench::new(player.name, control, trees, level, settings);
     let reference = Reference {

@@ -26,10 +26,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let soup = limitmesh_models::find("bunny").ok_or("no such built-in model")?.soup();
     let (control, _) = Mesh::from_soup(&soup, &Default::default())?;
     let size = control.diagonal();
-    let middle = [0, 1, 2].map(|axis| {
-        let along = control.positions().iter().map(|p| p[axis]);
-        0.5 * (along.clone().fold(f64::INFINITY, f64::min) + along.fold(f64::NEG_INFINITY, f64::max))
-    });
+    let [low, high] = control.as_triangles().bounding_box().unwrap_or_default();
+    let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
     let [width, height] = SIZE;
     let up = [0.0, 1.0, 0.0];
     let outside = [middle[0] + 1.1 * size, middle[1] + 0.3 * size, middle[2]];

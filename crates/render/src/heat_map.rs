@@ -57,6 +57,14 @@ impl Scale {
         Self { map, ..self }
     }
 
+    /// The colour of a value (8-bit sRGB): where both ends are one, that of the map's middle.
+    pub fn colour(&self, value: f64) -> [u8; 3] {
+        match self.above {
+            Some(above) if value > self.high => above,
+            _ => self.map.at(self.place(value)),
+        }
+    }
+
     /// Where a value stands between low (0) and high (1).
     pub(crate) fn place(&self, value: f64) -> f64 {
         if self.is_logarithmic {

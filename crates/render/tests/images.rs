@@ -226,3 +226,19 @@ fn any_number_of_threads_gives_the_same_bytes() {
         assert!(pool.install(picture) == here, "{threads} threads");
     }
 }
+
+#[test]
+fn single_values_have_the_colours_of_the_map() {
+    let at = |place| ColourMap::Ember.at(place);
+    let scale = Scale::new(2.0, 10.0).with_map(ColourMap::Ember);
+    assert_eq!(
+        [1.0, 2.0, 6.0, 10.0, 12.0].map(|value| scale.colour(value)),
+        [0.0, 0.0, 0.5, 1.0, 1.0].map(at)
+    );
+    let marked = scale.marking_above([1, 2, 3]);
+    assert_eq!([10.0, 10.1].map(|value| marked.colour(value)), [at(1.0), [1, 2, 3]]);
+    let ratios = Scale::logarithmic(1.0, 100.0).with_map(ColourMap::Ember);
+    assert_eq!([-1.0, 1.0, 10.0].map(|value| ratios.colour(value)), [0.0, 0.0, 0.5].map(at));
+    // Where there is one value alone, no end of the map is its own.
+    assert_eq!(Scale::new(0.0, 0.0).with_map(ColourMap::Ember).colour(0.0), at(0.5));
+}

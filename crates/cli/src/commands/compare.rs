@@ -9,8 +9,9 @@ use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between, triangle_quali
 use limitmesh::refine::{
     Exact, ExactOptions, StepwiseOptions, Stop, UniformOptions, exact, stepwise, uniform,
 };
+use limitmesh::scheme::Scheme;
 use limitmesh::sqrt3::{self, Sqrt3, Sqrt3Options};
-use limitmesh_paper::{match_angle, nearest_level};
+use limitmesh_paper::{match_angle, methods, nearest_level};
 
 use super::interpolation;
 use crate::arguments::{CompareArguments, ConcaveCorners, RefiningScheme};
@@ -95,20 +96,20 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     }
     for (name, measure) in RESTRICTED {
         progress.stage(name);
-        let start = Instant::now();
-        let mut front = Front::measured_by(&control, scheme, measure)?;
-        front.update(&Demand::tolerance(0.0).triangles(count).max_levels(DEEPEST))?;
-        let mesh = front.mesh()?;
-        let took = start.elapsed();
-        let angle = (measure == Measure::PlanarityAngle).then(|| front.limit().to_degrees());
-        methods.push(judge.judge((name, angle), (&mesh, front.depth() as usize), None, took)?);
-    }
-    if !arguments.interpolation.are_given() {
-        let found = by_sqrt3(&control, count, reference.mesh.face_count(), &judge, progress);
-        match found {
+        match by_restricted((name, measure), (&control, scheme), count, &judge) {
             Ok(found) => methods.push(found),
-            Err(why) => progress.note(format!("sqrt3 left out: {why}")),
+            Err(why) => progress.note(format!("{name} left out: {why}")),
         }
+    }
+    let sqrt3 = match arguments.interpolation.are_given() {
+        true => Err(anyhow::anyhow!(
+            "--interpolate and --interpolate-within are for schemes that split triangles in four"
+        )),
+        false => by_sqrt3(&control, count, reference.mesh.face_count(), &judge, progress),
+    };
+    match sqrt3 {
+        Ok(found) => methods.push(found),
+        Err(why) => progress.note(format!("sqrt3 left out: {why}")),
     }
     progress.clear();
     if arguments.json {
@@ -136,8 +137,21 @@ const RESTRICTED: [(&str, Measure); 3] = [
     ("vertex-error", Measure::VertexError),
 ];
 
-/// Levels at most of those: where the surface has no tangent plane, angles to it never close.
-const DEEPEST: u32 = 8;
+/// A criterion over a restricted quadtree, by the least limit that takes at most so many triangles.
+fn by_restricted(
+    (name, measure): (&'static str, Measure),
+    (control, scheme): (&Mesh, &dyn Scheme),
+    count: usize,
+    judge: &Judge<'_>,
+) -> anyhow::Result<ComparedMethod> {
+    let start = Instant::now();
+    let mut front = Front::measured_by(control, scheme, measure)?;
+    front.update(&Demand::tolerance(0.0).triangles(count).max_levels(methods::DEEPEST))?;
+    let mesh = front.mesh()?;
+    let took = start.elapsed();
+    let angle = (measure == Measure::PlanarityAngle).then(|| front.limit().to_degrees());
+    judge.judge((name, angle), (&mesh, front.depth() as usize), None, took)
+}
 
 /// Adaptive √3-subdivision with so many triangles, against its own limit surface, by as many triangles as the other one at most.
 fn by_sqrt3(
@@ -152,14 +166,8 @@ fn by_sqrt3(
     let Sqrt3 { mesh, levels, .. } =
         sqrt3::adaptive(control, &Sqrt3Options::default().triangles(Some(count)))?;
     let took = start.elapsed();
-    // Two steps at a time: then boundaries are divided, too.
-    let mut steps = 0;
-    while control.face_count().saturating_mul(9usize.saturating_pow(steps / 2 + 1)) <= most {
-        steps += 2;
-    }
-    let levels_of = steps as usize;
-    let options = UniformOptions::default().levels(levels_of).limit(true);
-    let reference = Reference { mesh: sqrt3::uniform(control, &options)?.mesh, levels: levels_of };
+    let (mesh_of, levels_of) = methods::sqrt3_reference(control, 0, most)?;
+    let reference = Reference { mesh: mesh_of, levels: levels_of };
     let tree = Bvh::new(reference.mesh.as_triangles())?;
     let judge = Judge { scheme: RefiningScheme::Sqrt3, reference: &reference, tree: &tree, ..*judge };
     judge.judge(("sqrt3", None), (&mesh, levels), None, took)

@@ -58,8 +58,7 @@ fn write_mesh(
 ) -> anyhow::Result<()> {
     let distances = distances_to_observed(surface.positions, reference, &mut progress.observer())?;
     let scale = scale(&distances);
-    let share = |distance: f64| if scale.high > 0.0 { distance / scale.high } else { 0.0 };
-    let colours: Vec<[u8; 3]> = distances.iter().map(|&d| scale.map.at(share(d))).collect();
+    let colours: Vec<[u8; 3]> = distances.iter().map(|&distance| scale.colour(distance)).collect();
     let output = Output::new(surface).quality(&distances).colours(&colours);
     output::write_mesh(path, Format::Ply, &output, &WriteOptions::default())
 }

@@ -20,6 +20,7 @@ use crate::report::VERSION;
 use crate::report::projection::{
     ControlReport, DistancesReport, FarthestReport, PointsReport, ProjectionReport,
 };
+use crate::vector::{dot, minus};
 
 /// Projects points.
 pub(crate) fn run(arguments: &ProjectArguments, progress: &Progress) -> anyhow::Result<Outcome> {
@@ -154,8 +155,7 @@ impl Found {
 
     fn write_ply(&self, path: &Path, points: &Points) -> anyhow::Result<()> {
         let scale = self.scale();
-        let share = |distance: f64| if scale.high > 0.0 { 0.5 + 0.5 * (distance / scale.high) } else { 0.5 };
-        let colours: Vec<[u8; 3]> = self.signed.iter().map(|&d| scale.map.at(share(d))).collect();
+        let colours: Vec<[u8; 3]> = self.signed.iter().map(|&distance| scale.colour(distance)).collect();
         let by = |value: fn(&Closest) -> f64| self.closest.iter().map(value).collect::<Vec<f64>>();
         let closest = [by(|at| at.point[0]), by(|at| at.point[1]), by(|at| at.point[2])];
         let weights = [by(|at| at.barycentric[0]), by(|at| at.barycentric[1]), by(|at| at.barycentric[2])];
@@ -197,10 +197,8 @@ impl Found {
 fn behind(surface: &LimitSurface<'_>, points: &[[f64; 3]], closest: &[Closest]) -> Vec<bool> {
     let places: Vec<_> = closest.iter().map(|at| (at.face, at.barycentric)).collect();
     let normals = surface.at_all(&places);
-    let along = |(at, (point, normal)): (&Closest, (&[f64; 3], &limitmesh::SurfacePoint))| {
-        (0..3).map(|axis| (point[axis] - at.point[axis]) * normal.normal[axis]).sum::<f64>() < 0.0
-    };
-    closest.iter().zip(points.iter().zip(&normals)).map(along).collect()
+    let pairs = closest.iter().zip(points.iter().zip(&normals));
+    pairs.map(|(at, (&point, there))| dot(minus(point, at.point), there.normal) < 0.0).collect()
 }
 
 fn in_words(report: &ProjectionReport) -> String {

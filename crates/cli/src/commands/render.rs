@@ -14,6 +14,7 @@ use crate::format::counted;
 use crate::input;
 use crate::output;
 use crate::progress::Progress;
+use crate::vector::{cross, minus};
 
 /// What pictures do without, or have by other ways.
 const UNSEEN: [&str; 3] = ["normals", "tangents", "materials but for their names"];
@@ -62,11 +63,7 @@ fn by_normals(mesh: &Mesh, normals: &Channel) -> SplitSurface {
     // The way round says which side is drawn, and may have been mended: normals are those of that side.
     let faces_against = |face: usize| {
         let [a, b, c] = mesh.triangles()[face].map(|v| mesh.positions()[v as usize]);
-        let [u, v] = [b, c].map(|end| [0, 1, 2].map(|i| end[i] - a[i]));
-        let own = [0, 1, 2].map(|i| {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            u[j] * v[k] - u[k] * v[j]
-        });
+        let own = cross(minus(b, a), minus(c, a));
         (3 * face..3 * face + 3).flat_map(|corner| [0, 1, 2].map(|i| own[i] * number(corner, i))).sum::<f64>()
             < 0.0
     };

@@ -91,6 +91,32 @@ fn the_counts_are_those_of_refine() {
     }
 }
 
+/// What has no answer is left out with a note, and the others are compared.
+#[test]
+fn methods_without_an_answer_are_left_out() {
+    let folder = crate::common::folder();
+    let corners = ["1e75 0 0", "0 1e75 0", "0 0 1e75", "-1e75 0 0", "0 -1e75 0", "0 0 -1e75"];
+    let vertices: String = corners.iter().map(|at| format!("v {at}\n")).collect();
+    let faces = "f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n";
+    let far = crate::common::file(&folder, "far.obj", &(vertices + faces));
+    let said = run("compare {} --levels 1 --samples 2000 --json", &[&far]).expect(0);
+    let names = |said: &crate::common::Run| -> Vec<String> {
+        let list = said.json();
+        let name = |own: &serde_json::Value| own["method"].as_str().expect("a name").to_owned();
+        list.as_array().expect("a list").iter().map(name).collect()
+    };
+    let left =
+        ["limit-normal", "amresh", "uniform", "uniform-limit", "exact", "exact-balance", "exact-optimize"];
+    assert_eq!(names(&said), left);
+    let said = ["planarity", "planarity-distance", "vertex-error", "sqrt3"]
+        .into_iter()
+        .fold(said, |said, name| said.saying(&format!("{name} left out: ")));
+    assert!(said.stderr.contains("1e-70 to 1e70"), "{}", said.stderr);
+    let said = run("compare builtin:head --levels 1 --samples 2000 --json --interpolate", &[]).expect(0);
+    assert!(!names(&said).contains(&"sqrt3".to_owned()));
+    said.saying("sqrt3 left out: --interpolate");
+}
+
 #[test]
 fn the_table_is_aligned() {
     let text = run("compare builtin:torus --samples 20000", &[]).expect(0).stdout;

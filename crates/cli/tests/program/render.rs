@@ -1,6 +1,7 @@
 //! `render` and `--picture`: PNG files of the size asked for, which show what was asked for.
 
 use crate::common::{folder, run};
+use crate::shading::pixels;
 
 /// Width and height in a PNG file's header.
 fn size(png: &[u8]) -> [u32; 2] {
@@ -74,7 +75,8 @@ fn textures_lie_on_surfaces_with_texture_coordinates() {
     missing.expect(1).saying("none.png");
 }
 
-/// The limit surface of a coarse mesh has no corners: nearly as many pixels as the mesh's own picture has, and others.
+/// The limit surface of a coarse mesh has no corners: it covers other pixels than the mesh, and nearly as many as the mesh four levels
+/// finer with its vertices on the limit surface, which is framed alike and drawn by triangles.
 #[test]
 fn limit_surfaces_are_drawn_by_rays() {
     let folder = folder();
@@ -86,6 +88,15 @@ fn limit_surfaces_are_drawn_by_rays() {
     let exact = draw("--exact");
     assert_eq!(size(&exact), [120, 90]);
     assert!(exact != draw(""), "it is not the control mesh that is drawn");
+    let covered = |png: &[u8]| {
+        let pixels = pixels(png);
+        pixels.iter().filter(|&pixel| *pixel != pixels[0]).count()
+    };
+    let (fine, drawn) = (folder.path().join("fine.ply"), folder.path().join("fine.png"));
+    run("refine builtin:cube -o {} --method uniform --levels 4 --limit", &[&fine]).expect(0);
+    run("render {} -o {} --size 120x90", &[&fine, &drawn]).expect(0);
+    let (own, other) = (covered(&exact), covered(&std::fs::read(&drawn).expect("a picture")));
+    assert!(other > 120 * 90 / 10 && own.abs_diff(other) * 50 < other, "{own} and {other} pixels");
     assert!(exact == draw("--exact --threads 1"), "the same bytes on one thread");
     assert!(exact != draw("--exact --scheme loop-warren"));
     assert!(exact != draw("--exact --crease-angle 30"));

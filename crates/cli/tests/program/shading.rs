@@ -39,6 +39,16 @@ fn normal(corners: [&Vec<f64>; 3]) -> Vec<f64> {
     normal.iter().map(|x| x / length).collect()
 }
 
+/// The pixels of a picture, row by row.
+pub(crate) fn pixels(png: &[u8]) -> Vec<Vec<u8>> {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().expect("a picture");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut bytes).expect("a picture");
+    let bytes = &bytes[..info.buffer_size()];
+    let width = bytes.len() / (info.width * info.height) as usize;
+    bytes.chunks_exact(width).map(<[u8]>::to_vec).collect()
+}
+
 /// The ends are shaded as planes, the side as round, by whatever reads the files.
 #[test]
 fn each_side_of_a_rim_has_its_normals() {
@@ -154,14 +164,9 @@ fn pictures_are_shaded_by_the_files_normals() {
             .expect(0);
         (draw(&output, ""), draw(&output, "--smooth"))
     });
-    let pixels = |png: &[u8]| {
-        let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().expect("a picture");
-        let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
-        reader.next_frame(&mut bytes).expect("a picture");
-        bytes
-    };
     let apart = |a: &[u8], b: &[u8]| {
-        pixels(a).iter().zip(pixels(b)).map(|(a, b)| a.abs_diff(b)).max().expect("pixels")
+        let [a, b] = [a, b].map(|png| pixels(png).concat());
+        a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().expect("pixels")
     };
     assert!(pictures.iter().all(|(own, smooth)| own != smooth), "rims are sharp");
     // Positions and normals are rounded to floats in some of them.
@@ -176,14 +181,9 @@ fn boxes_show_one_colour_a_side() {
     let colours = |option: &str| {
         let picture = folder.path().join("cube.png");
         run(&format!("render builtin:cube -o {{}} --size 200x150 {option}"), &[&picture]).expect(0);
-        let file = std::io::BufReader::new(std::fs::File::open(&picture).expect("written"));
-        let mut reader = png::Decoder::new(file).read_info().expect("a picture");
-        let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
-        let info = reader.next_frame(&mut bytes).expect("a picture");
-        let width = bytes[..info.buffer_size()].len() / (200 * 150);
         let mut counts = std::collections::BTreeMap::new();
-        for pixel in bytes[..info.buffer_size()].chunks_exact(width) {
-            *counts.entry(pixel.to_vec()).or_insert(0usize) += 1;
+        for pixel in pixels(&std::fs::read(&picture).expect("written")) {
+            *counts.entry(pixel).or_insert(0usize) += 1;
         }
         // The background, and what fills more than a hundredth of the picture.
         counts.values().filter(|&&count| count > 300).count()

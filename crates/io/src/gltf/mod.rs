@@ -269,7 +269,7 @@ impl Asset {
                 .extend(own.parts.iter().flat_map(|part| &part.attributes).filter_map(|name| left_out(name)));
             names.extend(own.has_targets().then_some("morph targets"));
             for placement in self.scene.shown(mesh) {
-                let first = all.positions.len();
+                let (first, is_mirrored) = (all.positions.len(), placement.mirrors());
                 if own.soup.positions.len() + first > MOST || own.soup.faces.len() + all.faces.len() > MOST {
                     let met = format!("more than {MOST} vertices or triangles with all instances");
                     return Err(self.told(GltfFlaw::new("the scene", met, "fewer")));
@@ -279,7 +279,7 @@ impl Asset {
                 }
                 for face in own.soup.faces.iter() {
                     let mut corners: Vec<u32> = face.iter().map(|&v| v + first as u32).collect();
-                    if placement.mirrors() {
+                    if is_mirrored {
                         corners.reverse();
                     }
                     all.faces.push(&corners);

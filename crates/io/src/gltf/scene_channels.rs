@@ -49,7 +49,7 @@ impl SceneChannels {
                 channel.indices.extend(face.map(|index| first + index));
             }
         }
-        self.add_normals(mesh, placement);
+        self.add_normals(mesh, placement, is_mirrored);
         self.corners += corners;
         for channel in &mut self.channels {
             pad(channel, self.corners);
@@ -61,8 +61,8 @@ impl SceneChannels {
         }
     }
 
-    /// Adds a mesh's normals as the scene shows them, if it has some.
-    fn add_normals(&mut self, mesh: &MeshSoup, placement: &Placement) {
+    /// Adds a mesh's normals as the scene shows them, mirrored or not, if it has some.
+    fn add_normals(&mut self, mesh: &MeshSoup, placement: &Placement, is_mirrored: bool) {
         let Some(own) = &mesh.normals else { return };
         let mut values = own.values.clone();
         let mut is_moved = vec![false; own.value_count()];
@@ -83,7 +83,7 @@ impl SceneChannels {
         let first = channel.value_count() as u32;
         channel.values.extend(values);
         for mut face in own.indices.as_chunks::<3>().0.iter().copied() {
-            if placement.mirrors() {
+            if is_mirrored {
                 face.reverse();
             }
             channel.indices.extend(face.map(|index| first + index));

@@ -39,7 +39,19 @@ pub fn splits_vertices(channels: &[Channel], triangles: &[[u32; 3]], vertices: u
     let own = channels.iter().filter(|own| own.domain == Domain::Corner && is_of_vertices(own));
     let own: Vec<&Channel> =
         own.filter(|own| own.check(vertices, 3 * triangles.len(), triangles.len()).is_ok()).collect();
-    !own.is_empty() && divided(&own, triangles, vertices).1.len() > vertices
+    !own.is_empty() && differ(&own, triangles, vertices)
+}
+
+/// Whether channels have two values at some vertex.
+fn differ(channels: &[&Channel], triangles: &[[u32; 3]], count: usize) -> bool {
+    let mut first = vec![NONE; count];
+    triangles.as_flattened().iter().zip(0..).any(|(&v, corner)| {
+        let known = &mut first[v as usize];
+        if *known == NONE {
+            *known = corner;
+        }
+        !channels.iter().all(|own| has_same(own, *known, corner))
+    })
 }
 
 impl Split {
