@@ -23,7 +23,7 @@ use crate::parallel;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use crate::patch::large_rings::LargeRings;
-use crate::patch::{self, LimitPoint, Patch, Quartic, RefinedPatch, Rules, child_corners, root_patch};
+use crate::patch::{self, Limit, LimitPoint, Patch, Quartic, RefinedPatch, Rules, child_corners, root_patch};
 use crate::scheme::Scheme;
 use crate::vector::{DVec3, vector};
 use places::{Answers, Coordinates, Place, Points, parted, take_corners, take_nearest};
@@ -144,8 +144,8 @@ impl<'a> LimitSurface<'a> {
     }
 
     /// Answers for places over a face that there is. `spare` is scratch space.
-    fn find(&self, face: FaceId, places: &mut Vec<Place>, spare: &mut Vec<Place>, found: &mut impl Answers) {
-        let corners = self.corner_points(face);
+    fn find<A: Answers>(&self, face: FaceId, places: &mut Vec<Place>, spare: &mut Vec<Place>, found: &mut A) {
+        let corners = self.corner_points(face).map(A::Limit::of);
         take_corners(corners, places, found);
         if !places.is_empty() {
             let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
@@ -208,16 +208,16 @@ impl<'a> LimitSurface<'a> {
     }
 
     /// Answers for the places over a piece, given its corners; the other slice, as long, is scratch space.
-    fn descend(
+    fn descend<A: Answers>(
         &self,
         patch: &Patch,
-        corners: [LimitPoint; 3],
+        corners: [A::Limit; 3],
         slices: [&mut [Place]; 2],
         levels: u32,
-        found: &mut impl Answers,
+        found: &mut A,
     ) {
         match patch {
-            Patch::Regular(points) => found.are_on(&regular(points), slices[0]),
+            Patch::Regular(points) => found.are_on(points, slices[0]),
             _ if levels == 0 => take_nearest(corners, slices[0], found),
             Patch::Extraordinary(patch) => self.descend_to_vertex(patch, corners, slices, levels, found),
             _ => self.descend_to_parts(&patch.refined(&self.rules), corners, slices, levels, found),
@@ -225,13 +225,13 @@ impl<'a> LimitSurface<'a> {
     }
 
     /// [`Self::descend`] for a piece with one irregular corner; nearly all are such after one refinement.
-    fn descend_to_vertex(
+    fn descend_to_vertex<A: Answers>(
         &self,
         patch: &ExtraordinaryPatch,
-        corners: [LimitPoint; 3],
+        corners: [A::Limit; 3],
         slices: [&mut [Place]; 2],
         levels: u32,
-        found: &mut impl Answers,
+        found: &mut A,
     ) {
         match levels {
             0 => take_nearest(corners, slices[0], found),
@@ -242,21 +242,21 @@ impl<'a> LimitSurface<'a> {
         }
     }
 
-    fn descend_to_parts(
+    fn descend_to_parts<A: Answers>(
         &self,
         refined: &impl Parts,
-        corners: [LimitPoint; 3],
+        corners: [A::Limit; 3],
         [places, spare]: [&mut [Place]; 2],
         levels: u32,
-        found: &mut impl Answers,
+        found: &mut A,
     ) {
         let middles = [0, 1, 2].map(|edge| refined.middle(edge));
-        let of_parts = [0, 1, 2, 3].map(|part| child_corners(corners, middles, part));
-        let ranges = parted(places, spare, &of_parts, found);
+        let ranges = parted(places, spare, corners, middles, found);
         for (part, own) in ranges.into_iter().enumerate().filter(|(_, own)| !own.is_empty()) {
-            let (corners, slices) = (of_parts[part], [&mut spare[own.clone()], &mut places[own]]);
+            let slices = [&mut spare[own.clone()], &mut places[own]];
+            let corners = child_corners(corners, middles, part);
             if let Some(points) = refined.points(part) {
-                found.are_on(&regular(&points), slices[0]);
+                found.are_on(&points, slices[0]);
             } else if let Some(patch) = refined.extraordinary(part) {
                 self.descend_to_vertex(patch, corners, slices, levels - 1, found);
             } else {
@@ -268,15 +268,15 @@ impl<'a> LimitSurface<'a> {
 
 /// The parts of a refined piece, as [`RefinedPatch`] has them.
 trait Parts {
-    fn middle(&self, edge: usize) -> LimitPoint;
+    fn middle<L: Limit>(&self, edge: usize) -> L;
     fn points(&self, part: usize) -> Option<patch::Points>;
     fn extraordinary(&self, part: usize) -> Option<&ExtraordinaryPatch>;
     fn part(&self, part: usize) -> Patch;
 }
 
 impl Parts for RefinedPatch<'_> {
-    fn middle(&self, edge: usize) -> LimitPoint {
-        self.middle(edge)
+    fn middle<L: Limit>(&self, edge: usize) -> L {
+        self.middle_as(edge)
     }
 
     fn points(&self, part: usize) -> Option<patch::Points> {
@@ -294,9 +294,9 @@ impl Parts for RefinedPatch<'_> {
 
 // Without the wrapping, which would be copied along at each level.
 impl Parts for RefinedExtraordinary {
-    fn middle(&self, edge: usize) -> LimitPoint {
+    fn middle<L: Limit>(&self, edge: usize) -> L {
         let (at, ring) = self.middle(edge);
-        LimitPoint::regular(at, &ring)
+        L::regular(at, &ring)
     }
 
     fn points(&self, part: usize) -> Option<patch::Points> {

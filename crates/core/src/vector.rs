@@ -1,6 +1,81 @@
 //! Conversions between the public `[f64; 3]` and the vector type used inside.
 
+use core::array::from_fn;
+use core::ops::{Add, Div, Mul, Sub, SubAssign};
+
 pub(crate) use glam::DVec3;
+
+/// What can be blended: points, or some of their coordinates.
+pub(crate) trait Blend:
+    Copy + Default + Add<Output = Self> + Sub<Output = Self> + SubAssign + Mul<f64, Output = Self> + Div<f64, Output = Self>
+{
+}
+
+impl<T> Blend for T where
+    T: Copy + Default + Add<Output = T> + Sub<Output = T> + SubAssign + Mul<f64, Output = T> + Div<f64, Output = T>
+{
+}
+
+/// The first coordinates of a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Coordinates<const AXES: usize>(pub(crate) [f64; AXES]);
+
+impl<const AXES: usize> Coordinates<AXES> {
+    /// Those of a point in space, of which there are 3 at most.
+    #[inline]
+    pub(crate) fn of(point: DVec3) -> Self {
+        Self(from_fn(|axis| point[axis]))
+    }
+}
+
+impl<const AXES: usize> Default for Coordinates<AXES> {
+    fn default() -> Self {
+        Self([0.0; AXES])
+    }
+}
+
+impl<const AXES: usize> Add for Coordinates<AXES> {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self(from_fn(|axis| self.0[axis] + other.0[axis]))
+    }
+}
+
+impl<const AXES: usize> Sub for Coordinates<AXES> {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self(from_fn(|axis| self.0[axis] - other.0[axis]))
+    }
+}
+
+impl<const AXES: usize> SubAssign for Coordinates<AXES> {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<const AXES: usize> Mul<f64> for Coordinates<AXES> {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0.map(|x| x * factor))
+    }
+}
+
+impl<const AXES: usize> Div<f64> for Coordinates<AXES> {
+    type Output = Self;
+
+    #[inline]
+    fn div(self, divisor: f64) -> Self {
+        Self(self.0.map(|x| x / divisor))
+    }
+}
 
 /// A point or vector from its public form.
 #[inline]

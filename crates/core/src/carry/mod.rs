@@ -19,7 +19,7 @@ use crate::refine::{AttributeGoal, Origin, Traced};
 use crate::scheme::Scheme;
 use places::Places;
 use seams::value_mesh;
-use sites::Sites;
+use sites::{Sites, SitesByFace};
 
 /// Numbers that are evaluated together: a value mesh has as many coordinates.
 const TOGETHER: usize = 3;
@@ -210,11 +210,11 @@ fn smooth(
         let mesh = meshes.mesh(first)?;
         let surface =
             LimitSurface::without_normals(&mesh, scheme).map_err(|error| no_limit(channel, error))?;
-        let starts = by_face.numbers().map(|number| number * channel.arity + first);
+        let own = (channel.arity, first);
         match channel.arity - first {
-            1 => put(&mut values, starts, surface.coordinates::<1>(places)),
-            2 => put(&mut values, starts, surface.coordinates::<2>(places)),
-            _ => put(&mut values, starts, surface.coordinates::<TOGETHER>(places)),
+            1 => put(&mut values, own, &by_face, surface.coordinates::<1>(places)),
+            2 => put(&mut values, own, &by_face, surface.coordinates::<2>(places)),
+            _ => put(&mut values, own, &by_face, surface.coordinates::<TOGETHER>(places)),
         }
         if let Some(error) = surface.failure() {
             return Err(no_limit(channel, error));
@@ -223,13 +223,17 @@ fn smooth(
     Ok(values)
 }
 
-/// Puts some numbers of each value where these start.
+/// Puts some numbers of each value, from the first of them on, where they belong; they come face by face.
 fn put<const AXES: usize>(
     values: &mut [f64],
-    starts: impl Iterator<Item = usize>,
+    (arity, first): (usize, usize),
+    by_face: &SitesByFace<'_>,
     found: Vec<Vec<[f64; AXES]>>,
 ) {
-    for (own, start) in found.iter().flatten().zip(starts) {
-        values[start..][..AXES].copy_from_slice(own);
-    }
+    let mut found = found.iter().flatten();
+    by_face.for_each_number(|number| {
+        if let Some(own) = found.next() {
+            values[number * arity + first..][..AXES].copy_from_slice(own);
+        }
+    });
 }

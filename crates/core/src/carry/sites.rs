@@ -4,9 +4,9 @@
 //! on seams have several, which follow in the order in which corners have them.
 
 use core::ops::Range;
-use std::collections::HashMap;
 
 use super::places::{Key, Places};
+use crate::geometry::NONE;
 use crate::mesh::{Channel, ChannelError};
 use crate::refine::Origin;
 
@@ -39,16 +39,31 @@ impl<'a> Sites<'a> {
         if vertices.len() == origins.len() {
             return Ok(Self { indices: corners.to_vec(), vertices, origins, others: Vec::new() });
         }
-        let mut numbers: HashMap<(u32, Key), u32> = HashMap::new();
         let mut others: Vec<Origin> = Vec::new();
-        let mut indices: Vec<u32> = corners.iter().map(|&vertex| of_vertex[vertex as usize]).collect();
-        for (corner, number) in indices.iter_mut().enumerate().filter(|(_, number)| **number == SEVERAL) {
+        // What each depends on, and the one of its vertex before it; by vertex, the last.
+        let mut chained: Vec<(Key, u32)> = Vec::new();
+        let mut last = vec![NONE; origins.len()];
+        let mut indices = Vec::with_capacity(corners.len());
+        for (corner, &vertex) in corners.iter().enumerate() {
+            let only = of_vertex[vertex as usize];
+            if only != SEVERAL {
+                indices.push(only);
+                continue;
+            }
             let origin = places.known_place(corner)?;
-            let key = (corners[corner], places.key(channel, origin));
-            *number = *numbers.entry(key).or_insert_with(|| {
+            let key = places.key(channel, origin);
+            let last = &mut last[vertex as usize];
+            let mut other = *last;
+            while other != NONE && chained[other as usize].0 != key {
+                other = chained[other as usize].1;
+            }
+            if other == NONE {
+                other = others.len() as u32;
                 others.push(origin);
-                (vertices.len() + others.len() - 1) as u32
-            });
+                chained.push((key, *last));
+                *last = other;
+            }
+            indices.push(vertices.len() as u32 + other);
         }
         Ok(Self { indices, vertices, origins, others })
     }
@@ -75,12 +90,15 @@ impl<'a> Sites<'a> {
     /// The values by face, of which there are `faces`.
     pub(super) fn by_face(&self, faces: usize) -> SitesByFace<'_> {
         let mut runs: Vec<(u32, Range<u32>)> = Vec::new();
-        for (number, origin) in (0..).zip(self.iter()) {
-            match runs.last_mut() {
-                Some((face, run)) if *face == origin.face => run.end = number + 1,
-                _ => runs.push((origin.face, number..number + 1)),
+        let (mut own, mut number) = ((0, 0..0), 0);
+        self.iter().for_each(|origin| {
+            if origin.face != own.0 {
+                runs.push(core::mem::replace(&mut own, (origin.face, number..number)));
             }
-        }
+            number += 1;
+            own.1.end = number;
+        });
+        runs.push(own);
         // A stable sort: runs of a face stay in order.
         runs.sort_by_key(|(face, _)| *face);
         let mut starts = vec![0; faces + 1];
@@ -107,8 +125,8 @@ impl SitesByFace<'_> {
         }
     }
 
-    /// The numbers of all values, face by face.
-    pub(super) fn numbers(&self) -> impl Iterator<Item = usize> {
-        self.runs.iter().flat_map(|(_, run)| run.start as usize..run.end as usize)
+    /// Calls `visit` with the numbers of all values, face by face.
+    pub(super) fn for_each_number(&self, mut visit: impl FnMut(usize)) {
+        self.runs.iter().for_each(|(_, run)| (run.start as usize..run.end as usize).for_each(&mut visit));
     }
 }

@@ -3,8 +3,11 @@
 use core::array::from_fn;
 use core::ops::Range;
 
-use super::SurfacePoint;
-use crate::patch::{LimitPoint, Quartic};
+use super::{SurfacePoint, regular};
+use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::quartic::{coefficients, values_at};
+use crate::patch::{self, Limit, LimitPoint};
+use crate::vector::{self, DVec3};
 
 /// Places that are evaluated together.
 const LANES: usize = 8;
@@ -49,44 +52,48 @@ impl Place {
         (0..3).max_by(|&a, &b| weights[a].total_cmp(&weights[b])).unwrap_or(0)
     }
 
-    /// The part of four that it is in, those at the corners and the middle one, and where it is there.
-    fn in_part(self) -> (usize, Self) {
-        let Self { at, u, v } = self;
-        let part = match () {
-            () if self.first_weight() >= 0.5 => 0,
-            () if u >= 0.5 => 1,
-            () if v >= 0.5 => 2,
-            () => 3,
-        };
-        let [u, v] = match part {
-            0 => [2.0 * u, 2.0 * v],
-            1 => [2.0 * u - 1.0, 2.0 * v],
-            2 => [2.0 * u, 2.0 * v - 1.0],
-            _ => [1.0 - 2.0 * u, 1.0 - 2.0 * v],
-        };
-        (part, Self { at, u, v })
+    /// The part of four that it is in, those at the corners and the middle one.
+    fn part(self) -> usize {
+        // Which part is which by the corners that are no farther than the middles of the edges; without branches, which nobody foresees.
+        const PARTS: [usize; 8] = [3, 0, 1, 0, 2, 0, 1, 0];
+        let is_near = [self.first_weight() >= 0.5, self.u >= 0.5, self.v >= 0.5].map(usize::from);
+        PARTS[is_near[0] | is_near[1] << 1 | is_near[2] << 2]
+    }
+
+    /// Where it is in that part.
+    fn in_part(self, part: usize) -> Self {
+        const FACTORS: [f64; PARTS] = [2.0, 2.0, 2.0, -2.0];
+        const SHIFTS: [[f64; 2]; PARTS] = [[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 1.0]];
+        let (factor, [along, across]) = (FACTORS[part], SHIFTS[part]);
+        Self { at: self.at, u: factor * self.u + along, v: factor * self.v + across }
     }
 }
 
-/// Hands places to the four parts of a face, into `parted`, which is as long; those at corners of parts, whose limits are given, are
-/// answered. Gives where the places of each part are.
-pub(super) fn parted(
+/// The corners of each part among those of the face and the middles of its edges.
+const CORNERS: [[usize; 3]; PARTS] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [4, 5, 3]];
+
+/// Hands places to the four parts of a face, into `parted`, which is as long; those at corners of parts, which are the face's and the
+/// middles of its edges and whose limits are given, are answered. Gives where the places of each part are.
+pub(super) fn parted<A: Answers>(
     places: &[Place],
     parted: &mut [Place],
-    corners: &[[LimitPoint; 3]; PARTS],
-    found: &mut impl Answers,
+    corners: [A::Limit; 3],
+    middles: [A::Limit; 3],
+    found: &mut A,
 ) -> [Range<usize>; PARTS] {
+    let limits = [corners[0], corners[1], corners[2], middles[0], middles[1], middles[2]];
     let mut counts = [0; PARTS];
-    places.iter().for_each(|place| counts[place.in_part().0] += 1);
+    places.iter().for_each(|place| counts[place.part()] += 1);
     let mut start = 0;
     let mut ranges = counts.map(|count| {
         start += count;
         start - count..start - count
     });
     for place in places {
-        let (part, place) = place.in_part();
+        let part = place.part();
+        let place = place.in_part(part);
         match place.corner() {
-            Some(corner) => found.is(place.at, &corners[part][corner]),
+            Some(corner) => found.is(place.at, limits[CORNERS[part][corner]]),
             None => {
                 parted[ranges[part].end] = place;
                 ranges[part].end += 1;
@@ -97,26 +104,29 @@ pub(super) fn parted(
 }
 
 /// Takes the places at the corners of a whole face, whose limits are given, out of them.
-pub(super) fn take_corners(corners: [LimitPoint; 3], places: &mut Vec<Place>, found: &mut impl Answers) {
+pub(super) fn take_corners<A: Answers>(corners: [A::Limit; 3], places: &mut Vec<Place>, found: &mut A) {
     places.retain(|place| {
         let corner = place.corner();
-        corner.inspect(|&corner| found.is(place.at, &corners[corner]));
+        corner.inspect(|&corner| found.is(place.at, corners[corner]));
         corner.is_none()
     });
 }
 
 /// Gives up places for the nearest corners.
-pub(super) fn take_nearest(corners: [LimitPoint; 3], places: &[Place], found: &mut impl Answers) {
-    places.iter().for_each(|place| found.is(place.at, &corners[place.nearest()]));
+pub(super) fn take_nearest<A: Answers>(corners: [A::Limit; 3], places: &[Place], found: &mut A) {
+    places.iter().for_each(|place| found.is(place.at, corners[place.nearest()]));
 }
 
 /// What is computed of points.
 pub(super) trait Answers {
-    /// The point of that number.
-    fn is(&mut self, at: u32, point: &LimitPoint);
+    /// What is wanted of corners.
+    type Limit: Limit;
 
-    /// Points on a regular piece.
-    fn are_on(&mut self, piece: &Quartic, places: &[Place]);
+    /// The point of that number.
+    fn is(&mut self, at: u32, point: Self::Limit);
+
+    /// Points on a regular piece, by its twelve points.
+    fn are_on(&mut self, piece: &patch::Points, places: &[Place]);
 }
 
 /// The weights of up to `N` places, zeros beyond.
@@ -132,9 +142,9 @@ fn lanes<const N: usize>(places: &[Place]) -> [[f64; N]; 2] {
 pub(super) struct Coordinates<'a, const AXES: usize>(pub(super) &'a mut [[f64; AXES]]);
 
 impl<const AXES: usize> Coordinates<'_, AXES> {
-    fn some_on<const N: usize>(&mut self, piece: &Quartic, places: &[Place]) {
+    fn some_on<const N: usize>(&mut self, piece: &[[f64; 15]; AXES], places: &[Place]) {
         let [u, v] = lanes::<N>(places);
-        let points = piece.points_at(&u, &v, AXES);
+        let points = piece.each_ref().map(|coefficients| values_at(coefficients, &u, &v));
         for (lane, place) in places.iter().enumerate() {
             self.0[place.at as usize] = from_fn(|axis| points[axis][lane]);
         }
@@ -142,15 +152,20 @@ impl<const AXES: usize> Coordinates<'_, AXES> {
 }
 
 impl<const AXES: usize> Answers for Coordinates<'_, AXES> {
-    fn is(&mut self, at: u32, point: &LimitPoint) {
-        self.0[at as usize] = from_fn(|axis| point.position[axis]);
+    type Limit = DVec3;
+
+    fn is(&mut self, at: u32, point: DVec3) {
+        self.0[at as usize] = from_fn(|axis| point[axis]);
     }
 
-    fn are_on(&mut self, piece: &Quartic, places: &[Place]) {
+    fn are_on(&mut self, piece: &patch::Points, places: &[Place]) {
+        let net = BezierTriangle::of(&piece.map(vector::Coordinates::<AXES>::of));
+        let coefficients = coefficients(&net, 0);
+        let by_axis = from_fn(|axis| coefficients.map(|own| own.0[axis]));
         for some in places.chunks(LANES) {
             match some.len() > HALF {
-                true => self.some_on::<LANES>(piece, some),
-                false => self.some_on::<HALF>(piece, some),
+                true => self.some_on::<LANES>(&by_axis, some),
+                false => self.some_on::<HALF>(&by_axis, some),
             }
         }
     }
@@ -163,12 +178,15 @@ pub(super) struct Points<'a> {
 }
 
 impl Answers for Points<'_> {
-    fn is(&mut self, at: u32, point: &LimitPoint) {
+    type Limit = LimitPoint;
+
+    fn is(&mut self, at: u32, point: LimitPoint) {
         self.points[at as usize] =
             SurfacePoint { position: point.position.to_array(), normal: point.normal.to_array() };
     }
 
-    fn are_on(&mut self, piece: &Quartic, places: &[Place]) {
+    fn are_on(&mut self, piece: &patch::Points, places: &[Place]) {
+        let piece = regular(piece);
         for some in places.chunks(HALF) {
             let [u, v] = lanes::<HALF>(some);
             let [points, normals] = match self.with_normals {
@@ -179,6 +197,31 @@ impl Answers for Points<'_> {
                 let [position, normal] = [points, normals].map(|by_axis| by_axis.map(|axis| axis[lane]));
                 self.points[place.at as usize] = SurfacePoint { position, normal };
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::patch::child_corners;
+
+    /// A place in a part, seen from the part's corners, is where it was, to the bit where weights are dyadic.
+    #[test]
+    fn places_stay_where_they_are() {
+        let face = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let middles = [[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
+        let limits = [face[0], face[1], face[2], middles[0], middles[1], middles[2]];
+        for (u, v) in (0..=16).flat_map(|i| (0..=16 - i).map(move |j| (f64::from(i) / 16.0, f64::from(j) / 16.0))) {
+            let place = Place::of(7, [1.0 - u - v, u, v]);
+            let part = place.part();
+            let own = place.in_part(part);
+            let corners = child_corners(face, middles, part);
+            assert_eq!(CORNERS[part].map(|corner| limits[corner]), corners);
+            assert!(own.u >= 0.0 && own.v >= 0.0 && own.first_weight() >= 0.0, "{place:?}: {own:?}");
+            let weights = [own.first_weight(), own.u, own.v];
+            let there = [0, 1, 2].map(|i| (0..3).map(|corner| weights[corner] * corners[corner][i]).sum::<f64>());
+            assert_eq!((there, own.at), ([1.0 - u - v, u, v], 7), "{place:?}");
         }
     }
 }

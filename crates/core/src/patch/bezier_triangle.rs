@@ -3,12 +3,12 @@
 //! A regular piece of Loop's surface is a quartic polynomial over its triangle. Its net follows from the twelve
 //! points by a matrix of integers over 24, all of them at least 0 (the box spline's conversion). Points `b_ijk`, i + j + k = 4, stand in the order of k, then of j.
 
-use super::box_spline::{CORNERS, Points, RINGS};
-use crate::vector::DVec3;
+use super::box_spline::{CORNERS, RINGS};
+use crate::vector::{Blend, DVec3};
 
-/// The fifteen points of a net.
+/// The fifteen points of a net, or some of their coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BezierTriangle(pub(crate) [DVec3; 15]);
+pub(crate) struct BezierTriangle<V = DVec3>(pub(crate) [V; 15]);
 
 /// The points along each edge, from its first corner to its second.
 pub(crate) const EDGES: [[usize; 5]; 3] = [[0, 1, 2, 3, 4], [4, 8, 11, 13, 14], [14, 12, 9, 5, 0]];
@@ -26,11 +26,11 @@ pub(super) const TURNED: [[usize; 15]; 3] = [
 /// Where each row of constant k starts, and its degree.
 const ROWS: [(usize, usize); 5] = [(0, 4), (5, 3), (9, 2), (12, 1), (14, 0)];
 
-impl BezierTriangle {
+impl<V: Blend> BezierTriangle<V> {
     /// The net of a regular piece.
     #[inline]
-    pub(crate) fn of(points: &Points) -> Self {
-        let mut net = [DVec3::ZERO; 15];
+    pub(crate) fn of(points: &[V; 12]) -> Self {
+        let mut net = [V::default(); 15];
         for corner in 0..3 {
             let at = points[CORNERS[corner]];
             let ring = |slot: usize| points[RINGS[corner][slot] as usize];
@@ -39,16 +39,18 @@ impl BezierTriangle {
             let (across, along) = (a + d, (b + e) + (c + f));
             let all = across + along;
             // (6 v + Σ n)/12, and the derivatives towards both neighbours.
-            let position = (6.0 * at + all) / 12.0;
+            let position = (at * 6.0 + all) / 12.0;
             net[turned[0]] = position;
-            net[turned[1]] = (12.0 * at + 4.0 * a + 3.0 * (b + f) + (c + e)) / 24.0;
-            net[turned[5]] = (12.0 * at + 4.0 * b + 3.0 * (a + c) + (d + f)) / 24.0;
-            net[turned[2]] = (2.0 * (at + a) + (b + f)) / 6.0;
-            net[turned[6]] = (10.0 * at + 6.0 * (a + b) + (c + f)) / 24.0;
+            net[turned[1]] = (at * 12.0 + a * 4.0 + (b + f) * 3.0 + (c + e)) / 24.0;
+            net[turned[5]] = (at * 12.0 + b * 4.0 + (a + c) * 3.0 + (d + f)) / 24.0;
+            net[turned[2]] = ((at + a) * 2.0 + (b + f)) / 6.0;
+            net[turned[6]] = (at * 10.0 + (a + b) * 6.0 + (c + f)) / 24.0;
         }
         Self(net)
     }
+}
 
+impl BezierTriangle {
     /// Where its points are, as seen from those of its triangle with the same weights.
     pub(crate) fn off_flat(&self) -> impl Iterator<Item = DVec3> + '_ {
         let [a, b, c] = self.corners();
@@ -114,7 +116,7 @@ impl BezierTriangle {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::patch::box_spline::Refined;
+    use crate::patch::box_spline::{Points, Refined};
 
     fn arbitrary() -> Points {
         core::array::from_fn(|i| {

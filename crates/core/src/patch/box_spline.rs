@@ -178,12 +178,13 @@ fn ring_sum(points: &Points, ring: &[u8; 6]) -> DVec3 {
     ((at(0) + at(3)) + (at(1) + at(4))) + (at(2) + at(5))
 }
 
-/// The twelve points from the corners and their rings, each starting with the next corner.
-pub(crate) fn assemble(corners: [DVec3; 3], rings: &[[DVec3; 6]; 3]) -> Points {
+/// The twelve points from the corners and their rings, of each of which we are told where the next corner stands in it.
+#[inline]
+pub(crate) fn assemble(corners: [DVec3; 3], rings: [&[DVec3; 6]; 3], turns: [usize; 3]) -> Points {
     let mut points = [DVec3::ZERO; 12];
     for corner in 0..3 {
         for slot in 0..6 {
-            points[RINGS[corner][slot] as usize] = rings[corner][slot];
+            points[RINGS[corner][slot] as usize] = rings[corner][(slot + turns[corner]) % 6];
         }
     }
     for corner in 0..3 {
@@ -244,7 +245,9 @@ mod tests {
     fn assembling_undoes_taking_rings() {
         let points = plane();
         let rings = RINGS.map(|ring| ring.map(|at| points[at as usize]));
-        assert_eq!(assemble(CORNERS.map(|at| points[at]), &rings), points);
+        assert_eq!(assemble(CORNERS.map(|at| points[at]), rings.each_ref(), [0; 3]), points);
+        let turned = rings.map(|[a, b, c, d, e, f]| [e, f, a, b, c, d]);
+        assert_eq!(assemble(CORNERS.map(|at| points[at]), turned.each_ref(), [2; 3]), points);
         for (corner, ring) in rings.iter().enumerate() {
             assert_eq!(ring[0], points[CORNERS[(corner + 1) % 3]]);
             assert_eq!(ring[1], points[CORNERS[(corner + 2) % 3]]);

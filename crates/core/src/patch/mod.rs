@@ -66,15 +66,40 @@ pub(crate) struct LimitPoint {
     pub(crate) normal: DVec3,
 }
 
-impl LimitPoint {
-    /// The limit of a regular vertex: weights 1/2 and 1/12, tangents by cosines and sines.
-    pub(crate) fn regular(at: DVec3, ring: &[DVec3; 6]) -> Self {
+/// What is wanted of a vertex's limit.
+pub(crate) trait Limit: Copy {
+    /// The limit of a regular vertex.
+    fn regular(at: DVec3, ring: &[DVec3; 6]) -> Self;
+
+    /// Of any.
+    fn of(point: LimitPoint) -> Self;
+}
+
+impl Limit for LimitPoint {
+    /// Tangents by cosines and sines.
+    fn regular(at: DVec3, ring: &[DVec3; 6]) -> Self {
         const SINE: f64 = 0.866_025_403_784_438_6;
         let [a, b, c, d, e, f] = *ring;
-        let position = (6.0 * at + (a + d) + (b + e) + (c + f)) / 12.0;
         let along = (a - d) + 0.5 * ((b - e) + (f - c));
         let across = SINE * ((b - e) + (c - f));
-        Self { position, normal: unit_or_zero(along.cross(across)) }
+        Self { position: DVec3::regular(at, ring), normal: unit_or_zero(along.cross(across)) }
+    }
+
+    fn of(point: LimitPoint) -> Self {
+        point
+    }
+}
+
+/// The position alone.
+impl Limit for DVec3 {
+    /// Weights 1/2 and 1/12.
+    #[inline]
+    fn regular(at: DVec3, &[a, b, c, d, e, f]: &[DVec3; 6]) -> Self {
+        (6.0 * at + (a + d) + (b + e) + (c + f)) / 12.0
+    }
+
+    fn of(point: LimitPoint) -> Self {
+        point.position
     }
 }
 
@@ -230,7 +255,8 @@ impl RefinedPatch<'_> {
             Self::Regular(refined) => Some(refined.part(part)),
             Self::Extraordinary(refined) => refined.points(part),
             Self::Pole(refined) => refined.points(part),
-            Self::Sectors(_) | Self::SemiSharp(_) | Self::Mesh(_) => None,
+            Self::Sectors(refined) => refined.points(part),
+            Self::SemiSharp(_) | Self::Mesh(_) => None,
         }
     }
 
@@ -246,25 +272,20 @@ impl RefinedPatch<'_> {
     /// The limit of the new vertex on the edge from corner `edge`, seen from this face.
     #[inline]
     pub(crate) fn middle(&self, edge: usize) -> LimitPoint {
-        match self {
-            Self::Regular(refined) => {
-                let (at, ring) = refined.middle(edge);
-                LimitPoint::regular(at, &ring)
-            }
-            Self::Extraordinary(refined) => {
-                let (at, ring) = refined.middle(edge);
-                LimitPoint::regular(at, &ring)
-            }
-            Self::Pole(refined) => {
-                let (at, ring) = refined.middle(edge);
-                LimitPoint::regular(at, &ring)
-            }
-            Self::Sectors(refined) => {
-                let (at, ring) = refined.regular_middle(edge);
-                LimitPoint::regular(at, &ring)
-            }
-            Self::SemiSharp(refined) => refined.middle(edge),
-            Self::Mesh(refined) => refined.middle(edge),
-        }
+        self.middle_as(edge)
+    }
+
+    /// What is wanted of that.
+    #[inline]
+    pub(crate) fn middle_as<L: Limit>(&self, edge: usize) -> L {
+        let (at, ring) = match self {
+            Self::Regular(refined) => refined.middle(edge),
+            Self::Extraordinary(refined) => refined.middle(edge),
+            Self::Pole(refined) => refined.middle(edge),
+            Self::Sectors(refined) => refined.regular_middle(edge),
+            Self::SemiSharp(refined) => return L::of(refined.middle(edge)),
+            Self::Mesh(refined) => return L::of(refined.middle(edge)),
+        };
+        L::regular(at, &ring)
     }
 }

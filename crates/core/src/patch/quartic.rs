@@ -12,7 +12,7 @@
 use core::array::from_fn;
 
 use super::bezier_triangle::{BezierTriangle, TURNED};
-use crate::vector::DVec3;
+use crate::vector::{Blend, DVec3};
 
 /// Points that are computed together: enough for several in a register and several registers in flight.
 const LANES: usize = 8;
@@ -44,20 +44,7 @@ pub(crate) struct Quartic {
 impl Quartic {
     /// The polynomial of a net, with the net's corner `first` (0 to 2) at (0, 0), the next at (1, 0), the last at (0, 1).
     pub(crate) fn of(net: &BezierTriangle, first: usize) -> Self {
-        let mut b = net.0;
-        b.iter_mut().zip(&TURNED[first]).for_each(|(b, &at)| *b = net.0[at]);
-        let d0 = differences([b[0], b[1], b[2], b[3], b[4]]);
-        let d1 = differences([b[5], b[6], b[7], b[8]]);
-        let d2 = differences([b[9], b[10], b[11]]);
-        let d3 = differences([b[12], b[13]]);
-        let [a00, a01, a02, a03, a04] = differences([d0[0], d1[0], d2[0], d3[0], b[14]]);
-        let [a10, a11, a12, a13] = differences([d0[1], d1[1], d2[1], d3[1]]);
-        let [a20, a21, a22] = differences([d0[2], d1[2], d2[2]]);
-        let [a30, a31] = differences([d0[3], d1[3]]);
-        let all = [a00, a01, a02, a03, a04, a10, a11, a12, a13, a20, a21, a22, a30, a31, d0[4]];
-        let mut coefficients = all;
-        coefficients.iter_mut().zip(MULTINOMIAL).for_each(|(a, factor)| *a *= factor);
-        Self::with_scale(coefficients)
+        Self::with_scale(coefficients(net, first))
     }
 
     /// The polynomial with the given coefficients, in the order of p, then of k.
@@ -201,10 +188,7 @@ impl Quartic {
     pub(crate) fn points_at<const N: usize>(&self, u: &[f64; N], v: &[f64; N], axes: usize) -> [[f64; N]; 3] {
         let mut points = [[0.0; N]; 3];
         for (points, a) in points.iter_mut().zip(&self.coefficients).take(axes) {
-            for l in 0..N {
-                let [c0, c1, c2, c3, c4] = positions(a, v[l]);
-                points[l] = (((c4 * u[l] + c3) * u[l] + c2) * u[l] + c1) * u[l] + c0;
-            }
+            *points = values_at(a, u, v);
         }
         points
     }
@@ -252,6 +236,35 @@ impl Quartic {
         }
         NormalRow { tangents, least_square: self.least_square }
     }
+}
+
+/// The coefficients of a net's polynomial, as [`Quartic::of`] counts them.
+#[inline]
+pub(crate) fn coefficients<V: Blend>(net: &BezierTriangle<V>, first: usize) -> [V; 15] {
+    let mut b = net.0;
+    b.iter_mut().zip(&TURNED[first]).for_each(|(b, &at)| *b = net.0[at]);
+    let d0 = differences([b[0], b[1], b[2], b[3], b[4]]);
+    let d1 = differences([b[5], b[6], b[7], b[8]]);
+    let d2 = differences([b[9], b[10], b[11]]);
+    let d3 = differences([b[12], b[13]]);
+    let [a00, a01, a02, a03, a04] = differences([d0[0], d1[0], d2[0], d3[0], b[14]]);
+    let [a10, a11, a12, a13] = differences([d0[1], d1[1], d2[1], d3[1]]);
+    let [a20, a21, a22] = differences([d0[2], d1[2], d2[2]]);
+    let [a30, a31] = differences([d0[3], d1[3]]);
+    let mut all = [a00, a01, a02, a03, a04, a10, a11, a12, a13, a20, a21, a22, a30, a31, d0[4]];
+    all.iter_mut().zip(MULTINOMIAL).for_each(|(a, factor)| *a = *a * factor);
+    all
+}
+
+/// The values at several places (u, v) of a polynomial by its coefficients, in the order of p, then of k.
+#[inline]
+pub(crate) fn values_at<const N: usize>(a: &[f64; 15], u: &[f64; N], v: &[f64; N]) -> [f64; N] {
+    let mut values = [0.0; N];
+    for l in 0..N {
+        let [c0, c1, c2, c3, c4] = positions(a, v[l]);
+        values[l] = (((c4 * u[l] + c3) * u[l] + c2) * u[l] + c1) * u[l] + c0;
+    }
+    values
 }
 
 /// Where the coefficients of each power of u start.
@@ -439,7 +452,7 @@ fn by_axis<const N: usize>(points: &[DVec3; N]) -> [[f64; N]; 3] {
 
 /// The first forward differences of each order.
 #[inline]
-fn differences<const N: usize>(mut values: [DVec3; N]) -> [DVec3; N] {
+fn differences<V: Blend, const N: usize>(mut values: [V; N]) -> [V; N] {
     for order in 1..N {
         for i in (order..N).rev() {
             values[i] -= values[i - 1];

@@ -7,6 +7,8 @@
 //! Of very many neighbours only those near the face and what else the rules ask for are kept ([`Far`]), so that a piece takes no
 //! more than any other; see [`super::pole`] for how long that lasts.
 
+use core::array::from_fn;
+
 use super::box_spline::{self, Points};
 use super::extraordinary::ExtraordinaryPatch;
 use super::rules::Rules;
@@ -127,10 +129,10 @@ impl VertexSector {
         self
     }
 
-    /// The new vertices on the edges to the neighbours.
-    fn edge_points(&self) -> Neighbours {
+    /// Adds the new vertices on the edges to the neighbours.
+    fn add_edge_points(&self, points: &mut Neighbours) {
         let count = self.neighbours.len();
-        let mut points = Neighbours::from_elem(DVec3::ZERO, count);
+        points.resize(count, DVec3::ZERO);
         for slot in 0..count {
             let end = self.neighbours[slot];
             if self.is_sharp(slot) {
@@ -141,22 +143,32 @@ impl VertexSector {
             let after = self.neighbours[if slot + 1 == count { 0 } else { slot + 1 }];
             points[slot] = 0.375 * (self.at + end) + 0.125 * (before + after);
         }
-        points
     }
 
     /// The six neighbours, the face's next corner first, of a regular sector; on an open one those beyond the curve are
     /// mirrored, which gives the same surface.
     pub(super) fn regular_ring(&self) -> Option<[DVec3; 6]> {
-        if self.far != Far::Kept {
-            return None;
-        }
-        let ring: [DVec3; 6] = match (self.centre, &self.neighbours[..]) {
-            (Centre::Smooth { sharp: None }, &[a, b, c, d, e, f]) => [a, b, c, d, e, f],
-            (Centre::Crease, &[a, b, c, d]) => [a, b, c, d, self.at + d - c, self.at + a - b],
-            _ => return None,
-        };
-        Some(core::array::from_fn(|i| ring[(self.slot + i) % 6]))
+        regular_ring(self.far, self.centre, self.at, &self.neighbours, self.slot)
     }
+}
+
+/// The six neighbours, from the one in `slot` on, of a regular sector.
+fn regular_ring(far: Far, centre: Centre, at: DVec3, neighbours: &[DVec3], slot: usize) -> Option<[DVec3; 6]> {
+    if far != Far::Kept {
+        return None;
+    }
+    let mut ring = match (centre, neighbours) {
+        (Centre::Smooth { sharp: None }, &[a, b, c, d, e, f]) => [a, b, c, d, e, f],
+        (Centre::Crease, &[a, b, c, d]) => mirrored(at, [a, b, c, d]),
+        _ => return None,
+    };
+    ring.rotate_left(slot);
+    Some(ring)
+}
+
+/// The ring of a vertex on a curve, with the neighbours that are there and those that mirror them.
+fn mirrored(at: DVec3, [a, b, c, d]: [DVec3; 4]) -> [DVec3; 6] {
+    [a, b, c, d, at + d - c, at + a - b]
 }
 
 /// The sectors of a face's corners.
@@ -168,7 +180,7 @@ impl SectorPatch {
     pub(crate) fn regular(&self) -> Option<Points> {
         let [a, b, c] = &self.0;
         let rings = [a.regular_ring()?, b.regular_ring()?, c.regular_ring()?];
-        Some(box_spline::assemble([a.at, b.at, c.at], &rings))
+        Some(box_spline::assemble([a.at, b.at, c.at], rings.each_ref(), [0; 3]))
     }
 
     /// The face as that of one irregular vertex inside the surface, if the other two corners are regular.
@@ -212,11 +224,21 @@ impl SectorPatch {
 
     /// The points after one refinement.
     pub(crate) fn refined(&self, rules: &Rules) -> RefinedSectors<'_> {
-        RefinedSectors {
-            sectors: self,
-            moved: [0, 1, 2].map(|corner| self.0[corner].moved(rules)),
-            edge_points: [0, 1, 2].map(|corner| self.0[corner].edge_points()),
+        let moved = [0, 1, 2].map(|corner| self.0[corner].moved(rules));
+        let (edge_points, rings) = (Default::default(), [[DVec3::ZERO; 6]; 3]);
+        let mut refined = RefinedSectors { sectors: self, moved, edge_points, rings, is_crease: [false; 3] };
+        let points = refined.edge_points.iter_mut();
+        points.zip(&self.0).for_each(|(points, sector)| sector.add_edge_points(points));
+        for edge in 0..3 {
+            let beyond = refined.beyond(edge);
+            refined.is_crease[edge] = beyond.is_none();
+            let [end, on_next, on_last, start] = refined.before_middle(edge);
+            refined.rings[edge] = match beyond {
+                Some([first, second]) => [end, on_next, on_last, start, first, second],
+                None => mirrored(refined.middle(edge), [end, on_next, on_last, start]),
+            };
         }
+        refined
     }
 }
 
@@ -225,6 +247,10 @@ pub(crate) struct RefinedSectors<'a> {
     sectors: &'a SectorPatch,
     moved: [DVec3; 3],
     edge_points: [Neighbours; 3],
+    /// The neighbours of the new points on the edges: from the edge's end over the face to its start, and on beyond the edge, where they
+    /// are mirrored if it is sharp or a boundary.
+    rings: [[DVec3; 6]; 3],
+    is_crease: [bool; 3],
 }
 
 impl RefinedSectors<'_> {
@@ -233,20 +259,17 @@ impl RefinedSectors<'_> {
         self.edge_points[edge][self.sectors.0[edge].slot]
     }
 
-    /// The neighbours of that point: from the edge's end over the face to its start, and on beyond the edge; `None` if that is
-    /// sharp or a boundary.
-    fn smooth_ring(&self, edge: usize) -> Option<[DVec3; 6]> {
+    /// Its neighbours beyond the edge; `None` if that is sharp or a boundary.
+    fn beyond(&self, edge: usize) -> Option<[DVec3; 2]> {
         let next = (edge + 1) % 3;
         let (from, to) = (&self.sectors.0[edge], &self.sectors.0[next]);
         if from.is_sharp(from.slot) || to.is_sharp(to.neighbour(1)) {
             return None;
         }
-        let [end, on_next, on_last, start] = self.before_middle(edge);
-        let beyond = [self.edge_points[edge][from.neighbour(-1)], self.edge_points[next][to.neighbour(2)]];
-        Some([end, on_next, on_last, start, beyond[0], beyond[1]])
+        Some([self.edge_points[edge][from.neighbour(-1)], self.edge_points[next][to.neighbour(2)]])
     }
 
-    /// Those of them over the face.
+    /// Those over the face, from the edge's end to its start.
     fn before_middle(&self, edge: usize) -> [DVec3; 4] {
         let (next, last) = ((edge + 1) % 3, (edge + 2) % 3);
         [self.moved[next], self.middle(next), self.middle(last), self.moved[edge]]
@@ -254,55 +277,54 @@ impl RefinedSectors<'_> {
 
     /// The sector of the new point on the edge from corner `edge`, with the face that starts at neighbour `slot`.
     fn middle_sector(&self, edge: usize, slot: usize) -> VertexSector {
-        let (neighbours, centre) = match self.smooth_ring(edge) {
-            Some(ring) => (Neighbours::from_slice(&ring), Centre::Smooth { sharp: None }),
-            None => (Neighbours::from_slice(&self.before_middle(edge)), Centre::Crease),
+        let (count, centre) = match self.is_crease[edge] {
+            true => (4, Centre::Crease),
+            false => (6, Centre::Smooth { sharp: None }),
         };
+        let neighbours = Neighbours::from_slice(&self.rings[edge][..count]);
         VertexSector { at: self.middle(edge), neighbours, centre, slot, far: Far::Kept }
     }
 
     /// The new point on the edge from corner `edge` and its six neighbours: new points are always regular.
     pub(crate) fn regular_middle(&self, edge: usize) -> (DVec3, [DVec3; 6]) {
-        let at = self.middle(edge);
-        let mirrored = || self.middle_sector(edge, 0).regular_ring().unwrap_or([at; 6]);
-        (at, self.smooth_ring(edge).unwrap_or_else(mirrored))
+        (self.middle(edge), self.rings[edge])
     }
 
-    /// A part in its simplest form.
+    /// A part in its simplest form, without its sectors where these can be done without.
     pub(crate) fn piece(&self, part: usize) -> Patch {
-        self.smooth(part).unwrap_or_else(|| Patch::of(self.part(part)))
-    }
-
-    /// A part that no sharp edge and nothing that is left out comes near, without its sectors.
-    fn smooth(&self, part: usize) -> Option<Patch> {
-        if part == 3 {
-            let edges = [1, 2, 0];
-            let mut rings = [self.smooth_ring(1)?, self.smooth_ring(2)?, self.smooth_ring(0)?];
-            rings.iter_mut().for_each(|ring| ring.rotate_left(1));
-            return Some(Patch::Regular(box_spline::assemble(edges.map(|edge| self.middle(edge)), &rings)));
+        if let Some(points) = self.points(part) {
+            return Patch::Regular(points);
         }
         let old = &self.sectors.0[part];
+        if old.far != Far::Kept {
+            return Patch::of(self.part(part));
+        }
         let own = &self.edge_points[part];
-        if old.centre != (Centre::Smooth { sharp: None }) || old.far != Far::Kept || own.len() < 3 {
-            return None;
+        if old.centre != (Centre::Smooth { sharp: None }) || own.len() < 3 {
+            return Patch::Sectors(Box::new(self.part(part)));
         }
-        let last = (part + 2) % 3;
-        let (mut on_next, on_last) = (self.smooth_ring(part)?, self.smooth_ring(last)?);
-        let at = self.moved[part];
-        if let &[a, b, c, d, e, f] = &own[..] {
-            let mut ring = [a, b, c, d, e, f];
-            ring.rotate_left(old.slot);
-            on_next.rotate_left(2);
-            let (mut corners, mut rings) =
-                ([at, self.middle(part), self.middle(last)], [ring, on_next, on_last]);
-            corners.rotate_right(part);
-            rings.rotate_right(part);
-            return Some(Patch::Regular(box_spline::assemble(corners, &rings)));
-        }
-        let mut ring = own.clone();
-        ring.rotate_left(old.slot);
+        let [on_next, on_last] = [&self.rings[part], &self.rings[(part + 2) % 3]];
+        let mut ring = Neighbours::from_slice(&own[old.slot..]);
+        ring.extend_from_slice(&own[..old.slot]);
         let outer = [on_next[5], on_next[0], on_next[1], on_last[3], on_last[4]];
-        Some(Patch::of_extraordinary(ExtraordinaryPatch { corner: part, at, ring, outer }))
+        Patch::of_extraordinary(ExtraordinaryPatch { corner: part, at: self.moved[part], ring, outer })
+    }
+
+    /// The points of a part, if it is regular.
+    pub(crate) fn points(&self, part: usize) -> Option<Points> {
+        let Self { rings, moved, .. } = self;
+        if part == 3 {
+            let corners = [1, 2, 0].map(|edge| self.middle(edge));
+            return Some(box_spline::assemble(corners, [&rings[1], &rings[2], &rings[0]], [1; 3]));
+        }
+        let (old, last) = (&self.sectors.0[part], (part + 2) % 3);
+        let own = &regular_ring(old.far, old.centre, moved[part], &self.edge_points[part], old.slot)?;
+        let mut corners = [moved[part], self.middle(part), self.middle(last)];
+        let (mut own_rings, mut turns) = ([own, &rings[part], &rings[last]], [0, 2, 0]);
+        corners.rotate_right(part);
+        own_rings.rotate_right(part);
+        turns.rotate_right(part);
+        Some(box_spline::assemble(corners, own_rings, turns))
     }
 
     /// Whether a part is regular: new points are, old ones stay what they were.
@@ -317,21 +339,26 @@ impl RefinedSectors<'_> {
             return SectorPatch([1, 2, 0].map(|edge| self.middle_sector(edge, 1)));
         }
         let old = &self.sectors.0[part];
-        let own = VertexSector {
-            at: self.moved[part],
-            neighbours: self.edge_points[part].clone(),
-            centre: old.centre,
-            slot: old.slot,
-            far: match old.far {
-                Far::Mean { valence, mean } => Far::Mean { valence, mean: 0.375 * old.at + 0.625 * mean },
-                far => far,
-            },
-        }
-        .without_unknown();
-        let (on_next, on_last) = (self.middle_sector(part, 2), self.middle_sector((part + 2) % 3, 0));
-        let mut sectors = [own, on_next, on_last];
-        sectors.rotate_right(part);
-        SectorPatch(sectors)
+        let own = || {
+            VertexSector {
+                at: self.moved[part],
+                neighbours: Neighbours::from_slice(&self.edge_points[part]),
+                centre: old.centre,
+                slot: old.slot,
+                far: match old.far {
+                    Far::Mean { valence, mean } => {
+                        Far::Mean { valence, mean: 0.375 * old.at + 0.625 * mean }
+                    }
+                    far => far,
+                },
+            }
+            .without_unknown()
+        };
+        SectorPatch(from_fn(|corner| match (corner + 3 - part) % 3 {
+            0 => own(),
+            1 => self.middle_sector(part, 2),
+            _ => self.middle_sector((part + 2) % 3, 0),
+        }))
     }
 }
 
@@ -356,7 +383,7 @@ mod tests {
             Centre::Crease,
             Centre::Corner { open: true, sharp: None },
         ];
-        let mut smooth = 0;
+        let mut regular = 0;
         for case in 0..2000 {
             let kind =
                 |corner: usize| if case % 3 == 0 { case / 3 / 5usize.pow(corner as u32) % 5 } else { 0 };
@@ -372,9 +399,15 @@ mod tests {
             for part in 0..4 {
                 let expected = Patch::of(refined.part(part));
                 assert_eq!(format!("{:?}", refined.piece(part)), format!("{expected:?}"), "{case}, {part}");
-                smooth += usize::from(refined.smooth(part).is_some());
+                let points = refined.points(part).map(|points| format!("{points:?}"));
+                let expected = match expected {
+                    Patch::Regular(points) => Some(format!("{points:?}")),
+                    _ => None,
+                };
+                assert_eq!(points, expected, "{case}, {part}");
+                regular += usize::from(points.is_some());
             }
         }
-        assert!(smooth > 4000, "{smooth}");
+        assert!(regular > 2000, "{regular}");
     }
 }

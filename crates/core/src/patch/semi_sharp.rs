@@ -13,7 +13,7 @@ use lasting_twin::Gaps;
 use regular::{RefinedRegular, RegularSemiSharp};
 
 use super::sector::{Centre, Far, SectorPatch, VertexSector};
-use super::{LimitPoint, Rules};
+use super::{Limit, LimitPoint, Rules};
 use super::{Patch, box_spline};
 use crate::index::HalfEdgeId;
 use crate::mesh::{Mesh, Sharpness};

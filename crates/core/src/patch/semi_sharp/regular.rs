@@ -9,7 +9,7 @@ use super::{SemiSharpPatch, SemiSharpVertex, rings_twin};
 use crate::patch::box_spline::{
     CORNERS, EDGE_POINTS, MIDDLES, PARTS, Points, REFINED_CORNERS, RINGS, Refined, assemble,
 };
-use crate::patch::{LimitPoint, Patch, Rules};
+use crate::patch::{Limit, LimitPoint, Patch, Rules};
 use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule, faded, present_weight, rule};
 use crate::vector::DVec3;
 
@@ -106,7 +106,7 @@ impl RegularSemiSharp {
             }
         }
         let ring = |corner: &SemiSharpVertex| from_fn(|slot| corner.neighbours[(corner.slot + slot) % 6]);
-        let points = assemble(corners.each_ref().map(|corner| corner.at), &corners.each_ref().map(ring));
+        let points = assemble(corners.each_ref().map(|corner| corner.at), corners.each_ref().map(ring).each_ref(), [0; 3]);
         Some(Self { points, edges })
     }
 
@@ -142,7 +142,7 @@ impl RegularSemiSharp {
             kink = kink.max(((v - a) + (w - b)).length_squared());
         }
         gaps.add_kink(kink.sqrt());
-        Some((Patch::Regular(assemble(CORNERS.map(|at| self.points[at]), &rings)), gaps.apart()))
+        Some((Patch::Regular(assemble(CORNERS.map(|at| self.points[at]), rings.each_ref(), [0; 3])), gaps.apart()))
     }
 
     /// The simplest form of the piece.
