@@ -7,12 +7,24 @@ pub(crate) use glam::DVec3;
 
 /// What can be blended: points, or some of their coordinates.
 pub(crate) trait Blend:
-    Copy + Default + Add<Output = Self> + Sub<Output = Self> + SubAssign + Mul<f64, Output = Self> + Div<f64, Output = Self>
+    Copy
+    + Default
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + SubAssign
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
 {
 }
 
 impl<T> Blend for T where
-    T: Copy + Default + Add<Output = T> + Sub<Output = T> + SubAssign + Mul<f64, Output = T> + Div<f64, Output = T>
+    T: Copy
+        + Default
+        + Add<Output = T>
+        + Sub<Output = T>
+        + SubAssign
+        + Mul<f64, Output = T>
+        + Div<f64, Output = T>
 {
 }
 

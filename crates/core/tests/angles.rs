@@ -128,7 +128,7 @@ fn angles_hold_in_every_frame() {
             let mut frame = Frame::default();
             let open = frames.iter().map(|positions| {
                 found.replay.frame(positions, &mut frame).unwrap();
-                let shown = found.refined.moved_to(&frame).unwrap();
+                let shown = found.refined.clone().moved_to(&frame).unwrap();
                 angles(&shown).iter().filter(|(_, found)| *found > angle * (1.0 + 1e-6)).count()
             });
             assert_eq!(found.refined.open_cones, open.max().unwrap(), "{name}");

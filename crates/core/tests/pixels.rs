@@ -305,7 +305,7 @@ fn no_frame_shows_more_than_is_told() {
             let (mut frame, mut most) = (Frame::default(), 0.0f64);
             for (positions, model) in frames.iter().zip(&models) {
                 found.replay.frame(positions, &mut frame).unwrap();
-                let shown = found.refined.moved_to(&frame).unwrap();
+                let shown = found.refined.clone().moved_to(&frame).unwrap();
                 for camera in &cameras {
                     most = most.max(model.greatest(&shown, &Picture::of(camera), &mut random));
                 }

@@ -14,8 +14,8 @@ use super::quartic_cell::{
 };
 use crate::patch::Quartic;
 use crate::vector::DVec3;
-use few_parts::{FEW, FEW_DIVISIONS, FewParts};
 use crate::vector::Extremes;
+use few_parts::{FEW, FEW_DIVISIONS, FewParts};
 
 /// Divisions at most.
 pub(crate) const MOST_DIVISIONS: u32 = 6;

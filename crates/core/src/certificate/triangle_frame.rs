@@ -2,8 +2,8 @@
 
 use super::exceeds;
 use crate::geometry::closest_to_origin;
-use crate::vector::{DVec3, unit_or_zero};
 use crate::vector::Extremes;
+use crate::vector::{DVec3, unit_or_zero};
 
 /// Triangles with a smaller sine of the angle between their first edges have no plane to speak of: rounding turns it by
 /// up to 1e-16 over this.

@@ -212,7 +212,9 @@ mod tests {
         let face = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let middles = [[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
         let limits = [face[0], face[1], face[2], middles[0], middles[1], middles[2]];
-        for (u, v) in (0..=16).flat_map(|i| (0..=16 - i).map(move |j| (f64::from(i) / 16.0, f64::from(j) / 16.0))) {
+        for (u, v) in
+            (0..=16).flat_map(|i| (0..=16 - i).map(move |j| (f64::from(i) / 16.0, f64::from(j) / 16.0)))
+        {
             let place = Place::of(7, [1.0 - u - v, u, v]);
             let part = place.part();
             let own = place.in_part(part);
@@ -220,7 +222,8 @@ mod tests {
             assert_eq!(CORNERS[part].map(|corner| limits[corner]), corners);
             assert!(own.u >= 0.0 && own.v >= 0.0 && own.first_weight() >= 0.0, "{place:?}: {own:?}");
             let weights = [own.first_weight(), own.u, own.v];
-            let there = [0, 1, 2].map(|i| (0..3).map(|corner| weights[corner] * corners[corner][i]).sum::<f64>());
+            let there =
+                [0, 1, 2].map(|i| (0..3).map(|corner| weights[corner] * corners[corner][i]).sum::<f64>());
             assert_eq!((there, own.at), ([1.0 - u - v, u, v], 7), "{place:?}");
         }
     }

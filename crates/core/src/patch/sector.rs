@@ -153,7 +153,13 @@ impl VertexSector {
 }
 
 /// The six neighbours, from the one in `slot` on, of a regular sector.
-fn regular_ring(far: Far, centre: Centre, at: DVec3, neighbours: &[DVec3], slot: usize) -> Option<[DVec3; 6]> {
+fn regular_ring(
+    far: Far,
+    centre: Centre,
+    at: DVec3,
+    neighbours: &[DVec3],
+    slot: usize,
+) -> Option<[DVec3; 6]> {
     if far != Far::Kept {
         return None;
     }
@@ -346,9 +352,7 @@ impl RefinedSectors<'_> {
                 centre: old.centre,
                 slot: old.slot,
                 far: match old.far {
-                    Far::Mean { valence, mean } => {
-                        Far::Mean { valence, mean: 0.375 * old.at + 0.625 * mean }
-                    }
+                    Far::Mean { valence, mean } => Far::Mean { valence, mean: 0.375 * old.at + 0.625 * mean },
                     far => far,
                 },
             }

@@ -81,7 +81,7 @@ pub enum RefineError {
     Simplify(SimplifyError),
     /// A frame cannot be replayed.
     #[error(transparent)]
-    Replay(#[from] ReplayError),
+    Replay(ReplayError),
     /// The observer asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -92,6 +92,15 @@ impl From<SimplifyError> for RefineError {
         match error {
             SimplifyError::Cancelled(_) => Self::Cancelled(Cancelled),
             error => Self::Simplify(error),
+        }
+    }
+}
+
+impl From<ReplayError> for RefineError {
+    fn from(error: ReplayError) -> Self {
+        match error {
+            ReplayError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Replay(error),
         }
     }
 }

@@ -68,7 +68,8 @@ impl Job {
         self.arguments.channels.check_inherited()?;
         let diagonal = several::diagonal(bounds);
         several::set_lengths(&mut self.arguments, diagonal)?;
-        let mut done = Progressed { left_out: self.arguments.channels.dropped(), ..Progressed::default() };
+        let mut done = Progressed::default();
+        done.left_out = self.arguments.channels.dropped();
         for object in 0..package.object_count() {
             self.object(object, &mut package, diagonal, &mut done, progress)?;
         }

@@ -106,7 +106,11 @@ impl RegularSemiSharp {
             }
         }
         let ring = |corner: &SemiSharpVertex| from_fn(|slot| corner.neighbours[(corner.slot + slot) % 6]);
-        let points = assemble(corners.each_ref().map(|corner| corner.at), corners.each_ref().map(ring).each_ref(), [0; 3]);
+        let points = assemble(
+            corners.each_ref().map(|corner| corner.at),
+            corners.each_ref().map(ring).each_ref(),
+            [0; 3],
+        );
         Some(Self { points, edges })
     }
 
@@ -142,7 +146,10 @@ impl RegularSemiSharp {
             kink = kink.max(((v - a) + (w - b)).length_squared());
         }
         gaps.add_kink(kink.sqrt());
-        Some((Patch::Regular(assemble(CORNERS.map(|at| self.points[at]), rings.each_ref(), [0; 3])), gaps.apart()))
+        Some((
+            Patch::Regular(assemble(CORNERS.map(|at| self.points[at]), rings.each_ref(), [0; 3])),
+            gaps.apart(),
+        ))
     }
 
     /// The simplest form of the piece.

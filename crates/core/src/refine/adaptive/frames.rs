@@ -47,13 +47,12 @@ pub(in crate::refine) fn frames(
     let settings = (options, &demands);
     let plan = with_engine(&meshes[0], scheme, settings, observer, |engine| first(engine, options))?;
     let mut plan = united(&meshes, scheme, (settings, plan), observer)?;
-    let (refined, replay) = with_engine(&meshes[0], scheme, settings, observer, |engine| {
+    let refined = with_engine(&meshes[0], scheme, settings, observer, |engine| {
         let emission = engine.emit_all(&mut plan)?;
         engine.check(&emission)?;
-        let refined = engine.assemble(emission, plan.levels(engine.watch)?)?;
-        let replay = Replay::new(control, scheme, &refined)?;
-        Ok((refined, replay))
+        engine.assemble(emission, plan.levels(engine.watch)?)
     })?;
+    let replay = Replay::new_observed(control, scheme, &refined, observer)?;
     let (mut frame, mut all) = (Frame::default(), Vec::with_capacity(frames.len()));
     for mesh in &meshes {
         replay.frame(mesh.positions(), &mut frame)?;
@@ -152,7 +151,7 @@ fn proven(
     let beyond = options.tolerance.map_or(0.0, |tolerance| error.upper / tolerance);
     let criteria = engine.control.criteria.as_ref();
     let open_cones = match criteria.filter(|_| options.angle.is_some()) {
-        Some(criteria) => open_cones(&refined.moved_to(frame)?, criteria, engine.watch)?,
+        Some(criteria) => open_cones(&refined.clone().moved_to(frame)?, criteria, engine.watch)?,
         None => 0,
     };
     let worst = if criteria.is_some() { value.max(beyond) } else { beyond };

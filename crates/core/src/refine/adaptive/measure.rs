@@ -14,7 +14,7 @@ use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
 use super::judge::{DIVISIONS, Goal, HALVINGS};
 use super::quadtree::Place;
-use super::settle::{beside, neighbours, sharp_edges};
+use super::settle::{Neighbours, beside, neighbours, sharp_edges};
 use crate::certificate::{Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds};
 use crate::criterion::{Apart, Backs, Criteria, Region, Viewpoint};
 use crate::patch::{LimitPoint, Rules};
@@ -325,7 +325,7 @@ struct Among {
     /// How far within the plane.
     aside: f64,
     /// The triangles beside it, where anybody asks.
-    neighbours: [Option<[DVec3; 3]>; 3],
+    neighbours: Neighbours,
     /// Who sees nothing but its back and theirs.
     backs: Backs,
 }

@@ -187,12 +187,15 @@ pub(super) fn beside(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -
     around(corners(emission, triangle), &opposite)
 }
 
-/// [`beside`], and by edge the corners of the triangle beyond, the one opposite last.
+/// By edge the corners of the triangle beyond, the one opposite last.
+pub(super) type Neighbours = [Option<[DVec3; 3]>; 3];
+
+/// [`beside`], and the triangles beyond the edges.
 pub(super) fn neighbours(
     emission: &Emission,
     sharp: &HashSet<u32>,
     triangle: u32,
-) -> ((f64, [f64; 3]), [Option<[DVec3; 3]>; 3]) {
+) -> ((f64, [f64; 3]), Neighbours) {
     let neighbours = [0, 1, 2].map(|edge| {
         let twin = beyond(emission, sharp, 3 * triangle + edge)?;
         let mut corners = corners(emission, twin / 3);
