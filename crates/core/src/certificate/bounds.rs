@@ -68,6 +68,9 @@ use crate::vector::DVec3;
 /// told apart even if they may not be split.
 const HOPELESS: f64 = 1.5;
 
+/// Halvings of a net for the bound of a curve: each takes little of the net along.
+const RIM_HALVINGS: usize = 6;
+
 /// The whole piece stands for the triangle.
 const ALL: Borders = [0, 1, 2];
 
@@ -80,6 +83,8 @@ pub(crate) struct Effort {
     pub(crate) halvings: usize,
     /// Which edges have no neighbour.
     pub(crate) open: [bool; 3],
+    /// Whether nothing counts but the curves over these.
+    pub(crate) rim_alone: bool,
     /// Expected chord of the angles between the triangle and its neighbours.
     pub(crate) chord: f64,
     /// Expected greatest slopes, by edge.
@@ -89,6 +94,23 @@ pub(crate) struct Effort {
     /// Then the least chord of angles that can count, with slopes no greater than those expected: what is beyond the target with
     /// it is beyond it whatever is still to come.
     pub(crate) least_chord: Option<f64>,
+}
+
+impl Effort {
+    /// For triangles of flat regions, of whose edges the open ones count alone.
+    pub(crate) fn along_rim(target: f64, open: [bool; 3]) -> Self {
+        let (chord, slopes) = (0.0, [0.0; 3]);
+        Self {
+            target,
+            halvings: RIM_HALVINGS,
+            open,
+            rim_alone: true,
+            chord,
+            slopes,
+            gives_up: false,
+            least_chord: None,
+        }
+    }
 }
 
 /// A patch whose parts several triangles stand for, and what is derived from it once for all of them.
@@ -152,7 +174,7 @@ impl<'a> Pieces<'a> {
         if !frame.is_finite() {
             return Deviation::alone(f64::INFINITY);
         }
-        let bound = DeviationBound { frame, open: effort.open };
+        let bound = DeviationBound { frame, open: effort.open, rim_alone: effort.rim_alone };
         let mut search = Search { bound, rules, effort, found: Deviation::default() };
         match (self.patch, part) {
             (Patch::Mesh(local), _) => {
@@ -207,7 +229,7 @@ impl NetPart {
 
     /// The deviation that the points of the net tell, without halving it, and a height that the piece attains.
     pub(crate) fn at_a_glance(&self, frame: &TriangleFrame, open: [bool; 3]) -> (Deviation, f64) {
-        DeviationBound { frame, open }.net(&self.net, self.borders)
+        DeviationBound { frame, open, rim_alone: false }.net(&self.net, self.borders)
     }
 
     /// The deviation where the net is halved as often as it helps.
@@ -215,7 +237,7 @@ impl NetPart {
         if !frame.is_finite() {
             return Deviation::alone(f64::INFINITY);
         }
-        let bound = DeviationBound { frame, open: effort.open };
+        let bound = DeviationBound { frame, open: effort.open, rim_alone: effort.rim_alone };
         let mut search = Search { bound, rules, effort, found: Deviation::default() };
         search.net(&self.net, self.borders, effort.halvings);
         search.found
@@ -254,6 +276,9 @@ impl Search<'_> {
         borders: Borders,
         depth: usize,
     ) {
+        if !self.counts(borders) {
+            return;
+        }
         if let Some(points) = refined.points(child) {
             self.net_part(&BezierTriangle::of(&points), part, borders);
         } else if let Some(piece) = refined.extraordinary(child) {
@@ -298,8 +323,14 @@ impl Search<'_> {
         }
     }
 
+    /// Whether a piece with these borders adds anything.
+    fn counts(&self, borders: Borders) -> bool {
+        let is_rim = |border: u8| border != INSIDE && self.effort.open[border as usize];
+        !self.effort.rim_alone || borders.into_iter().any(is_rim)
+    }
+
     fn net(&mut self, net: &BezierTriangle, borders: Borders, halvings: usize) {
-        if self.found.own == f64::INFINITY {
+        if self.found.own == f64::INFINITY || !self.counts(borders) {
             return;
         }
         let (deviation, attained) = self.bound.net(net, borders);

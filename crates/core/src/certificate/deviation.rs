@@ -127,12 +127,14 @@ impl Deviation {
 pub(crate) struct DeviationBound<'a> {
     pub(crate) frame: &'a TriangleFrame,
     pub(crate) open: [bool; 3],
+    /// Whether nothing counts but the curves over those edges.
+    pub(crate) rim_alone: bool,
 }
 
 impl DeviationBound<'_> {
     /// The deviation of a net's points, and a height that the piece itself attains.
     pub(crate) fn net(&self, net: &BezierTriangle, borders: Borders) -> (Deviation, f64) {
-        if self.frame.is_flat() || self.open != [false; 3] {
+        if self.frame.is_flat() || self.rim_alone || self.open != [false; 3] {
             return (self.each_of_net(net, borders), 0.0);
         }
         let frame = self.frame;
@@ -174,6 +176,7 @@ impl DeviationBound<'_> {
     ) -> Deviation {
         let frame = self.frame;
         if !frame.is_flat()
+            && !self.rim_alone
             && self.open == [false; 3]
             && let Some(greatest) = greatest_of(frame, inner.clone(), curves)
             && let Some(deviation) = greatest.deviation(frame)
@@ -211,6 +214,9 @@ impl DeviationBound<'_> {
 
     /// A hull point of the surface.
     pub(crate) fn inner_point(&self, point: DVec3, deviation: &mut Deviation) {
+        if self.rim_alone {
+            return;
+        }
         if self.frame.is_flat() {
             self.found_alone(self.frame.squared(point).sqrt(), deviation);
             return;
@@ -243,6 +249,12 @@ impl DeviationBound<'_> {
     /// A hull point of the curve over an edge of the triangle.
     pub(crate) fn curve_point(&self, edge: usize, point: DVec3, deviation: &mut Deviation) {
         let own = self.frame.squared_to_edge(edge, point).sqrt();
+        if self.rim_alone {
+            if self.open[edge] {
+                *deviation = deviation.max(Deviation::alone(own));
+            }
+            return;
+        }
         if self.frame.is_flat() {
             self.found_alone(own, deviation);
             return;
@@ -403,7 +415,7 @@ mod tests {
                 *at = point(s + 0.2 * t, 0.1 * s + 0.9 * t);
             }
             let borders = [0, 2, 4].map(|shift| [0, 1, 2, INSIDE][(case as usize >> shift) % 4]);
-            let bound = DeviationBound { frame: &frame, open: [false; 3] };
+            let bound = DeviationBound { frame: &frame, open: [false; 3], rim_alone: false };
             let (found, each) = (bound.net(&net, borders).0, bound.each_of_net(&net, borders));
             let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * (1.0 + b.abs()) || a == b;
             if each.slopes.iter().all(|slope| slope.is_finite()) {

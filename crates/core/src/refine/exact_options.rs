@@ -51,6 +51,8 @@ pub struct ExactOptions {
     /// region's rim encloses is taken for the surface: what people mean, and what [`Exact::unfolded`](super::Exact::unfolded)
     /// counts. Else it is the scheme's. Default: no.
     pub unfold: bool,
+    /// Whether flat regions that are unfolded are judged by their rims alone; not where these could not be triangulated.
+    pub(crate) by_rims: bool,
     /// What is to be met beside the shape ([`AttributeGoal`]): with goals on quality, without a number of triangles, [`Self::balance`] and
     /// [`Self::optimize`]; flat regions follow the hierarchy then. Default: none.
     pub attributes: Vec<AttributeGoal>,
@@ -90,6 +92,7 @@ impl Default for ExactOptions {
             origins: true,
             flat_regions: true,
             unfold: false,
+            by_rims: true,
             attributes: Vec::new(),
             max_levels: USUAL_LEVELS,
             max_triangles: Some(USUAL_TRIANGLES),

@@ -171,8 +171,12 @@ impl Search<'_> {
             if exceeds(greatest, limit) {
                 return;
             }
-            greatest = greater(greatest, frame.squared(point));
-            for border in borders.into_iter().filter(|&border| border != INSIDE) {
+            if !self.effort.rim_alone {
+                greatest = greater(greatest, frame.squared(point));
+            }
+            let open = self.effort.open;
+            let counts = |&border: &u8| border != INSIDE && (!self.effort.rim_alone || open[border as usize]);
+            for border in borders.into_iter().filter(counts) {
                 greatest = greater(greatest, frame.squared_to_edge(border as usize, point));
             }
         });

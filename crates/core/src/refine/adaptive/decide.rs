@@ -346,6 +346,9 @@ impl<'a> Decider<'a> {
             return LEAF;
         }
         let judge = self.judge;
+        if judge.is_inside(open) {
+            return self.leaf(place, &Verdict::NONE);
+        }
         let may_stay = !self.control.demands.divides(place);
         if place.level >= self.max_levels
             || may_stay && judge.may_pass(patch, &corners, &middles, place.level)
@@ -393,6 +396,9 @@ impl<'a> Decider<'a> {
     ) -> u32 {
         if self.is_too_much() {
             return LEAF;
+        }
+        if self.judge.is_inside(open) {
+            return self.leaf(place, &Verdict::NONE);
         }
         let mut has_rows = has_rows;
         let mut surely_fails = self.control.demands.divides(place);

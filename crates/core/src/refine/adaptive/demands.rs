@@ -235,6 +235,7 @@ fn bound(goal: &AttributeGoal, sheets: &[(Sheet, &Rules<'_>)], part: SubTriangle
                     target: goal.tolerance,
                     halvings: HALVINGS,
                     open: [false; 3],
+                    rim_alone: false,
                     chord: ALONE,
                     slopes: [0.0; 3],
                     gives_up: false,

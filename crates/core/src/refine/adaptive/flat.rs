@@ -27,6 +27,7 @@ use crate::mesh::NONE;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_options::ExactOptions;
 use crate::vector::{DVec3, vector};
+use core::sync::atomic::{AtomicBool, Ordering};
 
 /// How far control points may be off a plane, as a part of the greatest coordinate: files in single precision round to half of this.
 /// How far they are is measured, and counted with every distance.
@@ -72,6 +73,10 @@ pub(super) struct FlatRegions {
     off_planes: f64,
     /// Whether regions are what their rims enclose, also where the surface folds.
     unfolds: bool,
+    /// By region, whether its triangles are judged by the rim alone.
+    by_rim: Vec<bool>,
+    /// Whether the rim of such a region enclosed nothing that could be triangulated.
+    has_gaps: AtomicBool,
     /// So many leaves of a flat face count as one while faces are divided.
     weight: usize,
 }
@@ -137,7 +142,49 @@ impl FlatRegions {
             off_planes = off_planes.max(height + HEIGHT_ROUNDING * size);
         }
         let weight = if options.max_memory.is_some() { 1 } else { WEIGHT };
-        Ok(Self { of_face, regions, off_planes, unfolds: options.unfold, weight })
+        let unfolds = options.unfold;
+        let mut found = Self {
+            of_face,
+            regions,
+            off_planes,
+            unfolds,
+            by_rim: Vec::new(),
+            has_gaps: AtomicBool::new(false),
+            weight,
+        };
+        found.by_rim = found.by_rim((control, edges), options, watch)?;
+        Ok(found)
+    }
+
+    /// Which regions are judged by their rims alone: those with nothing but sharp edges and boundaries around them, where what rims
+    /// enclose is the surface, and distances alone are asked for.
+    fn by_rim(
+        &self,
+        (control, edges): (&Control<'_>, &Edges<'_>),
+        options: &ExactOptions,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Vec<bool>, Cancelled> {
+        let is_asked = self.unfolds && options.by_rims && options.angle.is_none() && options.pixels.is_none();
+        if !is_asked || !control.rules.is_certified() {
+            return Ok(vec![false; self.regions.len()]);
+        }
+        let mut by_rim = Vec::with_capacity(self.regions.len());
+        watch.each(&self.regions, |(faces, _)| {
+            let is_smooth =
+                |h: u32| self.is_rim((control, edges), h) && control.lasting.edge(HalfEdgeId(h)) <= 0.0;
+            by_rim.push(!faces.iter().any(|&face| (3 * face..3 * face + 3).any(is_smooth)));
+        })?;
+        Ok(by_rim)
+    }
+
+    /// Whether a face is part of a region that is judged by its rim alone.
+    pub(super) fn is_its_rim(&self, face: u32) -> bool {
+        self.region(face).is_some_and(|region| self.by_rim[region as usize])
+    }
+
+    /// Whether some of these could not be triangulated from their rims, so that nothing is known of what stands for them.
+    pub(super) fn has_gaps(&self) -> bool {
+        self.has_gaps.load(Ordering::Relaxed)
     }
 
     /// How far the surface, and what stands for it, is off the planes at most.

@@ -127,8 +127,8 @@ impl Goal {
             Self::Even(..) => (0.0, true),
         };
         let (rules, criteria) = (control.rules, control.criteria.as_ref());
-        let back_faces = &control.back_faces;
-        Judge { rules, criteria, back_faces, face, max_levels, limit: distance, is_lenient }
+        let (back_faces, rim_alone) = (&control.back_faces, control.flat.is_its_rim(face));
+        Judge { rules, criteria, back_faces, face, rim_alone, max_levels, limit: distance, is_lenient }
     }
 
     /// What bounds may come to once the neighbours are known.
@@ -151,6 +151,8 @@ pub(super) struct Judge<'a> {
     back_faces: &'a BackFaces,
     /// The control face.
     face: u32,
+    /// Whether it is flat and nothing counts but the rim of its region ([`super::flat`]).
+    rim_alone: bool,
     /// Levels from which on triangles are not divided, whatever they come to.
     max_levels: u32,
     /// Greatest value: a distance where nothing else counts.
@@ -259,8 +261,14 @@ impl Judge<'_> {
         open: [bool; 3],
         allowance: &Allowance,
     ) -> Verdict {
+        if self.is_inside(open) {
+            return Verdict::NONE;
+        }
         let seen = Seen::of(corners, level);
         let net = || ground.net(spot, part);
+        if self.rim_alone {
+            return self.along_rim(net().deviation(&seen.frame, self.rules, self.rim_effort(open)));
+        }
         if let Some(criteria) = self.criteria {
             let behind = self.behind(Leaf::Regular(ground, spot));
             let test = Trial::of(criteria, self.limit, &seen, corners, &behind);
@@ -325,7 +333,7 @@ impl Judge<'_> {
         open: [bool; 3],
         allowance: &Allowance,
     ) -> Option<Verdict> {
-        if self.is_lenient || self.criteria.is_some() {
+        if self.is_lenient || self.rim_alone || self.criteria.is_some() {
             return None;
         }
         let seen = Seen::of(corners, level);
@@ -346,13 +354,37 @@ impl Judge<'_> {
         open: [bool; 3],
         allowance: &Allowance,
     ) -> Verdict {
+        if self.is_inside(open) {
+            return Verdict::NONE;
+        }
         let seen = Seen::of(corners, level);
+        if self.rim_alone {
+            let effort = self.rim_effort(open);
+            return self.along_rim(pieces.deviation(part, &seen.frame, self.rules, effort));
+        }
         if let Some(criteria) = self.criteria {
             let behind = self.behind(Leaf::General(pieces.patch(), self.rules));
             let test = Trial::of(criteria, self.limit, &seen, corners, &behind);
             return test.general(pieces, part, open, self.rules);
         }
         self.by_pieces(&seen, pieces, part, open, allowance)
+    }
+
+    /// Whether a triangle with these open edges passes for being inside of a rim that alone counts.
+    pub(super) fn is_inside(&self, open: [bool; 3]) -> bool {
+        self.rim_alone && open == [false; 3]
+    }
+
+    /// What becomes of a triangle of whose edges those on the rim count alone.
+    fn along_rim(&self, deviation: Deviation) -> Verdict {
+        let bound = deviation.own;
+        let stays = self.is_lenient || bound <= self.limit;
+        let outcome = if stays { Outcome::Passes } else { Outcome::Fails };
+        Verdict { outcome, extent: Extent { bound, ..Extent::NONE } }
+    }
+
+    fn rim_effort(&self, open: [bool; 3]) -> Effort {
+        Effort::along_rim(self.limit, open)
     }
 
     fn behind<'p>(&'p self, leaf: Leaf<'p>) -> Behind<'p> {
@@ -376,7 +408,8 @@ impl Judge<'_> {
         let gives_up = !self.is_kept(seen);
         let halvings = if self.is_lenient { LENIENT_HALVINGS } else { HALVINGS };
         let least_chord = gives_up.then(|| chord.min(seen.allowed(allowance).0));
-        Effort { target: self.limit, halvings, open, chord, slopes, gives_up, least_chord }
+        let target = self.limit;
+        Effort { target, halvings, open, rim_alone: false, chord, slopes, gives_up, least_chord }
     }
 
     fn by_pieces<'p>(

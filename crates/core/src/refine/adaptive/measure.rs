@@ -63,6 +63,7 @@ pub(super) fn measure(
                 emission: sources.emission,
                 criteria: sources.control.criteria.as_ref(),
                 back_faces: &sources.control.back_faces,
+                rim_alone: sources.control.flat.is_its_rim(face),
                 sharp: &sharp,
                 changes: changes.filter(|changes| !changes.is_touched(face)),
                 limit: goal.allowed(face),
@@ -83,6 +84,8 @@ struct Measuring<'a> {
     emission: &'a Emission,
     criteria: Option<&'a Criteria>,
     back_faces: &'a BackFaces,
+    /// Whether nothing counts but the rim of a flat region.
+    rim_alone: bool,
     sharp: &'a HashSet<u32>,
     /// Others need not be looked at.
     changes: Option<&'a Changes>,
@@ -96,6 +99,9 @@ impl Beholder for Measuring<'_> {
     fn triangle<'p>(&mut self, emitted: &Emitted, mut over: Over<'_, 'p>, rules: &'p Rules<'p>) {
         if self.changes.is_some_and(|changes| !changes.concern(self.emission, emitted.number)) {
             return;
+        }
+        if self.rim_alone {
+            return self.along_rim(emitted, over, rules);
         }
         let mut among = Among::of(self.emission, self.sharp, emitted, self.criteria);
         if let Some(criteria) = self.criteria {
@@ -200,6 +206,29 @@ pub(super) fn fail(failing: &mut Vec<(Place, f64)>, place: Place, value: f64) {
 }
 
 impl Measuring<'_> {
+    /// A triangle of a flat region, of whose edges those on the rim count alone.
+    fn along_rim<'p>(&mut self, emitted: &Emitted, over: Over<'_, 'p>, rules: &'p Rules<'p>) {
+        if emitted.open == [false; 3] {
+            return;
+        }
+        let at = |vertex: u32| vector(self.emission.positions[vertex as usize]);
+        let frame = TriangleFrame::new(emitted.vertices.map(at));
+        let effort = Effort::along_rim(self.limit.min(self.length), emitted.open);
+        let deviation = match over {
+            Over::Regular(ground, _, spot) => ground.net(spot, emitted.part).deviation(&frame, rules, effort),
+            Over::General(pieces, _) => pieces.deviation(emitted.part, &frame, rules, effort),
+        };
+        let bound = deviation.own;
+        if exceeds(bound, self.found.highest.0) {
+            self.found.highest = (bound, emitted.place);
+        }
+        let value = Value { bound, value: bound, pixels: 0.0 };
+        match exceeds(bound, self.limit) {
+            true => self.found.fail(emitted.place, value),
+            false => self.found.add(emitted.place, &value),
+        }
+    }
+
     /// Whether a triangle with a point of the surface so high over it fails for sure: then it needs no bound, as long as it is
     /// divided. Nobody who asks for tight bounds or for more than distances is told that.
     fn fails_for_sure(&self, height: f64) -> bool {
@@ -254,6 +283,7 @@ impl Measuring<'_> {
             open: emitted.open,
             chord: among.chord,
             slopes: among.slopes,
+            rim_alone: false,
             gives_up: false,
             least_chord: None,
         }

@@ -172,19 +172,24 @@ fn once(
 ) -> Result<Exact, RefineError> {
     let (most, cap) = options.budget();
     let most = most.max(mesh.face_count());
-    let found = with_engine(mesh, scheme, (options, demands), observer, |engine| {
+    let (found, has_gaps) = with_engine(mesh, scheme, (options, demands), observer, |engine| {
         let floor = engine.floor(options.tolerance);
         if !options.balance {
-            return engine.finest(floor, (most, cap), options);
+            let found = engine.finest(floor, (most, cap), options)?;
+            return Ok((found, engine.control.flat.has_gaps()));
         }
         if floor > 0.0
             && let Some(outcome) = engine.balanced(floor, most)?
         {
-            return outcome.finish(engine, ExactStop::Met, options);
+            return Ok((outcome.finish(engine, ExactStop::Met, options)?, false));
         }
         let plain = Engine { is_balanced: false, ..engine.clone() }.finest(floor, (most, cap), options)?;
-        engine.least_balanced(plain, floor, (most, cap), options)
+        Ok((engine.least_balanced(plain, floor, (most, cap), options)?, false))
     })?;
+    if has_gaps {
+        let options = ExactOptions { by_rims: false, ..options.clone() };
+        return once(mesh, scheme, (&options, demands), observer);
+    }
     // Flat regions whose rims cross, or that share edges, keep more triangles than plans counted.
     if options.flat_regions && found.mesh.face_count() > most {
         return once(mesh, scheme, (&options.clone().flat_regions(false), demands), observer);

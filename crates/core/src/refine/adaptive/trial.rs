@@ -102,7 +102,16 @@ impl<'a> Trial<'a> {
     fn effort(&self, open: [bool; 3]) -> Effort {
         let (chord, slopes) = self.seen.expected();
         let target = self.limit * self.criteria.allowed_length(&self.region, &self.backs);
-        Effort { target, halvings: HALVINGS, open, chord, slopes, gives_up: false, least_chord: None }
+        Effort {
+            target,
+            halvings: HALVINGS,
+            open,
+            chord,
+            slopes,
+            rim_alone: false,
+            gives_up: false,
+            least_chord: None,
+        }
     }
 
     pub(super) fn general<'p>(

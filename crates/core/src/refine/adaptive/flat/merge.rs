@@ -1,5 +1,6 @@
 //! Puts the triangulations of flat regions in the place of what was emitted there.
 
+use core::sync::atomic::Ordering;
 use std::collections::{HashMap, HashSet};
 
 use super::{FlatRegions, Plane, planar};
@@ -33,12 +34,31 @@ pub(in super::super) struct Assembled {
     pub(in super::super) junctions: Junctions,
 }
 
+/// What is done with a region.
+enum Fate {
+    /// Its triangles stay.
+    Stays,
+    /// Others come in their place.
+    Covered(Covering),
+    /// There are none that could.
+    Fails,
+}
+
 /// What a region's rim encloses.
 struct Covering {
     /// Triangles with their control faces, by control face.
     triangles: Vec<([u32; 3], u32)>,
     /// Whether some of the triangles in whose place these come are turned over.
     was_folded: bool,
+}
+
+impl Fate {
+    fn covering(self) -> Option<Covering> {
+        match self {
+            Self::Covered(covering) => Some(covering),
+            Self::Stays | Self::Fails => None,
+        }
+    }
 }
 
 impl FlatRegions {
@@ -55,10 +75,15 @@ impl FlatRegions {
             return Ok((whole, 0));
         }
         let coverings = watch.long_pieces(self.regions.len(), BLOCK, |block, is_stopped| {
-            block.map(|region| self.covering(region, &whole, (starts, sharp, corners), is_stopped)).collect()
+            let fate = |region| self.fate(region, &whole, (starts, sharp, corners), is_stopped);
+            block.map(|region| fate(region).unwrap_or(Fate::Fails)).collect()
         })?;
-        let coverings: Vec<Option<Covering>> = coverings.into_iter().flat_map(|list: Vec<_>| list).collect();
+        let fates: Vec<Fate> = coverings.into_iter().flat_map(|list: Vec<_>| list).collect();
+        let stays: Vec<bool> = fates.iter().map(|fate| matches!(fate, Fate::Stays)).collect();
+        let coverings = fates.into_iter().map(Fate::covering).collect();
         let coverings = self.without_shared_edges(coverings, &whole, watch)?;
+        let is_gap = |region: usize| self.by_rim[region] && !stays[region] && coverings[region].is_none();
+        self.has_gaps.fetch_or((0..coverings.len()).any(is_gap), Ordering::Relaxed);
         if coverings.iter().all(Option::is_none) {
             return Ok((whole, 0));
         }
@@ -66,19 +91,21 @@ impl FlatRegions {
         Ok((self.replaced(whole, starts, &coverings, corners, watch)?, folded))
     }
 
-    /// The triangles of a region, if they can be fewer than those that were emitted.
-    fn covering(
+    /// What becomes of a region: its triangles give way if there can be fewer, or if they are those of its rim alone. `None` where
+    /// none can be found.
+    fn fate(
         &self,
         region: usize,
         whole: &Assembled,
         (starts, sharp, corners): (&[u32], &HashSet<u32>, usize),
         is_stopped: &IsStopped<'_>,
-    ) -> Option<Covering> {
+    ) -> Option<Fate> {
         let (faces, plane) = &self.regions[region];
         let before = faces.iter().flat_map(|&face| starts[face as usize]..starts[face as usize + 1]);
         let before: Vec<u32> = before.collect();
-        if before.len() == faces.len() {
-            return None;
+        let (is_divided, by_rim) = (before.len() > faces.len(), self.by_rim[region]);
+        if !is_divided && !by_rim {
+            return Some(Fate::Stays);
         }
         let mut flat = Flattened::new(plane, self.off_planes, &whole.positions);
         let (mut rim, mut along) = (Vec::new(), HashMap::new());
@@ -103,6 +130,9 @@ impl FlatRegions {
                 }
             }
         }
+        if !is_divided && !was_folded {
+            return Some(Fate::Stays);
+        }
         let points = flat.points()?;
         let triangles = planar::triangulated(&points, &rim, is_stopped)?;
         let triangles: Vec<[u32; 3]> =
@@ -115,11 +145,11 @@ impl FlatRegions {
         }
         // A control vertex beyond the rim would be left over.
         let is_whole = is_used.iter().all(|&is_used| is_used);
-        let is_same = triangles.len() < before.len() && (after - area).abs() <= SAME_AREA * area;
+        let is_same = (by_rim || triangles.len() < before.len()) && (after - area).abs() <= SAME_AREA * area;
         if !is_whole || !is_same || was_folded && !self.unfolds {
             return None;
         }
-        Some(Covering { triangles: by_face(triangles, &along)?, was_folded })
+        Some(Fate::Covered(Covering { triangles: by_face(triangles, &along)?, was_folded }))
     }
 
     /// The coverings whose new edges are none that the mesh has elsewhere: two flat sheets may share their rims, and an edge has two

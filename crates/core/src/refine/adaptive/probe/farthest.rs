@@ -3,6 +3,8 @@
 //! What was said of leaves is of no use here: neighbours may have had them split since, so that vertices of the mesh lie where the
 //! surface stood highest over them.
 
+use super::super::close::lies_along;
+use super::super::decide::child_open;
 use super::super::emit::Emission;
 use super::super::emitted::{Beholder, Emitted, Over};
 use super::super::quadtree::Place;
@@ -50,7 +52,13 @@ pub(super) fn farthest(
         surface = surface.child(child);
     }
     let mut points = Vec::new();
-    sample(surface, SAMPLED_LEVELS, &mut points);
+    if control.flat.is_its_rim(face) {
+        let open = control.open(face);
+        let open = [0, 1, 2].map(|edge| open[edge] && lies_along(place, edge));
+        sample_rim(surface, open, SAMPLED_LEVELS, &mut points);
+    } else {
+        sample(surface, SAMPLED_LEVELS, &mut points);
+    }
     if is_moved {
         let frame = TriangleFrame::new(corners.map(|corner| corner.position));
         let by_height = |a: &&DVec3, b: &&DVec3| frame.height(**a).total_cmp(&frame.height(**b));
@@ -75,6 +83,16 @@ pub(super) fn sample(surface: Surface<'_>, levels: usize, points: &mut Vec<DVec3
     if levels > 1 {
         (0..4).for_each(|child| sample(surface.child(child), levels - 1, points));
     }
+}
+
+/// Points of a surface's curves over its open edges.
+fn sample_rim(surface: Surface<'_>, open: [bool; 3], levels: usize, points: &mut Vec<DVec3>) {
+    if levels == 0 || open == [false; 3] {
+        return;
+    }
+    let middles = surface.middles();
+    points.extend((0..3).filter(|&edge| open[edge]).map(|edge| middles[edge].position));
+    (0..4).for_each(|child| sample_rim(surface.child(child), child_open(open, child), levels - 1, points));
 }
 
 /// Finds the triangles of a leaf, or of the one with the triangle over which the surface bends most.
