@@ -16,8 +16,10 @@
 
 mod merge;
 mod planar;
+mod strips;
 
 pub(super) use merge::Assembled;
+pub(super) use strips::Net;
 
 use super::chains::Chains;
 use super::decide::Control;
@@ -69,6 +71,8 @@ pub(super) struct FlatRegions {
     of_face: Vec<u32>,
     /// By region, its faces, ascending, and its plane.
     regions: Vec<(Vec<u32>, Plane)>,
+    /// The control faces over which there may be strips.
+    straight: Vec<u32>,
     /// How far the surface, and so what stands for it, is off the planes at most.
     off_planes: f64,
     /// Whether regions are what their rims enclose, also where the surface folds.
@@ -98,9 +102,6 @@ impl FlatRegions {
             flat.collect::<Vec<u32>>()
         })?;
         let mut flat = found.concat();
-        if flat.is_empty() {
-            return Ok(Self::default());
-        }
         // The largest faces know their planes best.
         let area = |face: u32| mesh.face_normal_vector(face as usize).length_squared();
         flat.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
@@ -142,9 +143,17 @@ impl FlatRegions {
             off_planes = off_planes.max(height + HEIGHT_ROUNDING * size);
         }
         let weight = if options.max_memory.is_some() { 1 } else { WEIGHT };
+        let straight = strips::straight_faces((control, edges), (&of_face, most), watch)?;
+        if regions.is_empty() && straight.is_empty() {
+            return Ok(Self::default());
+        }
+        if !straight.is_empty() {
+            off_planes = off_planes.max(HEIGHT_ROUNDING * size);
+        }
         let unfolds = options.unfold;
         let mut found = Self {
             of_face,
+            straight,
             regions,
             off_planes,
             unfolds,
@@ -192,9 +201,16 @@ impl FlatRegions {
         self.off_planes
     }
 
-    /// How many leaves of a face count as one triangle while faces are divided: of those of flat faces most are not going to stay.
+    /// Whether there may be strips, so that only what is emitted tells how many triangles stay.
+    pub(super) fn has_strips(&self) -> bool {
+        !self.straight.is_empty()
+    }
+
+    /// How many leaves of a face count as one triangle while faces are divided: of those of flat faces, and of strips, most are not going
+    /// to stay.
     pub(super) fn weight(&self, face: u32) -> usize {
-        if self.region(face).is_some() { self.weight } else { 1 }
+        let is_merged = self.region(face).is_some() || self.straight.binary_search(&face).is_ok();
+        if is_merged { self.weight } else { 1 }
     }
 
     /// The region of a face.

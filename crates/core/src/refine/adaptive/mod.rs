@@ -71,7 +71,7 @@ use close::close;
 use decide::{Control, decide};
 use demands::{Demands, Functions};
 use emit::{Emission, Extend};
-use flat::FlatRegions;
+use flat::{FlatRegions, Net};
 pub(super) use frames::frames;
 use judge::Goal;
 use plan::Plan;
@@ -259,7 +259,7 @@ fn with_engine<T>(
     if options.flat_regions && !options.balance && options.attributes.is_empty() {
         control.flat = FlatRegions::of(&control, &edges, options, &watch)?;
     }
-    let rounding = probe::rounding(mesh, options.max_levels, &watch)? + 2.0 * control.flat.off_planes();
+    let rounding = probe::rounding(mesh, options.max_levels, &watch)? + 3.0 * control.flat.off_planes();
     control.criteria = criteria(mesh, options, rounding)?;
     control.back_faces = BackFaces::of(&control, options.balance, &watch)?;
     let engine = Engine {
@@ -448,9 +448,18 @@ impl Engine<'_> {
     }
 
     /// Triangles that a plan comes to.
-    fn triangles(&self, plan: &Plan) -> usize {
-        let own = |face: u32| plan.closed[face as usize].triangles as usize;
-        self.control.flat.count((self.control, &self.edges), &plan.chains, own)
+    fn triangles(&self, plan: &Plan) -> Result<usize, RefineError> {
+        let (own, flat) = (|face: u32| plan.closed[face as usize].triangles as usize, &self.control.flat);
+        let count = flat.count((self.control, &self.edges), &plan.chains, own);
+        if !flat.has_strips() {
+            return Ok(count);
+        }
+        let emission = self.emit_some(plan, None)?;
+        let sharp = settle::sharp_edges(&emission, self.watch)?;
+        let Emission { positions, triangles, twins, parents, starts, .. } = &emission;
+        let corners = self.control.mesh.vertex_count();
+        let net = Net { positions, triangles, twins, parents, starts, sharp: &sharp, corners };
+        Ok(count - flat.saved(&net, self.watch)?.min(count))
     }
 
     fn split(&self, trees: &mut Trees, place: Place, fresh: impl FnMut(Place)) -> Result<(), RefineError> {
@@ -526,7 +535,7 @@ impl Engine<'_> {
                 }
             })?;
             plan.chains = chains;
-            plan.triangles = self.triangles(plan);
+            plan.triangles = self.triangles(plan)?;
             self.watch.round(plan.triangles)?;
             if plan.triangles > most {
                 return Ok(false);

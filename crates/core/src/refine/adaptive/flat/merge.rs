@@ -3,6 +3,7 @@
 use core::sync::atomic::Ordering;
 use std::collections::{HashMap, HashSet};
 
+use super::strips::{Net, Region, Regions};
 use super::{FlatRegions, Plane, planar};
 use crate::mesh::{Junctions, NONE, Tags};
 use crate::parallel::IsStopped;
@@ -19,6 +20,9 @@ const AREA_ROUNDING: f64 = 1e-14;
 /// Areas before and after may differ by this part.
 const SAME_AREA: f64 = 1e-9;
 
+/// How often what regions have in common may be left to one that keeps its triangles, before all keep it.
+const MOST_ROUNDS: usize = 8;
+
 /// What the emitted mesh consists of.
 pub(in super::super) struct Assembled {
     pub(in super::super) positions: Vec<[f64; 3]>,
@@ -32,6 +36,13 @@ pub(in super::super) struct Assembled {
     /// Normals of corners at sharp edges, by half-edge, ascending.
     pub(in super::super) sides: Vec<(u32, [f64; 3])>,
     pub(in super::super) junctions: Junctions,
+}
+
+impl Assembled {
+    fn net<'a>(&'a self, (starts, sharp): (&'a [u32], &'a HashSet<u32>), corners: usize) -> Net<'a> {
+        let Self { positions, triangles, twins, parents, .. } = self;
+        Net { positions, triangles, twins, parents, starts, sharp, corners }
+    }
 }
 
 /// What is done with a region.
@@ -62,8 +73,8 @@ impl Fate {
 }
 
 impl FlatRegions {
-    /// Triangulates the regions anew; gives how many of them were folded, too. `starts` has the first triangle of each control face
-    /// and one more, `sharp` the half-edges along sharp edges, and `corners` is the number of control vertices, which all stay.
+    /// Triangulates the regions and strips anew; gives how many of them were folded, too. `starts` has the first triangle of each control
+    /// face and one more, `sharp` the half-edges along sharp edges, and `corners` is the number of control vertices, which all stay.
     pub(in super::super) fn merge(
         &self,
         whole: Assembled,
@@ -71,24 +82,63 @@ impl FlatRegions {
         corners: usize,
         watch: &SharedWatch<'_>,
     ) -> Result<(Assembled, usize), Cancelled> {
-        if self.regions.is_empty() {
+        if self.regions.is_empty() && self.straight.is_empty() {
             return Ok((whole, 0));
         }
-        let coverings = watch.long_pieces(self.regions.len(), BLOCK, |block, is_stopped| {
-            let fate = |region| self.fate(region, &whole, (starts, sharp, corners), is_stopped);
-            block.map(|region| fate(region).unwrap_or(Fate::Fails)).collect()
-        })?;
-        let fates: Vec<Fate> = coverings.into_iter().flat_map(|list: Vec<_>| list).collect();
-        let stays: Vec<bool> = fates.iter().map(|fate| matches!(fate, Fate::Stays)).collect();
-        let coverings = fates.into_iter().map(Fate::covering).collect();
-        let coverings = self.without_shared_edges(coverings, &whole, watch)?;
-        let is_gap = |region: usize| self.by_rim[region] && !stays[region] && coverings[region].is_none();
-        self.has_gaps.fetch_or((0..coverings.len()).any(is_gap), Ordering::Relaxed);
+        let net = whole.net((starts, sharp), corners);
+        let mut regions = self.regions(&net, watch)?;
+        let coverings = self.coverings(&net, &mut regions, watch)?;
         if coverings.iter().all(Option::is_none) {
             return Ok((whole, 0));
         }
         let folded = coverings.iter().flatten().filter(|covering| covering.was_folded).count();
-        Ok((self.replaced(whole, starts, &coverings, corners, watch)?, folded))
+        let Regions { list, of_triangle, .. } = regions;
+        let merged = Merged { list: &list, of_triangle: &of_triangle, coverings: &coverings };
+        Ok((merged.replaced(whole, starts, corners, watch)?, folded))
+    }
+
+    /// The triangles of each region, where others come in their place.
+    fn coverings(
+        &self,
+        net: &Net<'_>,
+        regions: &mut Regions,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Vec<Option<Covering>>, Cancelled> {
+        for round in 0.. {
+            let fates = watch.long_pieces(regions.list.len(), BLOCK, |block, is_stopped| {
+                let fate = |region| self.fate(region, net, regions, is_stopped);
+                block.map(|region| fate(region).unwrap_or(Fate::Fails)).collect::<Vec<_>>()
+            })?;
+            let fates: Vec<Fate> = fates.into_iter().flatten().collect();
+            let stays: Vec<bool> = fates.iter().map(|fate| matches!(fate, Fate::Stays)).collect();
+            let coverings = fates.into_iter().map(Fate::covering).collect();
+            let coverings = without_shared_edges(coverings, net, regions, watch)?;
+            // A region that keeps its triangles keeps what is on its rim.
+            let mut is_kept = false;
+            watch.each(regions.list.iter().zip(&coverings), |(region, covering)| {
+                if covering.is_none() && !regions.is_dropped.is_empty() {
+                    for &vertex in region.triangles.iter().flat_map(|&at| &net.triangles[at as usize]) {
+                        is_kept |= core::mem::take(&mut regions.is_dropped[vertex as usize]);
+                    }
+                }
+            })?;
+            if is_kept {
+                if round >= MOST_ROUNDS {
+                    regions.is_dropped.clear();
+                }
+                continue;
+            }
+            let is_gap =
+                |at: usize| self.is_by_rim(&regions.list[at]) && !stays[at] && coverings[at].is_none();
+            self.has_gaps.fetch_or((0..coverings.len()).any(is_gap), Ordering::Relaxed);
+            return Ok(coverings);
+        }
+        Ok(Vec::new())
+    }
+
+    /// Whether a region is judged by its rim alone.
+    fn is_by_rim(&self, region: &Region) -> bool {
+        region.flat.is_some_and(|flat| self.by_rim[flat as usize])
     }
 
     /// What becomes of a region: its triangles give way if there can be fewer, or if they are those of its rim alone. `None` where
@@ -96,101 +146,131 @@ impl FlatRegions {
     fn fate(
         &self,
         region: usize,
-        whole: &Assembled,
-        (starts, sharp, corners): (&[u32], &HashSet<u32>, usize),
+        net: &Net<'_>,
+        regions: &Regions,
         is_stopped: &IsStopped<'_>,
     ) -> Option<Fate> {
-        let (faces, plane) = &self.regions[region];
-        let before = faces.iter().flat_map(|&face| starts[face as usize]..starts[face as usize + 1]);
-        let before: Vec<u32> = before.collect();
-        let (is_divided, by_rim) = (before.len() > faces.len(), self.by_rim[region]);
+        let own = &regions.list[region];
+        let (before, by_rim) = (&own.triangles, self.is_by_rim(own));
+        let is_divided = own.flat.is_none_or(|flat| before.len() > self.regions[flat as usize].0.len());
         if !is_divided && !by_rim {
             return Some(Fate::Stays);
         }
-        let mut flat = Flattened::new(plane, self.off_planes, &whole.positions);
-        let (mut rim, mut along) = (Vec::new(), HashMap::new());
-        let (mut area, mut was_folded) = (0.0, false);
-        for &triangle in &before {
-            let vertices = whole.triangles[triangle as usize];
-            let own = flat.area(vertices)?;
-            area += own;
-            was_folded |= !flat.is_positive(own);
-            for (edge, &vertex) in vertices.iter().enumerate() {
-                let h = 3 * triangle + edge as u32;
-                let beyond = whole.twins[h as usize];
-                let is_within = beyond != NONE
-                    && !sharp.contains(&h)
-                    && self.region(whole.parents[beyond as usize / 3]) == Some(region as u32);
-                if !is_within {
-                    let ends = [vertex, vertices[(edge + 1) % 3]];
-                    along.insert(ends, whole.parents[triangle as usize]);
-                    rim.push(ends.map(|vertex| flat.number(vertex)));
-                } else if (vertex as usize) < corners {
-                    flat.number(vertex);
+        let mut flat = Flattened::new(&own.plane, self.off_planes, net.positions);
+        // By its start, what follows a vertex that need not stay.
+        let (mut rim, mut after) = (Vec::new(), HashMap::new());
+        let (mut area, mut around, mut was_folded) = (0.0, 0.0, false);
+        for &triangle in before {
+            let part = flat.area(net.triangles[triangle as usize])?;
+            area += part;
+            was_folded |= !flat.is_positive(part);
+            for h in 3 * triangle..3 * triangle + 3 {
+                let [from, to] = net.ends(h);
+                if !regions.is_rim(net, h) {
+                    if (from as usize) < net.corners {
+                        flat.number(from);
+                    }
+                } else if regions.drops(from) {
+                    after.insert(from, to);
+                } else {
+                    rim.push(([from, to], net.face(triangle)));
+                    around += net.at(from).distance(net.at(to));
                 }
             }
         }
-        if !is_divided && !was_folded {
+        if !is_divided && !was_folded || was_folded && own.flat.is_none() {
             return Some(Fate::Stays);
         }
+        let mut along = HashMap::new();
+        for (ends, face) in &mut rim {
+            while let Some(&to) = after.get(&ends[1]) {
+                ends[1] = to;
+            }
+            along.insert(*ends, *face);
+        }
+        let rim: Vec<[u32; 2]> = rim.iter().map(|(ends, _)| ends.map(|vertex| flat.number(vertex))).collect();
         let points = flat.points()?;
         let triangles = planar::triangulated(&points, &rim, is_stopped)?;
         let triangles: Vec<[u32; 3]> =
             triangles.iter().map(|triangle| triangle.map(|point| flat.vertices[point as usize])).collect();
-        let (mut after, mut is_used) = (0.0, vec![false; points.len()]);
+        let (mut found, mut is_used) = (0.0, vec![false; points.len()]);
         for &triangle in &triangles {
-            let own = flat.area(triangle).filter(|&own| flat.is_positive(own))?;
-            after += own;
+            let part = flat.area(triangle).filter(|&part| flat.is_positive(part))?;
+            found += part;
             triangle.iter().for_each(|&vertex| is_used[flat.numbers[&vertex] as usize] = true);
         }
         // A control vertex beyond the rim would be left over.
         let is_whole = is_used.iter().all(|&is_used| is_used);
-        let is_same = (by_rim || triangles.len() < before.len()) && (after - area).abs() <= SAME_AREA * area;
+        let off = if after.is_empty() { 0.0 } else { 2.0 * self.off_planes * around };
+        let is_same =
+            (by_rim || triangles.len() < before.len()) && (found - area).abs() <= SAME_AREA * area + off;
         if !is_whole || !is_same || was_folded && !self.unfolds {
             return None;
         }
         Some(Fate::Covered(Covering { triangles: by_face(triangles, &along)?, was_folded }))
     }
+}
 
-    /// The coverings whose new edges are none that the mesh has elsewhere: two flat sheets may share their rims, and an edge has two
-    /// faces.
-    fn without_shared_edges(
-        &self,
-        mut coverings: Vec<Option<Covering>>,
-        whole: &Assembled,
-        watch: &SharedWatch<'_>,
-    ) -> Result<Vec<Option<Covering>>, Cancelled> {
-        let mut is_covered = vec![false; whole.positions.len()];
-        watch.each(
-            coverings.iter().flatten().flat_map(|covering| &covering.triangles),
-            |(triangle, _)| {
-                triangle.iter().for_each(|&vertex| is_covered[vertex as usize] = true);
-            },
-        )?;
-        // By its ends, the region that an edge is inside of; none where it is on rims, or elsewhere.
-        let mut owners = HashMap::new();
-        watch.each(whole.triangles.iter().zip(&whole.parents), |(&triangle, &parent)| {
-            let own = self.region(parent);
-            for [from, to] in edges(triangle) {
-                if is_covered[from as usize] && is_covered[to as usize] {
-                    let owner = owners.entry([from.min(to), from.max(to)]).or_insert(own);
-                    *owner = owner.filter(|_| *owner == own);
-                }
+/// The coverings whose new edges are none that the mesh has elsewhere: two flat sheets may share their rims, and an edge has two
+/// faces.
+fn without_shared_edges(
+    mut coverings: Vec<Option<Covering>>,
+    net: &Net<'_>,
+    regions: &Regions,
+    watch: &SharedWatch<'_>,
+) -> Result<Vec<Option<Covering>>, Cancelled> {
+    let mut is_covered = vec![false; net.positions.len()];
+    watch.each(coverings.iter().flatten().flat_map(|covering| &covering.triangles), |(triangle, _)| {
+        triangle.iter().for_each(|&vertex| is_covered[vertex as usize] = true);
+    })?;
+    // By its ends, the region that an edge is inside of; none where it is on rims, or elsewhere.
+    let mut owners = HashMap::new();
+    watch.each((0..).zip(net.triangles), |(number, &triangle)| {
+        let own = regions.of(number);
+        for [from, to] in edges(triangle) {
+            if is_covered[from as usize] && is_covered[to as usize] {
+                let owner = owners.entry([from.min(to), from.max(to)]).or_insert(own);
+                *owner = owner.filter(|_| *owner == own);
             }
-        })?;
-        watch.each((0u32..).zip(&mut coverings), |(region, covering)| {
-            let Some(Covering { triangles, .. }) = covering else { return };
-            let all = || triangles.iter().flat_map(|&(triangle, _)| edges(triangle));
-            let directed: HashSet<[u32; 2]> = all().collect();
-            let inner = all().filter(|&[from, to]| from < to && directed.contains(&[to, from]));
-            let inner: Vec<[u32; 2]> = inner.collect();
-            if inner.iter().any(|ends| owners.get(ends).is_some_and(|&owner| owner != Some(region))) {
-                *covering = None;
-            } else {
-                owners.extend(inner.into_iter().map(|ends| (ends, Some(region))));
-            }
-        })?;
-        Ok(coverings)
+        }
+    })?;
+    watch.each((0u32..).zip(&mut coverings), |(region, covering)| {
+        let Some(Covering { triangles, .. }) = covering else { return };
+        let all = || triangles.iter().flat_map(|&(triangle, _)| edges(triangle));
+        let directed: HashSet<[u32; 2]> = all().collect();
+        let is_inner = |&[from, to]: &[u32; 2]| directed.contains(&[to, from]);
+        let inner: Vec<[u32; 2]> = all().filter(|ends| ends[0] < ends[1] && is_inner(ends)).collect();
+        // Straight lines of rims are new as well.
+        let rim = all().filter(|ends| !is_inner(ends)).map(|[from, to]| [from.min(to), from.max(to)]);
+        let rim: Vec<[u32; 2]> = rim.collect();
+        let is_others =
+            |ends: &[u32; 2]| owners.get(ends).copied().flatten().is_some_and(|owner| owner != region);
+        if inner.iter().any(|ends| owners.get(ends).is_some_and(|&owner| owner != Some(region)))
+            || rim.iter().any(is_others)
+        {
+            *covering = None;
+        } else {
+            owners.extend(inner.into_iter().map(|ends| (ends, Some(region))));
+            rim.into_iter().for_each(|ends| {
+                owners.entry(ends).or_insert(None);
+            });
+        }
+    })?;
+    Ok(coverings)
+}
+
+/// Regions with what comes in the place of their triangles.
+struct Merged<'a> {
+    list: &'a [Region],
+    of_triangle: &'a [u32],
+    coverings: &'a [Option<Covering>],
+}
+
+impl Merged<'_> {
+    /// The region of a triangle that gives way, and what comes in its place.
+    fn covering(&self, triangle: u32) -> Option<(u32, &Covering)> {
+        let region = self.of_triangle[triangle as usize];
+        self.coverings.get(region as usize)?.as_ref().map(|covering| (region, covering))
     }
 
     /// The mesh with the coverings that there are.
@@ -198,30 +278,31 @@ impl FlatRegions {
         &self,
         mut whole: Assembled,
         starts: &[u32],
-        coverings: &[Option<Covering>],
         corners: usize,
         watch: &SharedWatch<'_>,
     ) -> Result<Assembled, Cancelled> {
-        self.unfold_normals(&mut whole, coverings);
-        let covering = |face: u32| self.region(face).and_then(|region| coverings[region as usize].as_ref());
-        let (mut triangles, mut parents) = (Vec::new(), Vec::new());
+        self.unfold_normals(&mut whole);
+        // By control face and region, in that order.
+        let mut others: Vec<(u32, u32, [u32; 3])> = Vec::new();
+        watch.each((0u32..).zip(self.coverings), |(region, covering)| {
+            let all = covering.iter().flat_map(|covering| &covering.triangles);
+            others.extend(all.map(|&(triangle, face)| (face, region, triangle)));
+        })?;
+        others.sort_by_key(|&(face, region, _)| (face, region));
+        let mut others = others.into_iter().peekable();
+        let (mut triangles, mut parents, mut regions) = (Vec::new(), Vec::new(), Vec::new());
         let mut first_new = vec![NONE; whole.triangles.len()];
         // By its ends, each half-edge of the new triangles.
         let (mut new, mut fresh) = (HashMap::new(), Vec::new());
         watch.each(0..starts.len() as u32 - 1, |face| {
             let before = starts[face as usize]..starts[face as usize + 1];
-            let Some(covering) = covering(face) else {
-                for triangle in before {
-                    first_new[triangle as usize] = triangles.len() as u32;
-                    triangles.push(whole.triangles[triangle as usize]);
-                    parents.push(face);
-                }
-                return;
-            };
-            let first = covering.triangles.partition_point(|&(_, parent)| parent < face);
-            for &(triangle, _) in
-                covering.triangles[first..].iter().take_while(|&&(_, parent)| parent == face)
-            {
+            for triangle in before.filter(|&triangle| self.covering(triangle).is_none()) {
+                first_new[triangle as usize] = triangles.len() as u32;
+                triangles.push(whole.triangles[triangle as usize]);
+                parents.push(face);
+                regions.push(NONE);
+            }
+            while let Some((_, region, triangle)) = others.next_if(|&(parent, ..)| parent == face) {
                 for edge in 0..3 {
                     let ends = [triangle[edge], triangle[(edge + 1) % 3]];
                     let h = 3 * triangles.len() as u32 + edge as u32;
@@ -230,6 +311,7 @@ impl FlatRegions {
                 }
                 triangles.push(triangle);
                 parents.push(face);
+                regions.push(region);
             }
         })?;
         let ends = |h: u32| [0, 1].map(|i| whole.triangles[h as usize / 3][(h as usize + i) % 3]);
@@ -250,7 +332,7 @@ impl FlatRegions {
                 twins[h as usize] = twin;
             }
         })?;
-        let sides = self.sides(&whole, (&triangles, &parents), coverings, &first_new, watch)?;
+        let sides = self.sides(&whole, (&triangles, &regions), &first_new, watch)?;
         let mut renamed = vec![NONE; whole.positions.len()];
         renamed[..corners].fill(0);
         watch.each(triangles.as_flattened(), |&vertex| renamed[vertex as usize] = 0)?;
@@ -280,9 +362,9 @@ impl FlatRegions {
 
     /// Where a region was folded, gives its vertices that are not on sharp edges the normal of its plane: limit normals are turned
     /// over where the surface is.
-    fn unfold_normals(&self, whole: &mut Assembled, coverings: &[Option<Covering>]) {
-        let folded = self.regions.iter().zip(coverings).filter_map(|((_, plane), covering)| {
-            covering.as_ref().filter(|covering| covering.was_folded).map(|covering| (plane, covering))
+    fn unfold_normals(&self, whole: &mut Assembled) {
+        let folded = self.list.iter().zip(self.coverings).filter_map(|(region, covering)| {
+            covering.as_ref().filter(|covering| covering.was_folded).map(|covering| (&region.plane, covering))
         });
         let mut folded = folded.peekable();
         if folded.peek().is_none() {
@@ -303,35 +385,34 @@ impl FlatRegions {
     fn sides(
         &self,
         whole: &Assembled,
-        (triangles, parents): (&[[u32; 3]], &[u32]),
-        coverings: &[Option<Covering>],
+        (triangles, regions): (&[[u32; 3]], &[u32]),
         first_new: &[u32],
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<(u32, [f64; 3])>, Cancelled> {
-        let region = |face: u32| self.region(face).filter(|&region| coverings[region as usize].is_some());
-        let was_folded =
-            |region: u32| coverings[region as usize].as_ref().is_some_and(|covering| covering.was_folded);
+        let was_folded = |region: u32| {
+            self.coverings[region as usize].as_ref().is_some_and(|covering| covering.was_folded)
+        };
         let (mut sides, mut at_rims) = (Vec::with_capacity(whole.sides.len()), HashMap::new());
         watch.each(&whole.sides, |&(h, normal)| match first_new[h as usize / 3] {
             NONE => {
                 let vertex = whole.triangles[h as usize / 3][h as usize % 3];
-                at_rims.insert((region(whole.parents[h as usize / 3]), vertex), normal);
+                at_rims.insert((self.of_triangle[h as usize / 3], vertex), normal);
             }
             first => sides.push((3 * first + h % 3, normal)),
         })?;
         if at_rims.is_empty() {
             return Ok(sides);
         }
-        watch.each((0u32..).zip(triangles.iter().zip(parents)), |(triangle, (vertices, &parent))| {
-            if let Some(region) = region(parent) {
-                for (corner, &vertex) in (0u32..).zip(vertices) {
-                    let normal =
-                        at_rims.get(&(Some(region), vertex)).map(|&normal| match was_folded(region) {
-                            true => self.regions[region as usize].1.normal.to_array(),
-                            false => normal,
-                        });
-                    sides.extend(normal.map(|normal| (3 * triangle + corner, normal)));
-                }
+        watch.each((0u32..).zip(triangles.iter().zip(regions)), |(triangle, (vertices, &region))| {
+            if region == NONE {
+                return;
+            }
+            for (corner, &vertex) in (0u32..).zip(vertices) {
+                let normal = at_rims.get(&(region, vertex)).map(|&normal| match was_folded(region) {
+                    true => self.list[region as usize].plane.normal.to_array(),
+                    false => normal,
+                });
+                sides.extend(normal.map(|normal| (3 * triangle + corner, normal)));
             }
         })?;
         sides.sort_unstable_by_key(|&(h, _)| h);

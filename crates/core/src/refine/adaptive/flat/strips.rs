@@ -1,0 +1,366 @@
+//! Strips: triangles that lie in one plane where the surface is straight in one direction, as between two lines of a cylinder's side.
+//!
+//! Quadtrees divide in both directions, though across the lines alone would do. Once everything is emitted, triangles that lie side by
+//! side in one plane are put together as flat regions are, and what their rims have in common with one another gives way to straight
+//! lines where it is straight: before and after it is the same set of points but for rounding, or for how far the file's coordinates
+//! are off ([`FlatRegions::off_planes`]).
+//!
+//! Only control faces beside another in the same plane are looked at: a quadrilateral of a control mesh that is straight in one
+//! direction is such a pair.
+
+use super::{FlatRegions, Plane};
+use crate::index::HalfEdgeId;
+use crate::mesh::NONE;
+use crate::progress::{Cancelled, SharedWatch};
+use crate::refine::adaptive::decide::Control;
+use crate::refine::adaptive::quadtree::Edges;
+use crate::vector::{DVec3, unit_normal, vector};
+use std::collections::HashSet;
+
+/// Control faces that one call takes together.
+const BLOCK: usize = 64;
+
+/// Triangles are looked at where one beside them is so many times as far off their plane as it may be: that of a sliver is not known well.
+const NEARLY: f64 = 1024.0;
+
+/// Fewer triangles than this are not put together.
+const FEWEST: usize = 3;
+
+/// Triangles as they were emitted.
+#[derive(Clone, Copy)]
+pub(in super::super) struct Net<'a> {
+    pub(in super::super) positions: &'a [[f64; 3]],
+    pub(in super::super) triangles: &'a [[u32; 3]],
+    pub(in super::super) twins: &'a [u32],
+    /// By triangle, its control face.
+    pub(in super::super) parents: &'a [u32],
+    /// By control face, its first triangle; one more than there are faces.
+    pub(in super::super) starts: &'a [u32],
+    /// The half-edges along sharp edges.
+    pub(in super::super) sharp: &'a HashSet<u32>,
+    /// Control vertices, which stand first and all stay.
+    pub(in super::super) corners: usize,
+}
+
+impl Net<'_> {
+    pub(super) fn at(&self, vertex: u32) -> DVec3 {
+        vector(self.positions[vertex as usize])
+    }
+
+    pub(super) fn of_face(&self, face: u32) -> core::ops::Range<u32> {
+        self.starts[face as usize]..self.starts[face as usize + 1]
+    }
+
+    /// The control face of a triangle.
+    pub(super) fn face(&self, triangle: u32) -> u32 {
+        self.parents[triangle as usize]
+    }
+
+    /// The ends of a half-edge.
+    pub(super) fn ends(&self, h: u32) -> [u32; 2] {
+        let triangle = self.triangles[h as usize / 3];
+        [triangle[h as usize % 3], triangle[(h as usize + 1) % 3]]
+    }
+
+    /// The half-edge on the other side of one that is neither sharp nor on a boundary.
+    pub(super) fn beyond(&self, h: u32) -> Option<u32> {
+        let twin = self.twins[h as usize];
+        (twin != NONE && (self.sharp.is_empty() || !self.sharp.contains(&h))).then_some(twin)
+    }
+
+    fn plane(&self, triangle: u32) -> Plane {
+        let corners = self.triangles[triangle as usize].map(|vertex| self.at(vertex));
+        Plane { point: corners[0], normal: unit_normal(corners) }
+    }
+
+    fn double_area(&self, triangle: u32) -> f64 {
+        let [a, b, c] = self.triangles[triangle as usize].map(|vertex| self.at(vertex));
+        (b - a).cross(c - a).length()
+    }
+}
+
+/// Triangles that lie in one plane.
+pub(super) struct Region {
+    pub(super) triangles: Vec<u32>,
+    pub(super) plane: Plane,
+    /// The flat region of control faces that they are, if they are one.
+    pub(super) flat: Option<u32>,
+}
+
+/// All of them, and the vertices between two of them that lie on straight lines.
+pub(super) struct Regions {
+    pub(super) list: Vec<Region>,
+    /// By triangle, its region.
+    pub(super) of_triangle: Vec<u32>,
+    /// By vertex, whether it is one that need not stay; empty where there are none.
+    pub(super) is_dropped: Vec<bool>,
+}
+
+impl Regions {
+    pub(super) fn of(&self, triangle: u32) -> Option<u32> {
+        self.of_triangle.get(triangle as usize).copied().filter(|&region| region != NONE)
+    }
+
+    pub(super) fn drops(&self, vertex: u32) -> bool {
+        self.is_dropped.get(vertex as usize).copied().unwrap_or(false)
+    }
+
+    /// Whether a half-edge of a region is on its rim.
+    pub(super) fn is_rim(&self, net: &Net<'_>, h: u32) -> bool {
+        net.beyond(h).is_none_or(|twin| self.of(twin / 3) != self.of(h / 3))
+    }
+}
+
+/// The control faces beside another in the same plane, but for those of flat regions, ascending.
+pub(super) fn straight_faces(
+    (control, edges): (&Control<'_>, &Edges<'_>),
+    (flat, most): (&[u32], f64),
+    watch: &SharedWatch<'_>,
+) -> Result<Vec<u32>, Cancelled> {
+    let mesh = control.mesh;
+    let is_flat = |face: u32| flat.get(face as usize).is_some_and(|&region| region != NONE);
+    let is_straight = |face: u32| {
+        let corners = mesh.triangles()[face as usize].map(|vertex| vector(mesh.positions()[vertex as usize]));
+        let plane = Plane { point: corners[0], normal: mesh.unit_face_normal(face as usize) };
+        !is_flat(face)
+            && plane.normal != DVec3::ZERO
+            && (3 * face..3 * face + 3).any(|h| {
+                let twin = edges.twin(h).filter(|_| control.lasting.edge(HalfEdgeId(h)) <= 0.0);
+                twin.is_some_and(|twin| {
+                    let opposite = mesh.triangles()[twin as usize / 3][(twin as usize + 2) % 3];
+                    !is_flat(twin / 3)
+                        && plane.height(vector(mesh.positions()[opposite as usize])).abs() <= most
+                        && mesh.unit_face_normal(twin as usize / 3).dot(plane.normal) > 0.0
+                })
+            })
+    };
+    let found = watch.pieces(mesh.face_count(), super::BLOCK, |block| {
+        block.map(|face| face as u32).filter(|&face| is_straight(face)).collect::<Vec<u32>>()
+    })?;
+    Ok(found.concat())
+}
+
+impl FlatRegions {
+    /// The flat regions and the strips of what was emitted.
+    pub(super) fn regions(&self, net: &Net<'_>, watch: &SharedWatch<'_>) -> Result<Regions, Cancelled> {
+        let list = (0u32..).zip(&self.regions).map(|(region, (faces, plane))| {
+            let triangles = faces.iter().flat_map(|&face| net.of_face(face)).collect();
+            Region { triangles, plane: *plane, flat: Some(region) }
+        });
+        let mut regions = Regions {
+            list: list.collect(),
+            of_triangle: vec![NONE; net.triangles.len()],
+            is_dropped: Vec::new(),
+        };
+        watch.each((0..).zip(&regions.list), |(number, region)| {
+            region.triangles.iter().for_each(|&triangle| regions.of_triangle[triangle as usize] = number);
+        })?;
+        if self.straight.is_empty() {
+            return Ok(regions);
+        }
+        self.add_strips(net, &mut regions, watch)?;
+        if regions.list.len() > self.regions.len() {
+            regions.is_dropped = self.straight_lines(net, &regions, watch)?;
+        }
+        Ok(regions)
+    }
+
+    /// Triangles that these come to once they are put together, less than there are.
+    pub(in super::super) fn saved(&self, net: &Net<'_>, watch: &SharedWatch<'_>) -> Result<usize, Cancelled> {
+        let regions = self.regions(net, watch)?;
+        let mut saved = 0;
+        watch.each(&regions.list, |region| {
+            let (mut vertices, mut on_rim) = (HashSet::new(), HashSet::new());
+            let (mut rim, mut dropped) = (0, 0);
+            for &triangle in &region.triangles {
+                vertices.extend(net.triangles[triangle as usize]);
+                for h in (3 * triangle..3 * triangle + 3).filter(|&h| regions.is_rim(net, h)) {
+                    let [from, _] = net.ends(h);
+                    on_rim.insert(from);
+                    rim += 1;
+                    dropped += usize::from(regions.drops(from));
+                }
+            }
+            if region.flat.is_some() {
+                saved += dropped;
+                return;
+            }
+            // By Euler's formula, with the vertices that stay.
+            let before = region.triangles.len();
+            let stay = vertices.iter().filter(|&v| (*v as usize) < net.corners || on_rim.contains(v)).count();
+            let twice_euler = (2 * vertices.len() + 2 * before) as i64 - (3 * before + rim) as i64;
+            let after = (2 * stay) as i64 - (rim + dropped) as i64 - twice_euler;
+            saved += before.saturating_sub(after.max(1) as usize);
+        })?;
+        Ok(saved)
+    }
+
+    /// Adds the triangles that lie side by side in one plane.
+    fn add_strips(
+        &self,
+        net: &Net<'_>,
+        regions: &mut Regions,
+        watch: &SharedWatch<'_>,
+    ) -> Result<(), Cancelled> {
+        let is_like = |triangle: u32| {
+            let plane = net.plane(triangle);
+            (3 * triangle..3 * triangle + 3).filter_map(|h| net.beyond(h)).any(|twin| {
+                let opposite = net.triangles[twin as usize / 3][(twin as usize + 2) % 3];
+                plane.height(net.at(opposite)).abs() <= NEARLY * self.off_planes
+            })
+        };
+        let found = watch.pieces(self.straight.len(), BLOCK, |block| {
+            let triangles = self.straight[block].iter().flat_map(|&face| net.of_face(face));
+            let found = triangles.filter(|&triangle| is_like(triangle));
+            found.map(|triangle| (net.double_area(triangle), triangle)).collect::<Vec<_>>()
+        })?;
+        let mut seeds = found.concat();
+        // The largest know their planes best.
+        seeds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let mut is_left = vec![false; net.triangles.len()];
+        seeds.iter().for_each(|&(_, triangle)| is_left[triangle as usize] = true);
+        watch.each(seeds, |(_, seed)| {
+            if !core::mem::replace(&mut is_left[seed as usize], false) {
+                return;
+            }
+            let plane = net.plane(seed);
+            let is_in_plane = |triangle: u32| {
+                let corners = net.triangles[triangle as usize].map(|vertex| net.at(vertex));
+                let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+                corners.iter().all(|&corner| plane.height(corner).abs() <= self.off_planes)
+                    && normal.dot(plane.normal) > 0.0
+            };
+            let mut triangles = vec![seed];
+            let mut next = 0;
+            while let Some(&triangle) = triangles.get(next) {
+                next += 1;
+                for twin in (3 * triangle..3 * triangle + 3).filter_map(|h| net.beyond(h)) {
+                    if is_left[twin as usize / 3] && is_in_plane(twin / 3) {
+                        is_left[twin as usize / 3] = false;
+                        triangles.push(twin / 3);
+                    }
+                }
+            }
+            if triangles.len() >= FEWEST {
+                let number = regions.list.len() as u32;
+                triangles.sort_unstable();
+                triangles.iter().for_each(|&triangle| regions.of_triangle[triangle as usize] = number);
+                regions.list.push(Region { triangles, plane, flat: None });
+            }
+        })
+    }
+
+    /// By vertex, whether it lies between two regions, and nothing else, on a straight line.
+    fn straight_lines(
+        &self,
+        net: &Net<'_>,
+        regions: &Regions,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Vec<bool>, Cancelled> {
+        let mut between = vec![Between::NOBODY; net.positions.len()];
+        between[..net.corners].fill(Between { stays: true, ..Between::NOBODY });
+        watch.each((0u32..).zip(net.triangles), |(triangle, vertices)| {
+            let region = regions.of(triangle);
+            vertices.iter().for_each(|&vertex| between[vertex as usize].is_beside(region));
+        })?;
+        let mut starts = Vec::new();
+        watch.each(&regions.list, |region| {
+            for h in region.triangles.iter().flat_map(|&triangle| 3 * triangle..3 * triangle + 3) {
+                if !regions.is_rim(net, h) {
+                    continue;
+                }
+                let [from, to] = net.ends(h);
+                let own = regions.of_triangle[h as usize / 3];
+                match net.beyond(h).map(|twin| regions.of_triangle[twin as usize / 3]) {
+                    Some(other) if other != NONE => {
+                        between[from as usize].goes_on(own, to);
+                        if own < other {
+                            starts.push((own, from, to));
+                        }
+                    }
+                    _ => [from, to]
+                        .map(|vertex| between[vertex as usize].stays = true)
+                        .into_iter()
+                        .for_each(drop),
+                }
+            }
+        })?;
+        let mut is_dropped = vec![false; net.positions.len()];
+        watch.each(starts, |(region, from, to)| {
+            if between[from as usize].is_inside() || !between[to as usize].is_inside() {
+                return;
+            }
+            let mut line = vec![from, to];
+            let mut last = to;
+            while let Some(next) = between[last as usize].after(region) {
+                line.push(next);
+                last = next;
+            }
+            self.straighten(net, &line, &mut is_dropped);
+        })?;
+        Ok(is_dropped)
+    }
+
+    /// Drops what is on the straight line between the ends, or between one end and the farthest vertex.
+    fn straighten(&self, net: &Net<'_>, line: &[u32], is_dropped: &mut [bool]) {
+        let mut pending = vec![line];
+        while let Some(line) = pending.pop() {
+            let [first, inner @ .., last] = line else { continue };
+            let [from, to] = [first, last].map(|&vertex| net.at(vertex));
+            let along = crate::vector::unit_or_zero(to - from);
+            let off = |vertex: u32| (net.at(vertex) - from).reject_from_normalized(along).length();
+            let farthest = (1..).zip(inner).map(|(at, &vertex)| (off(vertex), at));
+            let Some((most, at)) = farthest.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            if along != DVec3::ZERO && most <= self.off_planes {
+                inner.iter().for_each(|&vertex| is_dropped[vertex as usize] = true);
+            } else {
+                pending.push(&line[..=at]);
+                pending.push(&line[at..]);
+            }
+        }
+    }
+}
+
+/// A vertex among regions.
+#[derive(Clone, Copy)]
+struct Between {
+    /// The two regions around it, and by region the next vertex on their common rim.
+    regions: [u32; 2],
+    next: [u32; 2],
+    /// Whether it stays for other reasons.
+    stays: bool,
+}
+
+impl Between {
+    const NOBODY: Self = Self { regions: [NONE; 2], next: [NONE; 2], stays: false };
+
+    fn is_beside(&mut self, region: Option<u32>) {
+        let Some(region) = region else {
+            self.stays = true;
+            return;
+        };
+        match self.regions.iter_mut().find(|own| **own == region || **own == NONE) {
+            Some(own) => *own = region,
+            None => self.stays = true,
+        }
+    }
+
+    fn goes_on(&mut self, region: u32, to: u32) {
+        match self.regions.iter().position(|&own| own == region) {
+            Some(at) if self.next[at] == NONE => self.next[at] = to,
+            // A rim that comes twice.
+            _ => self.stays = true,
+        }
+    }
+
+    /// Whether it is inside of the common rim of two regions.
+    fn is_inside(&self) -> bool {
+        !self.stays && !self.next.contains(&NONE)
+    }
+
+    /// The next vertex along a region's rim, from one inside of a common rim.
+    fn after(&self, region: u32) -> Option<u32> {
+        let at = self.regions.iter().position(|&own| own == region).filter(|_| self.is_inside())?;
+        Some(self.next[at])
+    }
+}
