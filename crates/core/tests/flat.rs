@@ -2,62 +2,18 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod support;
+
 use std::f64::consts::TAU;
 
 use limitmesh::Mesh;
 use limitmesh::index::FaceId;
 use limitmesh::measure::{SamplingOptions, hausdorff};
-use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
+use limitmesh::mesh::{CornerTag, INFINITELY_SHARP, Tags};
 use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate};
 use limitmesh::scheme::Loop;
-
-/// The edges of a mesh whose faces are turned by more than 30 degrees, and the boundary, are sharp.
-fn creased(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Mesh {
-    let mesh = Mesh::from_triangles(positions, triangles).unwrap();
-    let unit = |face| {
-        let n: [f64; 3] = mesh.face_normal(face);
-        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
-        n.map(|x| x / length)
-    };
-    let topology = mesh.topology();
-    let mut creases = Vec::new();
-    for h in topology.half_edges() {
-        let Some(twin) = topology.twin(h).filter(|twin| h < *twin) else { continue };
-        let [a, b] = [h, twin].map(|h| unit(h.face()));
-        if (0..3).map(|i| a[i] * b[i]).sum::<f64>() < 30f64.to_radians().cos() {
-            let [from, to] = topology.ends(h);
-            creases.push(CreaseTag { vertices: [from.0, to.0], sharpness: INFINITELY_SHARP });
-        }
-    }
-    mesh.with_tags(Tags { creases, ..Tags::default() }).unwrap()
-}
-
-/// A peg of so many facets, radius 1 and height 3, turned in space by a rotation that leaves no coordinate whole; its ends are fans
-/// from a vertex of the rim.
-fn peg(facets: u32) -> Mesh {
-    let turned = |[x, y, z]: [f64; 3]| {
-        let (s, c) = 0.7f64.sin_cos();
-        let [x, y, z] = [c * x - s * y, s * x + c * y, z];
-        [x, c * y - s * z, s * y + c * z]
-    };
-    let rim = |z: f64| {
-        (0..facets).map(move |i| {
-            let (s, c) = (TAU * f64::from(i) / f64::from(facets)).sin_cos();
-            [c, s, z]
-        })
-    };
-    let positions = rim(0.0).chain(rim(3.0)).map(turned).collect();
-    let mut triangles = Vec::new();
-    for i in 0..facets {
-        let next = (i + 1) % facets;
-        triangles.extend([[i, next, facets + next], [i, facets + next, facets + i]]);
-    }
-    for i in 1..facets - 1 {
-        triangles.extend([[0, i + 1, i], [facets, facets + i, facets + i + 1]]);
-    }
-    creased(positions, triangles)
-}
+use support::{creased, cross, dot, peg};
 
 /// A slab with a hole through it, both round, and with vertices inside its flat sides where `has_inner`.
 fn washer(facets: u32, has_inner: bool) -> Mesh {
@@ -88,14 +44,6 @@ fn within(tolerance: f64) -> ExactOptions {
     ExactOptions::default().tolerance(tolerance)
 }
 
-fn cross([a, b, c]: [f64; 3], [d, e, f]: [f64; 3]) -> [f64; 3] {
-    [b * f - c * e, c * d - a * f, a * e - b * d]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|i| a[i] * b[i]).sum()
-}
-
 /// Triangles, and area, of those whose normals are within a degree of a direction.
 fn facing(result: &Exact, direction: [f64; 3]) -> (usize, f64) {
     let surface = result.mesh.as_triangles();
@@ -111,7 +59,7 @@ fn facing(result: &Exact, direction: [f64; 3]) -> (usize, f64) {
     (count, area)
 }
 
-/// Without the option and with it: the same bounds, the same points everywhere but inside the flat regions.
+/// Without the option and with it: the same points everywhere but inside the flat regions and on rims that are divided less.
 fn both(mesh: &Mesh, tolerance: f64) -> (Exact, Exact) {
     let options = within(tolerance);
     let merged = exact(mesh, &Loop, &options).unwrap();
@@ -128,9 +76,11 @@ fn both(mesh: &Mesh, tolerance: f64) -> (Exact, Exact) {
         );
         assert_eq!(result.mesh.topology().euler_characteristic(), mesh.topology().euler_characteristic());
     }
-    // What is flat here is flat to rounding, and costs no more.
-    let close = |a: f64, b: f64| (a - b).abs() <= 1e-13 + 1e-9 * (a + b);
-    assert!(close(merged.error.upper, kept.error.upper), "{:?} {:?}", merged.error, kept.error);
+    // What is flat here is flat to rounding, and costs no more; rims are divided as they need it themselves.
+    for result in [&merged, &kept] {
+        let error = &result.error;
+        assert!(error.lower <= error.upper && error.upper <= tolerance, "{error:?}");
+    }
     let points = |result: &Exact| {
         let mut points: Vec<[u64; 3]> =
             result.mesh.positions().iter().map(|p| p.map(|x| x.to_bits())).collect();
@@ -155,7 +105,8 @@ fn the_ends_of_a_peg_follow_their_rims_alone() {
         let mut at_ends = 0;
         for direction in [axis, axis.map(|x| -x)] {
             let [(few, area), (many, same)] = [&merged, &kept].map(|result| facing(result, direction));
-            assert!((area - same).abs() < 1e-12 * area, "{area} {same}");
+            // Between curve and chords along the rim.
+            assert!((area - same).abs() < TAU * tolerance, "{area} {same}");
             assert!(many > 2 * few, "{many} {few}");
             // As many as its rim's polygon has corners, less two.
             let on_rim = merged.sides.iter().filter(|&&(_, normal)| dot(normal, direction) > 0.999_999);
@@ -187,7 +138,8 @@ fn holes_and_control_vertices_stay() {
         assert!(merged.mesh.face_count() < kept.mesh.face_count());
         for direction in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]] {
             let [(few, area), (many, same)] = [&merged, &kept].map(|result| facing(result, direction));
-            assert!((area - same).abs() < 1e-12 * area, "{area} {same}");
+            // Between curves and chords along the rims of radius 2 and 1.
+            assert!((area - same).abs() < 3.0 * TAU * 2e-3, "{area} {same}");
             assert!(few < many);
         }
         for vertex in 0..mesh.vertex_count() {
@@ -275,7 +227,8 @@ fn plates_with_holes_do_not_fold() {
     let outside = 3.0 * 3f64.sqrt();
     // The chords of the rim leave it by the tolerance at most, along its length of half a circle's and less.
     assert!((area - (outside - inside)).abs() < TAU * 0.5 * 1e-4, "{area} {inside}");
-    assert_eq!(whole.mesh.topology().boundary_edge_count(), folded.mesh.topology().boundary_edge_count());
+    // What folds over has the rim divided as well.
+    assert!(whole.mesh.topology().boundary_edge_count() < folded.mesh.topology().boundary_edge_count());
 }
 
 /// Two flat sheets that share a rim: no edge comes to have four faces, and caps hold though a region keeps its triangles.
@@ -323,7 +276,7 @@ fn what_is_flat_is_optimised_with_proof() {
     let plain = exact(&mesh, &Loop, &within(2e-3)).unwrap();
     let optimised = exact(&mesh, &Loop, &within(2e-3).optimize(true)).unwrap();
     optimised.mesh.validate().unwrap();
-    assert!(2 * optimised.mesh.face_count() < plain.mesh.face_count(), "{}", optimised.mesh.face_count());
+    assert!(optimised.mesh.face_count() <= plain.mesh.face_count(), "{}", optimised.mesh.face_count());
     assert!(optimised.error.upper <= 2e-3);
     let reference = limit_reference(&mesh, &Loop, 6).unwrap();
     let samples = SamplingOptions::default().samples(50_000);
@@ -352,8 +305,9 @@ fn rounded_coordinates_are_flat_and_curved_ones_are_not() {
     let [merged, kept] =
         [true, false].map(|flat| exact(&bent, &Loop, &within(1e-3).flat_regions(flat)).unwrap());
     let [(count, area), (same, as_large)] = [&merged, &kept].map(|result| facing(result, axis));
-    // What is flat elsewhere leaves a little less of the tolerance.
-    assert!(count.abs_diff(same) < 50 && (area - as_large).abs() < 1e-6, "{count} {same}");
+    // Triangles in one plane are put together, but the end is none.
     let other = axis.map(|x| -x);
-    assert!(facing(&merged, other).0 < facing(&kept, other).0);
+    let flat = facing(&merged, other).0;
+    assert!(10 * flat < count && count <= same && (area - as_large).abs() < 1e-6, "{flat} {count} {same}");
+    assert!(flat < facing(&kept, other).0);
 }

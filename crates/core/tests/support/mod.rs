@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use limitmesh::Mesh;
-use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
+use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::refine::Exact;
 use limitmesh::refine::limit_reference;
 use limitmesh::scheme::Scheme;
@@ -277,4 +277,51 @@ pub fn vertices_are_of_uniform_refinement(control: &Mesh, scheme: &dyn Scheme, r
             .any(|q| (0..3).all(|i| (p[i] - q[i]).abs() < scale));
         assert!(found, "{name}, {}: {p:?} from {origin:?}", scheme.name());
     }
+}
+
+/// The edges of a mesh whose faces are turned by more than 30 degrees, and the boundary, are sharp.
+pub fn creased(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Mesh {
+    let mesh = Mesh::from_triangles(positions, triangles).unwrap();
+    let unit = |face| {
+        let n: [f64; 3] = mesh.face_normal(face);
+        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        n.map(|x| x / length)
+    };
+    let topology = mesh.topology();
+    let mut creases = Vec::new();
+    for h in topology.half_edges() {
+        let Some(twin) = topology.twin(h).filter(|twin| h < *twin) else { continue };
+        let [a, b] = [h, twin].map(|h| unit(h.face()));
+        if (0..3).map(|i| a[i] * b[i]).sum::<f64>() < 30f64.to_radians().cos() {
+            let [from, to] = topology.ends(h);
+            creases.push(CreaseTag { vertices: [from.0, to.0], sharpness: INFINITELY_SHARP });
+        }
+    }
+    mesh.with_tags(Tags { creases, ..Tags::default() }).unwrap()
+}
+
+/// A peg of so many facets, radius 1 and height 3, turned in space by a rotation that leaves no coordinate whole; its ends are fans
+/// from a vertex of the rim.
+pub fn peg(facets: u32) -> Mesh {
+    let turned = |[x, y, z]: [f64; 3]| {
+        let (s, c) = 0.7f64.sin_cos();
+        let [x, y, z] = [c * x - s * y, s * x + c * y, z];
+        [x, c * y - s * z, s * y + c * z]
+    };
+    let rim = |z: f64| {
+        (0..facets).map(move |i| {
+            let (s, c) = (std::f64::consts::TAU * f64::from(i) / f64::from(facets)).sin_cos();
+            [c, s, z]
+        })
+    };
+    let positions = rim(0.0).chain(rim(3.0)).map(turned).collect();
+    let mut triangles = Vec::new();
+    for i in 0..facets {
+        let next = (i + 1) % facets;
+        triangles.extend([[i, next, facets + next], [i, facets + next, facets + i]]);
+    }
+    for i in 1..facets - 1 {
+        triangles.extend([[0, i + 1, i], [facets, facets + i, facets + i + 1]]);
+    }
+    creased(positions, triangles)
 }

@@ -17,9 +17,11 @@
 mod merge;
 mod planar;
 mod strips;
+mod unfolded;
 
 pub(super) use merge::Assembled;
 pub(super) use strips::Net;
+use unfolded::is_unfolded;
 
 use super::chains::Chains;
 use super::decide::Control;
@@ -51,6 +53,10 @@ const WEIGHT: usize = 16;
 /// Control faces that one call takes together.
 const BLOCK: usize = 1024;
 
+/// The same where each takes some tenths of a millisecond, and how many may take that.
+const UNFOLDED: usize = 16;
+const MOST_UNFOLDED: usize = 4096;
+
 /// A plane through a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
@@ -79,6 +85,8 @@ pub(super) struct FlatRegions {
     unfolds: bool,
     /// By region, whether its triangles are judged by the rim alone.
     by_rim: Vec<bool>,
+    /// How far beyond its rim the surface over such a region may reach for all that was proven.
+    beyond_rims: f64,
     /// Whether the rim of such a region enclosed nothing that could be triangulated.
     has_gaps: AtomicBool,
     /// So many leaves of a flat face count as one while faces are divided.
@@ -158,31 +166,51 @@ impl FlatRegions {
             off_planes,
             unfolds,
             by_rim: Vec::new(),
+            beyond_rims: 0.0,
             has_gaps: AtomicBool::new(false),
             weight,
         };
-        found.by_rim = found.by_rim((control, edges), options, watch)?;
+        found.by_rim = found.by_rim((control, edges), (options, most), watch)?;
         Ok(found)
     }
 
-    /// Which regions are judged by their rims alone: those with nothing but sharp edges and boundaries around them, where what rims
-    /// enclose is the surface, and distances alone are asked for.
+    /// Which regions are judged by their rims alone, where distances alone are asked for: those with nothing but sharp edges and
+    /// boundaries around them, if what their rims enclose is the surface, or is taken for it.
     fn by_rim(
-        &self,
+        &mut self,
         (control, edges): (&Control<'_>, &Edges<'_>),
-        options: &ExactOptions,
+        (options, most): (&ExactOptions, f64),
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
-        let is_asked = self.unfolds && options.by_rims && options.angle.is_none() && options.pixels.is_none();
+        let mut by_rim = vec![false; self.regions.len()];
+        let is_asked = options.by_rims && options.angle.is_none() && options.pixels.is_none();
         if !is_asked || !control.rules.is_certified() {
-            return Ok(vec![false; self.regions.len()]);
+            return Ok(by_rim);
         }
-        let mut by_rim = Vec::with_capacity(self.regions.len());
-        watch.each(&self.regions, |(faces, _)| {
+        watch.each(by_rim.iter_mut().zip(&self.regions), |(by_rim, (faces, _))| {
             let is_smooth =
                 |h: u32| self.is_rim((control, edges), h) && control.lasting.edge(HalfEdgeId(h)) <= 0.0;
-            by_rim.push(!faces.iter().any(|&face| (3 * face..3 * face + 3).any(is_smooth)));
+            *by_rim = !faces.iter().any(|&face| (3 * face..3 * face + 3).any(is_smooth));
         })?;
+        let is_by_rim = |face: u32| self.region(face).is_some_and(|region| by_rim[region as usize]);
+        let faces: Vec<u32> = (0..self.of_face.len() as u32).filter(|&face| is_by_rim(face)).collect();
+        if self.unfolds || faces.is_empty() {
+            return Ok(by_rim);
+        }
+        if faces.len() > MOST_UNFOLDED {
+            by_rim.fill(false);
+            return Ok(by_rim);
+        }
+        let folded = watch.pieces(faces.len(), UNFOLDED, |block| {
+            let region = |face: u32| self.region(face).unwrap_or(NONE) as usize;
+            let is_folded = |&face: &u32| !is_unfolded(control, face, &self.regions[region(face)].1, most);
+            let folded = faces[block].iter().copied().filter(is_folded);
+            folded.map(region).collect::<Vec<_>>()
+        })?;
+        watch.each(folded.into_iter().flatten(), |region| by_rim[region] = false)?;
+        if by_rim.contains(&true) {
+            self.beyond_rims = most;
+        }
         Ok(by_rim)
     }
 
@@ -194,6 +222,12 @@ impl FlatRegions {
     /// Whether some of these could not be triangulated from their rims, so that nothing is known of what stands for them.
     pub(super) fn has_gaps(&self) -> bool {
         self.has_gaps.load(Ordering::Relaxed)
+    }
+
+    /// How far what is handed out may be from what was judged, at most: triangles of a region, and vertices of a straight line, are as
+    /// far off as those in whose place they come, on either side.
+    pub(super) fn allowance(&self) -> f64 {
+        3.0 * self.off_planes + self.beyond_rims
     }
 
     /// How far the surface, and what stands for it, is off the planes at most.

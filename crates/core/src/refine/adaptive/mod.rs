@@ -259,7 +259,7 @@ fn with_engine<T>(
     if options.flat_regions && !options.balance && options.attributes.is_empty() {
         control.flat = FlatRegions::of(&control, &edges, options, &watch)?;
     }
-    let rounding = probe::rounding(mesh, options.max_levels, &watch)? + 3.0 * control.flat.off_planes();
+    let rounding = probe::rounding(mesh, options.max_levels, &watch)? + control.flat.allowance();
     control.criteria = criteria(mesh, options, rounding)?;
     control.back_faces = BackFaces::of(&control, options.balance, &watch)?;
     let engine = Engine {

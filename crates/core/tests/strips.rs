@@ -1,0 +1,232 @@
+//! Surfaces that are straight in one direction, and flat ends that follow their rims alone, against exact shapes and against the same
+//! surface with all of its hierarchy.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod support;
+
+use limitmesh::Mesh;
+use limitmesh::measure::{SamplingOptions, hausdorff};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate, limit_reference};
+use limitmesh::scheme::Loop;
+use support::{Point, Random, creased, cross, distance, dot, minus, peg};
+
+fn within(tolerance: f64) -> ExactOptions {
+    ExactOptions::default().tolerance(tolerance).unfold(true)
+}
+
+/// A point of a uniform cubic B-spline.
+fn spline(t: f64, points: [Point; 4]) -> Point {
+    let weights = [
+        (1.0 - t).powi(3),
+        3.0 * t * t * t - 6.0 * t * t + 4.0,
+        1.0 + 3.0 * (t + t * t - t * t * t),
+        t * t * t,
+    ];
+    [0, 1, 2].map(|axis| weights.iter().zip(points).map(|(w, p)| w * p[axis]).sum::<f64>() / 6.0)
+}
+
+/// The distance of a point to a segment.
+fn to_segment(p: Point, [a, b]: [Point; 2]) -> f64 {
+    let (along, off) = (minus(b, a), minus(p, a));
+    let t = (dot(along, off) / dot(along, along)).clamp(0.0, 1.0);
+    distance(p, [0, 1, 2].map(|i| a[i] + t * along[i]))
+}
+
+fn area(result: &Exact) -> f64 {
+    let surface = result.mesh.as_triangles();
+    let area = |[a, b, c]: [Point; 3]| {
+        let normal = cross(minus(b, a), minus(c, a));
+        0.5 * dot(normal, normal).sqrt()
+    };
+    (0..result.mesh.face_count()).map(|face| area(surface.corners(face))).sum()
+}
+
+/// The limit of the control polygon at one end of a peg is a spline: all of a rim's corners are on it, no chord is farther from it than
+/// asked, and all chords are alike, whatever slivers the ends were made of. Two triangles for each stand between both rims, and no vertex.
+#[test]
+fn pegs_follow_their_rims() {
+    for (facets, tolerance) in [(13, 1e-2), (16, 2e-3), (16, 1e-4), (16, 1e-5)] {
+        let mesh = peg(facets);
+        let result = exact(&mesh, &Loop, &within(tolerance)).unwrap();
+        result.mesh.validate().unwrap();
+        assert_eq!(result.stop, ExactStop::Met);
+        let control = mesh.positions();
+        let axis = [0, 1, 2].map(|i| (control[facets as usize][i] - control[0][i]) / 3.0);
+        let positions = result.mesh.positions();
+        let mut per_rim = Vec::new();
+        for first in [0, facets] {
+            let on_rim: Vec<Point> = positions
+                .iter()
+                .copied()
+                .filter(|&p| dot(minus(p, control[first as usize]), axis).abs() < 1e-9)
+                .collect();
+            let curve: Vec<Point> = (0..facets)
+                .flat_map(|i| {
+                    let points =
+                        [0, 1, 2, 3].map(|k| control[(first + (i + facets - 1 + k) % facets) as usize]);
+                    (0..512).map(move |step| spline(f64::from(step) / 512.0, points))
+                })
+                .collect();
+            let nearest = |p: Point| {
+                let along = curve.iter().map(|&q| distance(p, q)).enumerate();
+                along.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap()
+            };
+            let mut along: Vec<(usize, Point)> = on_rim
+                .iter()
+                .map(|&p| {
+                    let (at, off) = nearest(p);
+                    assert!(off < 1e-9, "a corner is {off} off its rim");
+                    (at, p)
+                })
+                .collect();
+            along.sort_by_key(|&(at, _)| at);
+            let chord = |i: usize| [along[i].1, along[(i + 1) % along.len()].1];
+            let lengths: Vec<f64> = (0..along.len()).map(chord).map(|[a, b]| distance(a, b)).collect();
+            let [least, most] = [f64::min, f64::max].map(|of| lengths.iter().copied().reduce(of).unwrap());
+            assert!(most < 1.1 * least, "{facets}, {tolerance}: {least} {most}");
+            for (at, &p) in curve.iter().enumerate() {
+                let off = (0..along.len()).map(|i| to_segment(p, chord(i))).fold(f64::INFINITY, f64::min);
+                assert!(off <= tolerance, "{facets}, {tolerance}: {off} at {at}");
+            }
+            per_rim.push(along.len());
+        }
+        assert_eq!(per_rim[0], per_rim[1]);
+        assert_eq!(positions.len(), 2 * per_rim[0]);
+        assert_eq!(result.mesh.face_count(), 4 * per_rim[0] - 4);
+        let reference = limit_reference(&mesh, &Loop, 6).unwrap();
+        let samples = SamplingOptions::default().samples(50_000);
+        let apart = hausdorff(result.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+        // The reference's own chords leave the rims by less than this.
+        assert!(apart.symmetric() <= tolerance + 2e-5, "{}", apart.symmetric());
+    }
+}
+
+/// A sheet over a grid that is straight in one direction, with rows of control vertices along it, turned in space.
+fn corrugated(columns: u32, rows: u32, numbers: &mut Random) -> Mesh {
+    let turn = numbers.signed();
+    let slant = 0.4 * numbers.signed();
+    let profile: Vec<[f64; 2]> =
+        (0..columns).map(|i| [f64::from(i) + 0.2 * numbers.signed(), 1.5 * numbers.signed()]).collect();
+    let at = |i: u32, j: u32| {
+        let ([x, z], y) = (profile[i as usize], f64::from(j));
+        let (s, c) = turn.sin_cos();
+        [c * x - s * y + slant * z, s * x + c * y, z + slant * y]
+    };
+    let positions =
+        (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))).map(|(i, j)| at(i, j)).collect();
+    let quads = (0..rows - 1).flat_map(|j| (0..columns - 1).map(move |i| j * columns + i));
+    let triangles =
+        quads.flat_map(|v| [[v, v + 1, v + columns + 1], [v, v + columns + 1, v + columns]]).collect();
+    Mesh::from_triangles(positions, triangles).unwrap()
+}
+
+/// Fewer triangles, and the same set of points as with all of the hierarchy, whatever the profile; control vertices stay.
+#[test]
+fn strips_are_the_same_points() {
+    let mut numbers = Random::new(7);
+    let mut saved = 0;
+    for case in 0..24 {
+        let mesh = corrugated(4 + case % 5, 2 + case % 3, &mut numbers);
+        let tolerance = [0.03, 0.01, 0.002][case as usize % 3];
+        let options = within(tolerance);
+        let merged = exact(&mesh, &Loop, &options).unwrap();
+        let kept = exact(&mesh, &Loop, &options.clone().flat_regions(false)).unwrap();
+        merged.mesh.validate().unwrap();
+        assert_eq!((merged.stop, kept.stop), (ExactStop::Met, ExactStop::Met), "{case}");
+        assert!(merged.mesh.face_count() <= kept.mesh.face_count(), "{case}");
+        saved += kept.mesh.face_count() - merged.mesh.face_count();
+        assert!((area(&merged) - area(&kept)).abs() < 1e-11 * area(&kept), "{case}");
+        let samples = SamplingOptions::default().samples(20_000);
+        let apart = hausdorff(merged.mesh.as_triangles(), kept.mesh.as_triangles(), &samples).unwrap();
+        assert!(apart.symmetric() < 1e-11, "{case}: {}", apart.symmetric());
+        assert_eq!(merged.mesh.topology().euler_characteristic(), 1);
+        let corners = mesh.vertex_count();
+        assert_eq!(merged.mesh.positions()[..corners], kept.mesh.positions()[..corners]);
+        assert!(merged.parents.is_sorted());
+        let estimate = exact_estimate(&mesh, &Loop, &options).unwrap();
+        assert_eq!(estimate.triangles, merged.mesh.face_count(), "{case}");
+        let most = merged.mesh.face_count();
+        let budget = exact(&mesh, &Loop, &ExactOptions::default().triangles(most)).unwrap();
+        assert!(budget.mesh.face_count() <= most);
+        assert!(budget.error.upper <= 1.15 * merged.error.upper.max(tolerance), "{case}: {:?}", budget.error);
+    }
+    assert!(saved > 1000, "{saved}");
+}
+
+/// Two flat sides that go over into two round ones: the line between them may be straight, but what is flat has no sharp rim.
+#[test]
+fn flat_sides_may_go_over_into_round_ones() {
+    let mut profile: Vec<[f64; 2]> = Vec::new();
+    for (middle, from) in [(3.0, -0.25f64), (-3.0, 0.25)] {
+        for i in 0..=8 {
+            let (s, c) = (std::f64::consts::TAU * (from + f64::from(i) / 16.0)).sin_cos();
+            profile.push([middle + c, s]);
+        }
+        // Two more in a row, so that something between them is flat.
+        let side = if from < 0.0 { 1.0 } else { -1.0 };
+        profile.extend([1.5, 0.0, -1.5].map(|x| [side * x, side]));
+    }
+    let count = profile.len() as u32;
+    let positions = [0.0, 2.0].iter().flat_map(|&z| profile.iter().map(move |&[x, y]| [x, y, z])).collect();
+    let mut triangles = Vec::new();
+    for i in 0..count {
+        let next = (i + 1) % count;
+        triangles.extend([[i, next, count + next], [i, count + next, count + i]]);
+    }
+    // Fans from the middle of a round side.
+    for i in 5..count + 3 {
+        let [here, next] = [i, i + 1].map(|i| i % count);
+        triangles.extend([[4, next, here], [count + 4, count + here, count + next]]);
+    }
+    let mesh = creased(positions, triangles);
+    for tolerance in [1e-2, 1e-3] {
+        let [merged, folded] = [true, false].map(|unfold| within(tolerance).unfold(unfold));
+        let [merged, folded] = [merged, folded].map(|options| exact(&mesh, &Loop, &options).unwrap());
+        let kept = exact(&mesh, &Loop, &within(tolerance).flat_regions(false)).unwrap();
+        for result in [&merged, &folded] {
+            result.mesh.validate().unwrap();
+            assert_eq!(result.stop, ExactStop::Met);
+            assert_eq!(result.mesh.topology().euler_characteristic(), 2);
+            assert_eq!(result.inverted_triangles(), 0);
+        }
+        // Hardly anything but the rims has vertices: where curvature changes some leaves are divided beside others that are not.
+        assert_eq!(merged.mesh.face_count(), 2 * merged.mesh.vertex_count() - 4);
+        let inside = merged.mesh.positions().iter().filter(|p| p[2] != 0.0 && p[2] != 2.0).count();
+        assert!(8 * inside < merged.mesh.vertex_count(), "{inside}");
+        assert!(4 * merged.mesh.face_count() < kept.mesh.face_count());
+        let reference = limit_reference(&mesh, &Loop, 5).unwrap();
+        let samples = SamplingOptions::default().samples(50_000);
+        let apart = hausdorff(merged.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+        assert!(apart.symmetric() <= tolerance + 5e-5, "{}", apart.symmetric());
+    }
+}
+
+/// Coordinates of single precision are off their lines by what they are rounded to, and what that does is counted.
+#[test]
+fn rounded_coordinates_have_strips_too() {
+    let mesh = peg(16);
+    let rounded = mesh.positions().iter().map(|p| p.map(|x| f64::from(x as f32))).collect();
+    let rounded = mesh.clone().with_positions(rounded).unwrap();
+    let [exactly, single] = [&mesh, &rounded].map(|mesh| exact(mesh, &Loop, &within(1e-3)).unwrap());
+    assert_eq!(single.mesh.face_count(), exactly.mesh.face_count());
+    assert!(single.error.upper <= 1e-3);
+    let reference = limit_reference(&rounded, &Loop, 6).unwrap();
+    let samples = SamplingOptions::default().samples(50_000);
+    let apart = hausdorff(single.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+    assert!(apart.symmetric() <= 1e-3 + 2e-5, "{}", apart.symmetric());
+}
+
+/// The same bytes for any number of threads.
+#[test]
+fn threads_change_nothing() {
+    let mesh = peg(16);
+    let run = || exact(&mesh, &Loop, &within(1e-4)).unwrap();
+    let here = run();
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let there = pool.install(run);
+        assert_eq!(here.mesh.positions(), there.mesh.positions());
+        assert_eq!(here.mesh.triangles(), there.mesh.triangles());
+    }
+}
