@@ -58,10 +58,11 @@ pub(crate) struct ExactArguments {
     #[arg(long)]
     pub(crate) optimize: bool,
 
-    /// Divide what lies in a plane like all the rest
+    /// Divide what lies in a plane, or is straight in one direction, like all the rest
     ///
     /// Otherwise a region of the surface that lies in a plane, such as the end of a cylinder with a creased rim, gets triangles
-    /// between the vertices of its rim and of the control mesh alone: as near to the surface with far fewer triangles.
+    /// between the vertices of its rim and of the control mesh alone, and the cylinder's side long ones from rim to rim: as near to the
+    /// surface with far fewer triangles.
     #[arg(long)]
     pub(crate) divide_flat: bool,
 

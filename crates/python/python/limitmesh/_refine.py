@@ -100,7 +100,7 @@ def refine(
     balance
         Lets vertices leave the limit surface by up to half the local error: fewer triangles.
     flat_regions
-        Whether regions in a plane are triangulated from their rims alone.
+        Whether regions in a plane are triangulated from their rims alone, and what is straight in one direction by long triangles.
     channels
         What is carried along, by name: `Channel`, or arrays with a row for each vertex, corner or face.
     origins

@@ -1,14 +1,19 @@
 //! Regions of control faces whose limit surface is a part of a plane, such as the ends of a cylinder with creased rims.
 //!
 //! There the quadtrees only follow the rim: what they put inside adds nothing. Once everything is emitted, a region's triangles
-//! give way to the constrained Delaunay triangulation of its rim and its control vertices ([`merge`], [`planar`]). Where its triangles
-//! all turn the same way and its rim is simple, they cover what is inside of the rim: before and after it is the same set of points, and
-//! what is proven of the one holds for the other. Where some are turned over, as where slivers of a fan meet a hole, the surface
-//! folds, perhaps over its rim; there they stay, unless the part of the plane inside of the rim is asked for
-//! ([`ExactOptions::unfold`]). Then that *is* the surface, and as near as before:
-//! a point inside of the rim's curves and not of its chords, or the other way round, is between a curve and its chord, in
-//! the convex hull of the curve, so no farther from the chord than that curve's points are; and any point between them has
-//! points of the curve as near.
+//! give way to the constrained Delaunay triangulation of its rim and its control vertices ([`merge`], [`planar`]). So do those of
+//! [`strips`].
+//!
+//! **By their rims.** Where the surface is what the rim's curves enclose, and the triangles are what its chords do, a point of the one and not
+//! of the other is between a curve and its chord, in the convex hull of the curve, so no farther from the chord than that curve's
+//! points are; and as near as that to the curve: of the two ways from it at right angles to the chord one at least meets the curve and not the
+//! chord before. So curves and chords are all there is to judge. That is so where the surface is proven not to be turned over
+//! ([`unfolded`]), or where what the rim encloses is asked for ([`ExactOptions::unfold`]) and *is* the surface; and only where
+//! nothing smooth goes on beyond the rim.
+//!
+//! **By their triangles.** Elsewhere the triangles are judged as all are. Where they all turn the same way and the rim is simple, they cover what
+//! is inside of the rim: before and after it is the same set of points, and what is proven of the one holds for the other. Where some are
+//! turned over, as where slivers of a fan meet a hole, the surface folds, perhaps over its rim; there they stay.
 //!
 //! A face is flat where the control points whose hull holds its piece of the surface lie in the plane. A triangulation of
 //! a region with the same control vertices and K vertices inside its rim's control edges has K triangles more than there are
