@@ -19,6 +19,7 @@
 //! a region with the same control vertices and K vertices inside its rim's control edges has K triangles more than there are
 //! control faces, by Euler's formula, whatever its holes: so plans know their triangles without any triangulation.
 
+mod flattened;
 mod merge;
 mod planar;
 mod strips;
