@@ -5,7 +5,8 @@
 
 use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Domain, PolygonSoup, Semantic, Triangles};
 use limitmesh_io::{
-    Format, Output, Property, WriteError, WriteOptions, read_bytes, rounding, write, write_to, write_whole,
+    Format, Output, Property, WriteError, WriteOptions, check_writable, read_bytes, rounding, write,
+    write_to, write_whole,
 };
 use proptest::prelude::*;
 use std::fs;
@@ -476,8 +477,15 @@ fn a_refused_output_leaves_the_earlier_file() {
 fn places_that_cannot_be_written_to() {
     let folder = tempfile::tempdir().unwrap();
     let missing = folder.path().join("no such folder").join("mesh.ply");
-    let message = write(&missing, &triangle(), &WriteOptions::default()).unwrap_err().to_string();
-    assert!(message.starts_with(&format!("cannot write {}: ", missing.display())), "{message}");
+    let refused = [
+        write(&missing, &triangle(), &WriteOptions::default()),
+        write_whole(&missing, b"x"),
+        check_writable(&missing),
+    ];
+    for message in refused.map(|result| result.unwrap_err().to_string()) {
+        assert!(message.starts_with(&format!("cannot write {}: ", missing.display())), "{message}");
+        assert!(!message.contains(".limitmesh-"), "names a temporary file: {message}");
+    }
     let is_folder = folder.path().join("folder.ply");
     fs::create_dir(&is_folder).unwrap();
     let message = write_whole(&is_folder, b"").unwrap_err().to_string();

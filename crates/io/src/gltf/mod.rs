@@ -49,6 +49,7 @@ pub use parts::{Joining, KeptApart, MeshSoup, Part};
 pub use tangents::WithTangents;
 
 use crate::error::ReadError;
+use crate::format::Format;
 use crate::read::read_all;
 use changes::Changes;
 use flaw::Result as Flawed;
@@ -135,6 +136,9 @@ impl Asset {
     /// # Errors
     /// As for [`Self::open`].
     pub fn from_bytes(bytes: &[u8], folder: Option<&Path>) -> Result<Self, ReadError> {
+        if bytes.is_empty() {
+            return Err(ReadError::Empty { path: None, format: Format::Gltf });
+        }
         let source = Source::parse(bytes, folder)?;
         let scene = source.scene()?;
         Ok(Self { path: None, source, scene, changes: Changes::default() })

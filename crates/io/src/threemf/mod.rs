@@ -31,6 +31,7 @@ pub use properties::{Inherited, Source};
 
 use crate::affine::{self, Affine};
 use crate::error::{ReadError, WriteError};
+use crate::format::Format;
 use crate::read::read_all;
 use container::Container;
 use edit::Replacement;
@@ -128,6 +129,9 @@ impl Package {
     /// # Errors
     /// As for [`Self::open`].
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, ReadError> {
+        if bytes.is_empty() {
+            return Err(ReadError::Empty { path: None, format: Format::ThreeMf });
+        }
         Self::parse(bytes).map_err(|flaw| ReadError::Package { path: None, flaw: Box::new(flaw) })
     }
 

@@ -72,7 +72,7 @@ pub fn write_whole_with(
     }
     let target = target(path, earlier.as_ref()).map_err(failed)?;
     let mut file = temporary_beside(&target).map_err(failed)?;
-    fill(&mut file).map_err(|error| error.in_file(path))?;
+    fill(file.as_file_mut()).map_err(|error| error.in_file(path))?;
     if let Some(earlier) = earlier {
         fs::set_permissions(file.path(), earlier.permissions()).map_err(failed)?;
     }
@@ -97,7 +97,7 @@ pub(crate) fn write_together(files: &[WholeFile]) -> Result<(), WriteError> {
         }
         let target = target(path, earlier.as_ref()).map_err(failed)?;
         let mut file = temporary_beside(&target).map_err(failed)?;
-        file.write_all(bytes).map_err(failed)?;
+        file.as_file_mut().write_all(bytes).map_err(failed)?;
         if let Some(earlier) = earlier {
             fs::set_permissions(file.path(), earlier.permissions()).map_err(failed)?;
         }
@@ -119,18 +119,14 @@ pub(crate) fn write_together(files: &[WholeFile]) -> Result<(), WriteError> {
 }
 
 /// A new file in the folder of `target`, which is removed unless it is renamed.
+///
+/// It is opened here and written to as it is, since errors would name the temporary file otherwise, which nobody asked for.
 fn temporary_beside(target: &Path) -> io::Result<tempfile::NamedTempFile> {
     let folder = match target.parent() {
         Some(folder) if folder != Path::new("") => folder.to_owned(),
         _ => PathBuf::from("."),
     };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".limitmesh-").suffix(".tmp");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // What any new file asks for; the user's mask takes from it.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
+    // With the permissions of any new file.
+    let open = |path: &Path| fs::OpenOptions::new().read(true).write(true).create_new(true).open(path);
+    tempfile::Builder::new().prefix(".limitmesh-").suffix(".tmp").make_in(folder, open)
 }
