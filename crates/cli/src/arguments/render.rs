@@ -42,18 +42,19 @@ pub(crate) struct RenderArguments {
     pub(crate) smooth: bool,
 
     /// Take the mesh for a control mesh and draw its limit surface itself, by rays: outlines have no facets
-    #[arg(long, conflicts_with_all = ["wireframe", "flat", "texture"])]
+    #[arg(long, conflicts_with_all = ["wireframe", "flat", "smooth", "texture"])]
     pub(crate) exact: bool,
 
-    /// Scheme of the limit surface (loop, loop-warren)
-    #[arg(long, value_enum, default_value_t, requires = "exact")]
-    pub(crate) scheme: SchemeName,
+    /// Scheme of the limit surface that --exact draws: loop or loop-warren [default: loop]
+    #[arg(long, value_enum)]
+    pub(crate) scheme: Option<SchemeName>,
 
     /// Shade both sides of edges by themselves where the faces meet at more than this angle [degrees, above 0 to 180]
     ///
     /// In place of the file's normals. Edges that the file tags as sharp for ever are shaded so in any case. With --exact they are creases
     /// of the surface.
     #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
+    #[arg(conflicts_with = "flat")]
     pub(crate) crease_angle: Option<f64>,
 
     /// What lies on the surface by its texture coordinates: a PNG or JPEG file, checker for a pattern that shows stretching and seams, or

@@ -38,7 +38,7 @@ impl Cover {
                 Self::of_texture(input, Texture::checker()).map(Some)
             }
             Some(path) => {
-                let name = || path.display().to_string();
+                let name = || format!("--texture {}", path.display());
                 let bytes = std::fs::read(path).with_context(name)?;
                 Self::of_texture(input, Texture::decode(&bytes).with_context(name)?).map(Some)
             }
@@ -50,7 +50,10 @@ impl Cover {
     fn of_texture(input: &Input, texture: Texture) -> anyhow::Result<Self> {
         let is_laid = |channel: &&Channel| channel.semantic == Semantic::TextureCoordinates;
         let Some(channel) = input.channels.iter().find(is_laid) else {
-            return usage(format!("{} has no texture coordinates that a texture could lie by", input.name));
+            return usage(format!(
+                "{} has no texture coordinates (vt of OBJ, s and t of PLY, TEXCOORD_0 of glTF) that --texture could lie by",
+                input.name
+            ));
         };
         let count = input.mesh.face_count();
         let corners = (0..3 * count).map(|corner| place(&input.mesh, channel, corner)).collect();

@@ -54,9 +54,17 @@ impl Written {
 
 /// Makes the levels, writes them, and prints when to switch.
 pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Result<Outcome> {
+    if output::is_standard_output(&arguments.output) {
+        return usage(
+            "levels of detail are written to files, not to standard output; expected a name such as levels.glb",
+        );
+    }
     let format = Format::from_path(&arguments.output).or_else(|unknown| usage(unknown.to_string()))?;
     if arguments.morph && !format.is_gltf() && format != Format::Ply {
-        return usage("--morph needs a .glb, .gltf or .ply file: others have no place for it");
+        let name = arguments.output.display();
+        return usage(format!(
+            "{name}: --morph needs a .glb, .gltf or .ply file: {format} files have no place for it"
+        ));
     }
     if let Some(option) = arguments.channels.given_tolerance() {
         return usage(format!(
@@ -91,7 +99,6 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     let asked = LodOptions::new(tolerances)
         .geomorphs(arguments.morph)
         .max_triangles(Some(arguments.max_triangles.unwrap_or(MOST_EXACT)));
-    let wanted = asked.tolerances.len();
     let mut levels = levels_of_detail_observed(&mesh, scheme, &asked, &mut progress.observer())?;
     let found = levels.len();
     leave_out_needless(&mut levels, progress);
@@ -116,12 +123,23 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     }
     Ok(match stop {
         ExactStop::Met => Outcome::Done,
-        stop => Outcome::StoppedShort(format!(
-            "level {} of {wanted}, counted from the coarsest, could not be reached ({})",
-            found,
-            exact_stop_name(stop)
-        )),
+        stop => Outcome::StoppedShort(short(stop, (found, &asked), levels.last())),
     })
+}
+
+/// Why the last level that was begun, of those asked for, is not as near as it should be.
+fn short(stop: ExactStop, (found, asked): (usize, &LodOptions), last: Option<&Level>) -> String {
+    let cap = match (stop, asked.max_triangles) {
+        (ExactStop::TriangleCap, Some(most)) => format!("--max-triangles {}", thousands(most)),
+        (ExactStop::LevelCap, _) => "the most that a face is divided".to_owned(),
+        _ => exact_stop_name(stop).to_owned(),
+    };
+    let wanted = last.map_or(0.0, |level| level.tolerance);
+    format!(
+        "{cap} was reached before level {found} of {}, counted from the coarsest, was within {}: LOD0 is as near as that allows",
+        asked.tolerances.len(),
+        number(wanted),
+    )
 }
 
 /// Checks before the work that what is to be written can be, replaces no input, and is written once.
@@ -150,8 +168,13 @@ fn tolerances(arguments: &LodArguments, diagonal: f64) -> anyhow::Result<Vec<f64
     } else {
         arguments.tolerances.iter().map(length).collect::<anyhow::Result<Vec<f64>>>()?
     };
-    if lengths.windows(2).any(|pair| pair[1] >= pair[0]) {
-        return usage("--tolerances are from coarse to fine: each is below the one before");
+    if let Some(at) = lengths.windows(2).position(|pair| pair[1] >= pair[0]) {
+        return usage(format!(
+            "--tolerances are from coarse to fine, each below the one before; number {} comes to {} in the mesh's unit, after {}",
+            at + 2,
+            number(lengths[at + 1]),
+            number(lengths[at])
+        ));
     }
     Ok(lengths)
 }
@@ -162,10 +185,16 @@ fn leave_out_needless(levels: &mut Vec<Level>, progress: &Progress) {
         && (finer.parametric >= coarsest.parametric
             || finer.exact.mesh.face_count() == coarsest.exact.mesh.face_count())
     {
+        let [own, next] = [&*coarsest, &*finer].map(|level| level.exact.mesh.face_count());
         progress.note(format!(
-            "the level within {} is left out: the next finer one, of {}, is as coarse as the control mesh allows",
+            "the level within {}, of {}, is left out: {}",
             number(coarsest.tolerance),
-            counted(finer.exact.mesh.face_count(), "triangle", "triangles"),
+            counted(own, "triangle", "triangles"),
+            match own == next {
+                true =>
+                    "the next finer one has as many, since none is coarser than the control mesh".to_owned(),
+                false => format!("place by place, the next finer one, of {}, is no nearer", thousands(next)),
+            }
         ));
         finer.geomorph = None;
         levels.remove(0);

@@ -2,14 +2,14 @@
 
 use anyhow::{Context, bail};
 use limitmesh::mesh::{Channel, SplitSurface};
-use limitmesh::refine::limit_reference;
+use limitmesh::refine::{is_certified, limit_reference};
 use limitmesh::{LimitSurface, Mesh, RayCaster};
 use limitmesh_render::{Camera, Shading, Style, render_exact_observed};
 
 use super::covering::Cover;
 use super::picture;
 use crate::arguments::RenderArguments;
-use crate::failure::Outcome;
+use crate::failure::{Outcome, usage};
 use crate::format::counted;
 use crate::input;
 use crate::output;
@@ -22,6 +22,7 @@ const UNSEEN: [&str; 3] = ["normals", "tangents", "materials but for their names
 /// Reads a mesh and draws it.
 pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     picture::check_name(&arguments.output)?;
+    check_scheme(arguments)?;
     if arguments.exact {
         return exact(arguments, progress);
     }
@@ -54,6 +55,23 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
     let drawn = counted(mesh.face_count(), "triangle", "triangles");
     progress.note(format!("{}: {drawn} drawn", arguments.output.display()));
     Ok(Outcome::Done)
+}
+
+/// Refuses a scheme whose limit surface is not drawn.
+fn check_scheme(arguments: &RenderArguments) -> anyhow::Result<()> {
+    let Some(name) = arguments.scheme else { return Ok(()) };
+    if !arguments.exact {
+        return usage(
+            "--scheme is that of a limit surface; it needs --exact, without which the mesh itself is drawn",
+        );
+    }
+    if !is_certified(name.scheme()) {
+        return usage(format!(
+            "--scheme {}: rays are followed to limit surfaces of loop and loop-warren alone",
+            name.scheme().name()
+        ));
+    }
+    Ok(())
 }
 
 /// A mesh with the normals that its file has; with those of its faces where it has none.
@@ -90,7 +108,7 @@ fn exact(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Out
     if let Some(angle) = arguments.crease_angle {
         mesh = mesh.with_creases_above(angle.to_radians())?;
     }
-    let scheme = arguments.scheme.scheme();
+    let scheme = arguments.scheme.unwrap_or_default().scheme();
     let surface = LimitSurface::new(&mesh, scheme).with_context(|| name.clone())?;
     let rays = RayCaster::new(&surface).with_context(|| name.clone())?;
     if mesh.face_count() == 0 {

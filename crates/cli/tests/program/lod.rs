@@ -92,9 +92,26 @@ fn one_document_has_all_levels() {
 fn what_cannot_be_is_told() {
     let folder = folder();
     let out = folder.path().join("cup.obj");
-    run("lod builtin:cup -o {} --tolerances 1%,2%", &[&out]).expect(2);
+    run("lod builtin:sphere -o {} --tolerances 3,1,2", &[&out])
+        .expect(2)
+        .saying("number 3 comes to 2 in the mesh's unit, after 1");
+    run("lod builtin:cup -o -", &[]).expect(2).saying("not to standard output");
     run("lod builtin:cup -o {} --levels 0", &[&out]).expect(2);
     run("lod builtin:none -o {}", &[&out]).expect(1).saying("none");
+    let stl = folder.path().join("cup.stl");
+    run("lod builtin:cup -o {} --morph", &[&stl])
+        .expect(2)
+        .saying("cup.stl")
+        .saying("STL files have no place");
+}
+
+#[test]
+fn a_cap_that_ends_the_levels_is_named() {
+    let folder = folder();
+    let out = folder.path().join("out.glb");
+    run("lod builtin:sphere -o {} --tolerances 5%,1%,0.1% --max-triangles 1000", &[&out])
+        .expect(3)
+        .saying("--max-triangles 1,000 was reached before level 3 of 3");
 }
 
 /// A square with a texture and two materials that a library describes.

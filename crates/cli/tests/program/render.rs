@@ -41,6 +41,13 @@ fn wrong_pictures_are_refused() {
     let folder = folder();
     let path = folder.path().join("out.png");
     run("render builtin:head -o {} --flat --smooth", &[&path]).expect(2).saying("cannot be used with");
+    run("render builtin:head -o {} --flat --crease-angle 30", &[&path])
+        .expect(2)
+        .saying("cannot be used with");
+    let missing = folder.path().join("missing.png");
+    run("render builtin:head -o {} --texture {}", &[&path, &missing])
+        .expect(1)
+        .saying(&format!("--texture {}", missing.display()));
     run("render builtin:head -o {} --size 0x10", &[&path]).expect(2).saying("1 to");
     run("render builtin:head -o {} --size big", &[&path]).expect(2).saying("WxH");
     run("render builtin:head -o {}", &[&path.with_extension("gif")]).expect(2).saying(".png");
@@ -54,7 +61,7 @@ fn textures_lie_on_surfaces_with_texture_coordinates() {
     let plain = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\n";
     std::fs::write(&mesh, format!("{plain}f 1 2 3 4\n")).expect("written");
     let bare = run("render {} -o {} --size 160x120 --texture checker", &[&mesh, &path]);
-    bare.expect(2).saying("no texture coordinates");
+    bare.expect(2).saying("no texture coordinates").saying("--texture");
     std::fs::write(&mesh, format!("{plain}vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"))
         .expect("written");
     let drawn = |options: &str| {
@@ -102,5 +109,10 @@ fn limit_surfaces_are_drawn_by_rays() {
     assert!(exact != draw("--exact --crease-angle 30"));
     run("render builtin:cube -o {} --exact --scheme butterfly", &[&path]).expect(1).saying("Loop family");
     run("render builtin:cube -o {} --exact --wireframe", &[&path]).expect(2);
-    run("render builtin:cube -o {} --scheme loop", &[&path]).expect(2);
+    run("render builtin:cube -o {} --exact --smooth", &[&path]).expect(2).saying("--smooth");
+    run("render builtin:cube -o {} --scheme loop", &[&path]).expect(2).saying("it needs --exact");
+    run("render builtin:cube -o {} --exact --scheme butterfly", &[&path])
+        .expect(2)
+        .saying("--scheme butterfly")
+        .saying("loop and loop-warren");
 }
