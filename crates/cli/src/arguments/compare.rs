@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::LimitArguments;
 use super::values;
-use super::{BuildArguments, FeatureArguments, InterpolationArguments, SchemeName};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -34,22 +34,12 @@ pub(crate) struct CompareArguments {
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = values::levels)]
     pub(crate) levels: usize,
 
-    /// Subdivision scheme
-    #[arg(long, value_enum, default_value = "loop")]
-    pub(crate) scheme: SchemeName,
-
     /// Samples on each surface; all its vertices are among them, however many they are
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::samples)]
     pub(crate) samples: usize,
 
     #[command(flatten)]
-    pub(crate) features: FeatureArguments,
-
-    #[command(flatten)]
-    pub(crate) interpolation: InterpolationArguments,
-
-    #[command(flatten)]
-    pub(crate) build: BuildArguments,
+    pub(crate) limit: LimitArguments,
 
     /// Print JSON instead of a table
     #[arg(long)]

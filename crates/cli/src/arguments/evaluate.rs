@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use clap::Args;
 
+use super::LimitArguments;
 use super::values;
-use super::{BuildArguments, FeatureArguments, InterpolationArguments, SchemeName};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -35,18 +35,8 @@ pub(crate) struct EvaluateArguments {
     #[arg(long, value_name = "FACE,W0,W1,W2|FILE", required = true)]
     pub(crate) at: Vec<Places>,
 
-    /// Scheme of the limit surface
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) scheme: SchemeName,
-
     #[command(flatten)]
-    pub(crate) features: FeatureArguments,
-
-    #[command(flatten)]
-    pub(crate) interpolation: InterpolationArguments,
-
-    #[command(flatten)]
-    pub(crate) build: BuildArguments,
+    pub(crate) limit: LimitArguments,
 
     /// Print JSON instead of text: a list of places
     #[arg(long)]

@@ -80,12 +80,15 @@ pub(crate) struct FeatureArguments {
 }
 
 impl FeatureArguments {
-    /// Whether any is given.
-    pub(crate) fn are_given(&self) -> bool {
-        self.crease_angle.is_some()
-            || self.creases_from != CreasesFrom::None
-            || self.boundary.is_some()
-            || self.concave_corners.is_some()
+    /// The first of these options that is given.
+    pub(crate) fn given(&self) -> Option<&'static str> {
+        let all = [
+            (self.crease_angle.is_some(), "--crease-angle"),
+            (self.creases_from != CreasesFrom::None, "--creases-from"),
+            (self.boundary.is_some(), "--boundary"),
+            (self.concave_corners.is_some(), "--concave-corners"),
+        ];
+        all.into_iter().find(|&(is_given, _)| is_given).map(|(_, option)| option)
     }
 
     /// Refuses what has no meaning for assets.

@@ -24,9 +24,10 @@ pub(crate) struct InterpolationArguments {
 }
 
 impl InterpolationArguments {
-    /// Whether any is given.
-    pub(crate) fn are_given(&self) -> bool {
-        self.interpolate || self.interpolate_within.is_some()
+    /// The one of these options that is given.
+    pub(crate) fn given(&self) -> Option<&'static str> {
+        let within = self.interpolate_within.map(|_| "--interpolate-within");
+        within.or(self.interpolate.then_some("--interpolate"))
     }
 
     /// How near the surface is to pass, for a mesh with this diagonal and unit; none without these options.

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::LimitArguments;
 use super::values::{self, Extent};
-use super::{BuildArguments, FeatureArguments, InterpolationArguments, SchemeName};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -26,6 +26,7 @@ Examples:
 /// With --certified it is bounded from both sides instead.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
+#[command(mut_arg("scheme", |scheme| scheme.help("Scheme of the limit surface [default: loop]; with --limit-of only")))]
 pub(crate) struct MeasureArguments {
     /// The mesh to measure: a file, - for standard input, or builtin:NAME
     #[arg(value_name = "A")]
@@ -47,10 +48,6 @@ pub(crate) struct MeasureArguments {
     /// Default: 5, or fewer where they would give more than 4 million triangles. With --limit-of only.
     #[arg(long, value_name = "N", value_parser = values::levels)]
     pub(crate) reference_levels: Option<usize>,
-
-    /// Scheme of the limit surface [default: loop]; with --limit-of only
-    #[arg(long, value_enum)]
-    pub(crate) scheme: Option<SchemeName>,
 
     /// Samples on each surface; all its vertices are among them, however many they are
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = values::samples)]
@@ -78,15 +75,9 @@ pub(crate) struct MeasureArguments {
     #[arg(long, value_name = "N", value_parser = values::work)]
     pub(crate) max_work: Option<u64>,
 
-    // Of the limit surface: with --limit-of only.
+    // But for what is said of files, with --limit-of only.
     #[command(flatten)]
-    pub(crate) features: FeatureArguments,
-
-    #[command(flatten)]
-    pub(crate) interpolation: InterpolationArguments,
-
-    #[command(flatten)]
-    pub(crate) build: BuildArguments,
+    pub(crate) limit: LimitArguments,
 
     /// Print JSON instead of text
     #[arg(long)]

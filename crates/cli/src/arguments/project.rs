@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::LimitArguments;
 use super::values::{self, Extent};
-use super::{BuildArguments, FeatureArguments, InterpolationArguments, SchemeName};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -23,6 +23,7 @@ Examples:
 /// Distances are below 0 inside of a closed surface; where it is open, behind it, as its normal at the closest point tells.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
+#[command(mut_arg("scheme", |scheme| scheme.help("Scheme of the limit surface: loop or loop-warren [default: loop]")))]
 pub(crate) struct ProjectArguments {
     /// Points: a mesh or text file, - for standard input, or builtin:NAME
     #[arg(value_name = "POINTS")]
@@ -40,18 +41,8 @@ pub(crate) struct ProjectArguments {
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 
-    /// Scheme of the limit surface: loop or loop-warren
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) scheme: SchemeName,
-
     #[command(flatten)]
-    pub(crate) features: FeatureArguments,
-
-    #[command(flatten)]
-    pub(crate) interpolation: InterpolationArguments,
-
-    #[command(flatten)]
-    pub(crate) build: BuildArguments,
+    pub(crate) limit: LimitArguments,
 
     /// Print JSON instead of text
     #[arg(long)]

@@ -34,6 +34,42 @@ pub(crate) enum Method {
     VertexError,
 }
 
+impl Method {
+    /// As it is called on the command line.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::LimitNormal => "limit-normal",
+            Self::Amresh => "amresh",
+            Self::Uniform => "uniform",
+            Self::Planarity => "planarity",
+            Self::VertexError => "vertex-error",
+        }
+    }
+}
+
+/// How a mesh is refined: what method and scheme come to together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// To goals that are proven.
+    Exact,
+    /// Step by step: uniformly, or what a criterion marks.
+    Stepwise,
+    /// Uniform steps of √3-subdivision.
+    Sqrt3Steps,
+    /// Adaptive √3-subdivision, to goals that are estimated.
+    Sqrt3,
+    /// Over a restricted quadtree, by a criterion of the literature.
+    Restricted,
+}
+
+impl Way {
+    /// Whether it is one of √3-subdivision, which has a limit surface of its own.
+    pub(crate) fn is_sqrt3(self) -> bool {
+        matches!(self, Self::Sqrt3Steps | Self::Sqrt3)
+    }
+}
+
 const EXAMPLES: &str = "\
 Examples:
   limitmesh refine builtin:cup -o cup.ply
@@ -201,12 +237,23 @@ pub(crate) struct RefineArguments {
 }
 
 impl RefineArguments {
+    /// How the mesh is refined.
+    pub(crate) fn way(&self) -> Way {
+        match (self.scheme, self.method) {
+            (RefiningScheme::Sqrt3, Method::Uniform) => Way::Sqrt3Steps,
+            (RefiningScheme::Sqrt3, _) => Way::Sqrt3,
+            (_, Method::Exact) => Way::Exact,
+            (_, Method::Planarity | Method::VertexError) => Way::Restricted,
+            (_, Method::LimitNormal | Method::Amresh | Method::Uniform) => Way::Stepwise,
+        }
+    }
+
     /// The cap on triangles that holds.
     pub(crate) fn max_triangles(&self) -> usize {
-        let most = match self.method {
-            Method::Exact => MOST_EXACT,
-            Method::Planarity | Method::VertexError => MOST_RESTRICTED,
-            Method::LimitNormal | Method::Amresh | Method::Uniform => MOST_STEPWISE,
+        let most = match self.way() {
+            Way::Exact | Way::Sqrt3 => MOST_EXACT,
+            Way::Restricted => MOST_RESTRICTED,
+            Way::Stepwise | Way::Sqrt3Steps => MOST_STEPWISE,
         };
         self.max_triangles.unwrap_or(most)
     }

@@ -40,8 +40,9 @@ pub(super) fn between(
     let (surface, reference) = (Bvh::new_observed(a, &mut observer)?, Bvh::new_observed(b, &mut observer)?);
     let mut options = CertifiedOptions::default();
     if let Some(gap) = arguments.gap {
-        options =
-            options.gap(Some(gap.length(reference.diagonal(), arguments.build.unit)?)).relative_gap(0.0);
+        options = options
+            .gap(Some(gap.length(reference.diagonal(), arguments.limit.build.unit)?))
+            .relative_gap(0.0);
     }
     if let Some(work) = arguments.max_work {
         options = options.max_work(work);

@@ -31,15 +31,16 @@ pub(super) fn measure(
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<Certified> {
-    let scheme = arguments.scheme.unwrap_or_default().scheme();
+    let scheme = arguments.limit.scheme().scheme();
     if !is_certified(scheme) {
         return usage(format!(
             "nothing is certain about limit surfaces of the scheme {}; without --certified any can be measured against",
             scheme.name()
         ));
     }
-    let gap = arguments.gap.map(|gap| gap.length(control.diagonal(), arguments.build.unit)).transpose()?;
-    let unfolds = arguments.features.concave_corners() == ConcaveCorners::Divided;
+    let gap =
+        arguments.gap.map(|gap| gap.length(control.diagonal(), arguments.limit.build.unit)).transpose()?;
+    let unfolds = arguments.limit.features.concave_corners() == ConcaveCorners::Divided;
     let mut options = LimitDistanceOptions::default().gap(gap).unfold(unfolds);
     if let Some(work) = arguments.max_work {
         options = options.max_work(work);

@@ -13,7 +13,7 @@ use limitmesh::scheme::Scheme;
 use limitmesh::sqrt3::{self, Sqrt3, Sqrt3Options};
 use limitmesh_paper::{match_angle, methods, nearest_level};
 
-use super::interpolation;
+use super::limit_control;
 use crate::arguments::{CompareArguments, ConcaveCorners, RefiningScheme};
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds, table, thousands, upper_bound};
@@ -25,20 +25,17 @@ use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport};
 
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    let input = input::load(&arguments.input, &arguments.build, progress)?;
-    let control = input.with_creases(arguments.features.creases_from)?.mesh;
-    let control = arguments.features.apply(control)?.mesh;
-    let scheme = arguments.scheme.scheme();
-    let diagonal = control.diagonal();
-    let (control, _) =
-        interpolation::apply(control, (arguments.interpolation, arguments.build.unit), scheme, progress)?;
+    let input = input::load(&arguments.input, &arguments.limit.build, progress)?;
+    let diagonal = input.mesh.diagonal();
+    let (control, _) = limit_control::prepared(input, &arguments.limit, progress)?;
+    let scheme = arguments.limit.scheme().scheme();
     // Finer than what is measured against it by two levels, where that can be afforded.
     let wanted = USUAL_LEVELS.max(arguments.levels + 2);
     let levels = reference::affordable_levels(control.face_count(), wanted);
     progress.stage(format!("refining by {levels} levels to stand for the limit surface"));
     let reference = reference::at_level(&control, scheme, levels)?;
     let tree = Bvh::new(reference.mesh.as_triangles())?;
-    let own = arguments.scheme.into();
+    let own = arguments.limit.scheme().into();
     let judge = Judge { arguments, scheme: own, reference: &reference, tree: &tree, diagonal };
 
     let mut methods = Vec::with_capacity(11);
@@ -80,7 +77,7 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
         let took = start.elapsed();
         methods.push(judge.judge((name, None), (&refinement.mesh, level), None, took)?);
     }
-    let unfolds = arguments.features.concave_corners() == ConcaveCorners::Divided;
+    let unfolds = arguments.limit.features.concave_corners() == ConcaveCorners::Divided;
     let plain = ExactOptions::default().triangles(count).unfold(unfolds);
     let mut kinds = vec![("exact", plain.clone()), ("exact-balance", plain.clone().balance(true))];
     if count <= MOST_OPTIMISED {
@@ -101,11 +98,9 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
             Err(why) => progress.note(format!("{name} left out: {why}")),
         }
     }
-    let sqrt3 = match arguments.interpolation.are_given() {
-        true => Err(anyhow::anyhow!(
-            "--interpolate and --interpolate-within are for schemes that split triangles in four"
-        )),
-        false => by_sqrt3(&control, count, reference.mesh.face_count(), &judge, progress),
+    let sqrt3 = match arguments.limit.interpolation.given() {
+        Some(option) => Err(anyhow::anyhow!("{option} is for schemes that split triangles in four")),
+        None => by_sqrt3(&control, count, reference.mesh.face_count(), &judge, progress),
     };
     match sqrt3 {
         Ok(found) => methods.push(found),
@@ -193,17 +188,7 @@ impl Judge<'_> {
     fn limit(&self) -> anyhow::Result<LimitReport> {
         Ok(LimitReport {
             scheme: self.scheme,
-            levels: self.reference.levels,
-            chosen: true,
-            error: None,
-            boundary: self.arguments.features.boundary.unwrap_or_default(),
-            crease_angle_degrees: self.arguments.features.crease_angle,
-            creases_from: self.arguments.features.creases_from,
-            interpolate_within: self
-                .arguments
-                .interpolation
-                .within(self.diagonal, self.arguments.build.unit)?,
-            concave_corners: self.arguments.features.concave_corners(),
+            ..LimitReport::new(&self.arguments.limit, self.diagonal, self.reference.levels)?
         })
     }
 

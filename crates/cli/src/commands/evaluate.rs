@@ -22,11 +22,9 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
     });
     input::check_once(core::iter::once(&arguments.control).chain(files))?;
     let places: Vec<Place> = arguments.at.iter().map(places).collect::<anyhow::Result<Vec<_>>>()?.concat();
-    let input = input::load(&arguments.control, &arguments.build, progress)?;
+    let input = input::load(&arguments.control, &arguments.limit.build, progress)?;
     let name = input.name.clone();
-    let interpolation = (arguments.interpolation, arguments.build.unit);
-    let (mesh, faces) =
-        limit_control::prepared(input, &arguments.features, interpolation, arguments.scheme, progress)?;
+    let (mesh, faces) = limit_control::prepared(input, &arguments.limit, progress)?;
     if !faces.iter().zip(0..).all(|(&face, own)| face == own) {
         let count = counted(mesh.face_count(), "triangle", "triangles");
         progress.note(format!(
@@ -38,7 +36,8 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
         bail!("{name}: there is no face {}: the control mesh has {count}, counted from 0", place.face);
     }
     progress.stage(format!("evaluating {}", counted(places.len(), "place", "places")));
-    let surface = LimitSurface::new(&mesh, arguments.scheme.scheme()).with_context(|| name.clone())?;
+    let surface =
+        LimitSurface::new(&mesh, arguments.limit.scheme().scheme()).with_context(|| name.clone())?;
     let at: Vec<(FaceId, [f64; 3])> =
         places.iter().map(|place| (FaceId(place.face), place.weights)).collect();
     let (points, derivatives) = (surface.at_all(&at), surface.derivatives_at(&at));

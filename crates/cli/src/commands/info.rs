@@ -23,15 +23,13 @@ use crate::report::{
 
 /// Examines a file and prints what it holds.
 pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    if !arguments.limit && arguments.features.are_given() {
-        return usage(
-            "--crease-angle, --boundary and --concave-corners belong to a limit surface; they need --limit",
-        );
-    }
     if arguments.features.creases_from != CreasesFrom::None {
         return usage(
             "info follows tags and --crease-angle; --creases-from is for refine, evaluate and measure",
         );
+    }
+    if let (Some(option), false) = (arguments.features.given(), arguments.limit) {
+        return usage(format!("{option} belongs to a limit surface; it needs --limit"));
     }
     let input::Soup { name, format, soup, asset, package, .. } =
         input::read(&arguments.input, &arguments.build, progress)?;

@@ -3,7 +3,7 @@
 use limitmesh::Mesh;
 
 use super::interpolation;
-use crate::arguments::{FeatureArguments, Featured, InterpolationArguments, SchemeName, Unit};
+use crate::arguments::{Featured, LimitArguments};
 use crate::input::Input;
 use crate::progress::Progress;
 
@@ -14,14 +14,13 @@ use crate::progress::Progress;
 /// Edges are to be sharp by what the file does not tell, or some vertex has no limit that is near enough.
 pub(super) fn prepared(
     input: Input,
-    features: &FeatureArguments,
-    interpolation: (InterpolationArguments, Option<Unit>),
-    scheme: SchemeName,
+    arguments: &LimitArguments,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, Vec<u32>)> {
-    let Input { mesh, trace, .. } = input.with_creases(features.creases_from)?;
-    let Featured { mesh, concave } = features.apply(mesh)?;
-    let (mesh, _) = interpolation::apply(mesh, interpolation, scheme.scheme(), progress)?;
+    let Input { mesh, trace, .. } = input.with_creases(arguments.features.creases_from)?;
+    let Featured { mesh, concave } = arguments.features.apply(mesh)?;
+    let interpolation = (arguments.interpolation, arguments.build.unit);
+    let (mesh, _) = interpolation::apply(mesh, interpolation, arguments.scheme().scheme(), progress)?;
     let input_of = |face| trace.faces[concave.parts.whole(face) as usize];
     let face_inputs = (0..mesh.face_count() as u32).map(input_of).collect();
     Ok((mesh, face_inputs))

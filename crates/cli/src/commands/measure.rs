@@ -23,7 +23,7 @@ use crate::report::{CertifiedReport, DistanceReport, LimitReport, MeasureReport,
 pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     check(arguments)?;
     let start = Instant::now();
-    let surface = input::load(&arguments.surface, &arguments.build, progress)?;
+    let surface = input::load(&arguments.surface, &arguments.limit.build, progress)?;
     let a = surface.mesh.as_triangles();
     let (control, reference_report, whole) = load_reference(arguments, progress)?;
     let prepare = start.elapsed().as_secs_f64();
@@ -125,7 +125,7 @@ fn load_reference(
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, SurfaceReport, Whole)> {
-    let build = &arguments.build;
+    let build = &arguments.limit.build;
     let Some(control) = &arguments.limit_of else {
         let name = arguments.reference.as_deref().unwrap_or(Path::new(""));
         let input = input::load(name, build, progress)?;
@@ -134,11 +134,10 @@ fn load_reference(
         return Ok((input.mesh, report, whole));
     };
     let input = input::load(control, build, progress)?;
-    let scheme = arguments.scheme.unwrap_or_default();
+    let scheme = arguments.limit.scheme();
     let report = describe(&input, None);
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
-    let interpolation = (arguments.interpolation, arguments.build.unit);
-    let (mesh, _) = limit_control::prepared(input, &arguments.features, interpolation, scheme, progress)?;
+    let (mesh, _) = limit_control::prepared(input, &arguments.limit, progress)?;
     // Beyond what numbers hold they are not known; distances are.
     let bulk = Bulk::of_limit(&mesh, scheme.scheme()).ok().flatten();
     let (mesh, levels) = if arguments.certified {
@@ -150,17 +149,8 @@ fn load_reference(
         progress.stage(format!("refining {} by {levels} levels to stand for its limit surface", report.path));
         (reference::at_level(&mesh, scheme.scheme(), levels)?.mesh, levels)
     };
-    let limit = LimitReport {
-        scheme: scheme.into(),
-        levels,
-        error: None,
-        chosen: arguments.reference_levels.is_none(),
-        boundary: arguments.features.boundary.unwrap_or_default(),
-        crease_angle_degrees: arguments.features.crease_angle,
-        creases_from: arguments.features.creases_from,
-        interpolate_within: arguments.interpolation.within(whole.diagonal, arguments.build.unit)?,
-        concave_corners: arguments.features.concave_corners(),
-    };
+    let chosen = arguments.reference_levels.is_none();
+    let limit = LimitReport { chosen, ..LimitReport::new(&arguments.limit, whole.diagonal, levels)? };
     let report = SurfaceReport {
         vertices: mesh.vertex_count(),
         triangles: mesh.face_count(),
@@ -264,13 +254,9 @@ fn surface_in_words(surface: &SurfaceReport) -> String {
 
 /// Finds what makes no sense before any work is done.
 fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
-    let of_limit = arguments.reference_levels.is_some() || arguments.scheme.is_some();
-    let of_limit = of_limit || arguments.features.are_given() || arguments.interpolation.are_given();
-    if arguments.limit_of.is_none() && of_limit {
-        return usage(
-            "--reference-levels, --scheme, --crease-angle, --boundary, --concave-corners, --interpolate and --interpolate-within \
-             belong to a limit surface; they need --limit-of",
-        );
+    let levels = arguments.reference_levels.map(|_| "--reference-levels");
+    if let (Some(option), None) = (levels.or(arguments.limit.given()), &arguments.limit_of) {
+        return usage(format!("{option} belongs to a limit surface; it needs --limit-of"));
     }
     let given = [Some(&arguments.surface), arguments.reference.as_ref(), arguments.limit_of.as_ref()];
     input::check_once(given.into_iter().flatten())?;

@@ -27,16 +27,15 @@ pub(crate) fn run(arguments: &ProjectArguments, progress: &Progress) -> anyhow::
     input::check_once([&arguments.points, &arguments.onto].into_iter())?;
     let kind = arguments.output.as_deref().map(Kind::of).transpose()?;
     let start = Instant::now();
-    let points = points::read(&arguments.points, &arguments.build, progress)?;
-    let control = input::load(&arguments.onto, &arguments.build, progress)?;
+    let points = points::read(&arguments.points, &arguments.limit.build, progress)?;
+    let control = input::load(&arguments.onto, &arguments.limit.build, progress)?;
     let (name, diagonal) = (control.name.clone(), control.mesh.diagonal());
-    let interpolation = (arguments.interpolation, arguments.build.unit);
-    let scheme = arguments.scheme;
-    let (mesh, _) = limit_control::prepared(control, &arguments.features, interpolation, scheme, progress)?;
+    let scheme = arguments.limit.scheme();
+    let (mesh, _) = limit_control::prepared(control, &arguments.limit, progress)?;
     if kind == Some(Kind::Picture) && points.triangles.is_empty() {
         return usage(format!("{} has no triangles to draw; -o writes .ply or .csv", points.name));
     }
-    let tolerance = arguments.tolerance.length(diagonal, arguments.build.unit)?;
+    let tolerance = arguments.tolerance.length(diagonal, arguments.limit.build.unit)?;
 
     progress.stage(format!("projecting {}", counted(points.positions.len(), "point", "points")));
     let surface = LimitSurface::new(&mesh, scheme.scheme()).with_context(|| name.clone())?;

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::certified::CertifiedReport;
 use super::diagnosis::DiagnosisReport;
 use super::whole::Whole;
-use crate::arguments::{Boundary, ConcaveCorners, CreasesFrom, RefiningScheme};
+use crate::arguments::{Boundary, ConcaveCorners, CreasesFrom, LimitArguments, RefiningScheme};
 
 /// What a sampled distance is, in every report of one.
 pub(crate) const KIND: &str = "sampled lower bound";
@@ -63,6 +63,27 @@ pub(crate) struct LimitReport {
     /// How near it passes to the vertices of the control mesh; null where these are its control points.
     pub(crate) interpolate_within: Option<f64>,
     pub(crate) concave_corners: ConcaveCorners,
+}
+
+impl LimitReport {
+    /// Of the scheme that was asked for, and so many levels that the program chose, where lengths in per cent are of `diagonal`.
+    ///
+    /// # Errors
+    /// A length has a unit, and the mesh's is not known.
+    pub(crate) fn new(arguments: &LimitArguments, diagonal: f64, levels: usize) -> anyhow::Result<Self> {
+        let features = &arguments.features;
+        Ok(Self {
+            scheme: arguments.scheme().into(),
+            levels,
+            chosen: true,
+            error: None,
+            boundary: features.boundary.unwrap_or_default(),
+            crease_angle_degrees: features.crease_angle,
+            creases_from: features.creases_from,
+            interpolate_within: arguments.within(diagonal)?,
+            concave_corners: features.concave_corners(),
+        })
+    }
 }
 
 /// The distances. Lengths are in the meshes' units.

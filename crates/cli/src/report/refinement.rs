@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::diagnosis::DiagnosisReport;
 use super::{InputReport, InterpolationReport};
 use crate::arguments::{
-    Boundary, ConcaveCorners, CreasesFrom, Method, RefineArguments, RefiningScheme, Seam,
+    Boundary, ConcaveCorners, CreasesFrom, ExactArguments, Method, RefineArguments, RefiningScheme, Seam,
 };
 use crate::bulk::Bulk;
 use crate::format::{lower_bound, upper_bound};
@@ -103,6 +103,24 @@ pub(crate) struct MethodReport {
     pub(crate) open_cones: Option<usize>,
     /// Goals beside the shape.
     pub(crate) attributes: Vec<AttributeReport>,
+}
+
+impl MethodReport {
+    /// Of so many levels or steps that ended so; the rest as of a method that tells nothing else.
+    pub(crate) fn new(levels: usize, stop: &'static str) -> Self {
+        Self {
+            steps: Vec::new(),
+            rounds: Vec::new(),
+            levels,
+            stop,
+            needed_triangles: None,
+            error: None,
+            input_distance: None,
+            pixels: None,
+            open_cones: None,
+            attributes: Vec::new(),
+        }
+    }
 }
 
 /// A goal for what the mesh carries: a channel's values, or the surface that a morph target makes.
@@ -223,6 +241,30 @@ pub(crate) struct ExactParametersReport {
     pub(crate) provenance: bool,
 }
 
+impl ExactParametersReport {
+    /// Of a method whose goals are a distance, in the unit of a mesh with that diagonal, and a number of triangles alone.
+    pub(crate) fn new(
+        tolerance: Option<f64>,
+        diagonal: f64,
+        max_levels: usize,
+        arguments: &ExactArguments,
+    ) -> Self {
+        Self {
+            tolerance,
+            tolerance_percent: tolerance.map(|tolerance| 100.0 * tolerance / diagonal),
+            triangles: arguments.triangles,
+            pixels: None,
+            cameras: Vec::new(),
+            balance: false,
+            optimize: false,
+            divide_flat: false,
+            max_levels,
+            max_memory: None,
+            provenance: arguments.provenance,
+        }
+    }
+}
+
 /// Where the viewer looks from: one of direction and eye.
 #[derive(Debug, Serialize)]
 pub(crate) struct ViewReport {
@@ -323,30 +365,27 @@ pub(crate) struct ErrorReport {
 impl ErrorReport {
     /// Of a mesh whose control mesh has that diagonal.
     pub(crate) fn new(bounds: &ErrorBounds, diagonal: f64) -> Self {
-        let percent = |length: f64| 100.0 * length / diagonal;
-        let upper = finite(bounds.upper);
-        Self {
-            lower: bounds.lower,
-            upper,
-            lower_percent: percent(bounds.lower),
-            upper_percent: upper.map(percent),
-            diagonal,
-            at: bounds.at,
-            certified: bounds.certified && upper.is_some(),
-        }
+        Self::of([bounds.lower, bounds.upper], diagonal, bounds.at, bounds.certified)
     }
 
     /// Of a mesh whose vertices all lie on the limit surface, with a distance that is estimated.
     pub(crate) fn estimated(distance: f64, diagonal: f64, mesh: &Mesh) -> Self {
-        let percent = 100.0 * distance / diagonal;
+        let at = mesh.positions().first().copied().unwrap_or_default();
+        Self::of([0.0, distance], diagonal, at, false)
+    }
+
+    /// Of an interval whose upper end may be proven; one that is not finite is none.
+    fn of([lower, upper]: [f64; 2], diagonal: f64, at: [f64; 3], is_proven: bool) -> Self {
+        let percent = |length: f64| 100.0 * length / diagonal;
+        let upper = Some(upper).filter(|upper| upper.is_finite());
         Self {
-            lower: 0.0,
-            upper: finite(distance),
-            lower_percent: 0.0,
-            upper_percent: finite(percent),
+            lower,
+            upper,
+            lower_percent: percent(lower),
+            upper_percent: upper.map(percent),
             diagonal,
-            at: mesh.positions().first().copied().unwrap_or_default(),
-            certified: false,
+            at,
+            certified: is_proven && upper.is_some(),
         }
     }
 
@@ -389,10 +428,6 @@ impl InputDistanceReport {
             upper_bound(self.upper)
         )
     }
-}
-
-fn finite(x: f64) -> Option<f64> {
-    x.is_finite().then_some(x)
 }
 
 /// The mesh that was written.

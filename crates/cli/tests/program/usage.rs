@@ -100,11 +100,34 @@ fn measuring_needs_exactly_one_reference() {
         .expect(2)
         .saying("cannot be used with");
     run("measure builtin:head builtin:cup --reference-levels 3", &[]).expect(2).saying("--limit-of");
-    run("measure builtin:head builtin:cup --crease-angle 30", &[]).expect(2).saying("--limit-of");
+    for option in ["--crease-angle 30", "--creases-from normals", "--scheme loop", "--interpolate"] {
+        let name = option.split(' ').next().expect("a name");
+        run(&format!("measure builtin:head builtin:cup {option}"), &[])
+            .expect(2)
+            .saying(&format!("{name} belongs to a limit surface; it needs --limit-of"));
+    }
     run("measure builtin:head builtin:cup --samples 0", &[]).expect(2).saying("at least 1");
     run("measure builtin:head --limit-of builtin:head --reference-levels 12", &[])
         .expect(2)
         .saying("levels are possible");
+}
+
+#[test]
+fn an_empty_file_is_called_that() {
+    let folder = folder();
+    for name in ["empty.glb", "empty.gltf", "empty.3mf", "empty.obj"] {
+        let input = folder.path().join(name);
+        std::fs::write(&input, b"").expect("written");
+        for (command, output) in [
+            ("info {}", ""),
+            ("refine {} -o {}", "out.glb"),
+            ("render {} -o {}", "out.png"),
+            ("lod {} -o {}", "out.glb"),
+        ] {
+            let output = folder.path().join(output);
+            run(command, &[&input, &output]).expect(1).saying(&format!("{name}: the file is empty"));
+        }
+    }
 }
 
 #[test]

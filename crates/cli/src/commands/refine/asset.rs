@@ -23,7 +23,7 @@ use super::selection::Selection;
 use super::several::{self, Progressed};
 use super::{estimate, split_normals};
 use crate::arguments::{
-    ConcaveCorners, CreasesFrom, Featured, Method, MorphTolerance, RefineArguments, RelativeTo,
+    ConcaveCorners, CreasesFrom, Featured, MorphTolerance, RefineArguments, RelativeTo, Way,
 };
 use crate::creases::Hints;
 use crate::failure::{Outcome, usage};
@@ -340,7 +340,7 @@ fn attribute_goals(
 ) -> anyhow::Result<AttributeGoals> {
     let mesh = &control.featured.mesh;
     let mut goals = AttributeGoals::default();
-    if arguments.method != Method::Exact {
+    if arguments.way() != Way::Exact {
         return Ok(goals);
     }
     goals.add_channels(channels, mesh, &arguments.channels)?;

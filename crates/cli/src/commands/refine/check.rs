@@ -5,24 +5,29 @@ use std::path::Path;
 
 use limitmesh_io::Format;
 
-use super::{picture, restricted, sqrt3};
-use crate::arguments::{Method, MorphTolerance, RefineArguments, RefiningScheme};
+use super::picture;
+use crate::arguments::{Method, MorphTolerance, RefineArguments, Way};
 use crate::failure::usage;
 use crate::format::thousands;
 use crate::output;
 
 /// Checks options; gives the format to write, none for a dry run without a name.
 pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Format>> {
-    if arguments.scheme == RefiningScheme::Sqrt3 {
-        sqrt3::options(arguments)?;
+    let way = arguments.way();
+    if way == Way::Sqrt3 && arguments.method != Method::Exact {
+        return usage(format!(
+            "--scheme sqrt3 has criteria of its own, so that --method {} does not go with it; without --method, --angle, \
+             --tolerance and --triangles are its goals, and --method uniform divides all triangles",
+            arguments.method.name()
+        ));
     }
-    match arguments.method {
-        Method::Exact => stepwise_options(arguments)?,
-        Method::Planarity | Method::VertexError => restricted::options(arguments)?,
-        _ => exact_options(arguments)?,
+    if let Some(option) = unknown(arguments) {
+        return usage(option.refusal(way, arguments.method));
     }
-    if arguments.method == Method::Uniform {
-        uniform(arguments)?;
+    match way {
+        Way::Exact | Way::Sqrt3 => goals(arguments)?,
+        Way::Stepwise | Way::Sqrt3Steps => uniform(arguments)?,
+        Way::Restricted => restricted(arguments)?,
     }
     let view = arguments.view.is_some() || arguments.eye.is_some();
     if view && !matches!(arguments.method, Method::Exact | Method::LimitNormal) {
@@ -68,19 +73,98 @@ pub(super) fn together(jobs: &[RefineArguments]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Refuses options of the stepwise methods.
-fn stepwise_options(arguments: &RefineArguments) -> anyhow::Result<()> {
-    if arguments.levels.is_some() {
-        return usage(
-            "--levels is the number of steps of the other methods; with --method exact, --max-levels is a cap",
-        );
+/// Refuses glTF assets and 3MF packages, which are edited mesh by mesh, where that cannot be.
+pub(super) fn scenes(arguments: &RefineArguments) -> anyhow::Result<()> {
+    match arguments.way() {
+        Way::Exact | Way::Stepwise => Ok(()),
+        Way::Sqrt3 | Way::Sqrt3Steps => usage(
+            "--scheme sqrt3 carries no attributes, so it does not edit glTF assets and 3MF packages; OBJ, PLY, STL and OFF \
+             files it refines",
+        ),
+        // Their meshes share one tolerance.
+        Way::Restricted => usage(
+            "--method planarity and vertex-error are there to be compared with, mesh by mesh, so they do not edit glTF assets and \
+             3MF packages; OBJ, PLY, STL and OFF files they refine",
+        ),
     }
-    if arguments.seam.is_some() {
-        return usage("--seam has no effect with --method exact, whose vertices lie on the limit surface");
+}
+
+/// An option that not all ways to refine know.
+struct Limited {
+    name: &'static str,
+    is_given: bool,
+    known: &'static [Way],
+}
+
+/// The first option that is given, and unknown to the way that is gone.
+fn unknown(arguments: &RefineArguments) -> Option<Limited> {
+    let way = arguments.way();
+    limited(arguments).into_iter().find(|option| option.is_given && !option.known.contains(&way))
+}
+
+/// All of them. What depends on other options has checks of its own.
+fn limited(arguments: &RefineArguments) -> [Limited; 23] {
+    const EXACT: &[Way] = &[Way::Exact];
+    const IN_QUARTERS: &[Way] = &[Way::Exact, Way::Stepwise, Way::Restricted];
+    const GOALS: &[Way] = &[Way::Exact, Way::Restricted, Way::Sqrt3];
+    const STEPS: &[Way] = &[Way::Stepwise, Way::Sqrt3Steps];
+    let RefineArguments { exact, channels, asset, interpolation, .. } = arguments;
+    let option = |name, is_given, known| Limited { name, is_given, known };
+    [
+        option("--levels", arguments.levels.is_some(), STEPS),
+        option("--seam", arguments.seam.is_some(), STEPS),
+        option("--limit", arguments.limit, STEPS),
+        option("--view", arguments.view.is_some(), IN_QUARTERS),
+        option("--eye", arguments.eye.is_some(), IN_QUARTERS),
+        option("--interpolate", interpolation.interpolate, IN_QUARTERS),
+        option("--interpolate-within", interpolation.interpolate_within.is_some(), IN_QUARTERS),
+        option("--tolerance", exact.tolerance.is_some(), GOALS),
+        option("--triangles", exact.triangles.is_some(), GOALS),
+        option("--max-levels", exact.max_levels.is_some(), GOALS),
+        option("--provenance", exact.provenance, GOALS),
+        option("--pixels", exact.pixels.is_some(), EXACT),
+        option("--camera", !exact.camera.is_empty(), EXACT),
+        option("--camera-path", !exact.camera_path.is_empty(), EXACT),
+        option("--balance", exact.balance, EXACT),
+        option("--optimize", exact.optimize, EXACT),
+        option("--divide-flat", exact.divide_flat, EXACT),
+        option("--no-input-distance", exact.no_input_distance, EXACT),
+        option("--max-memory", exact.max_memory.is_some(), EXACT),
+        option("--dry-run", exact.dry_run, EXACT),
+        option("--uv-tolerance", channels.uv_tolerance.is_some(), EXACT),
+        option("--attribute-tolerance", !channels.attribute_tolerance.is_empty(), EXACT),
+        option("--morph-tolerance", asset.morph_tolerance.is_some(), EXACT),
+    ]
+}
+
+impl Limited {
+    /// Why it does not go with a way that does not know it.
+    fn refusal(&self, way: Way, method: Method) -> String {
+        let name = self.name;
+        let is_of_steps = self.known.contains(&Way::Sqrt3Steps);
+        match way {
+            Way::Exact | Way::Sqrt3 if name == "--levels" => {
+                "--levels is the number of steps of the other methods; with --method exact, --max-levels is a cap"
+                    .to_owned()
+            }
+            Way::Exact | Way::Sqrt3 if is_of_steps => {
+                format!("{name} has no effect with --method exact, whose vertices lie on the limit surface")
+            }
+            Way::Sqrt3 | Way::Sqrt3Steps if !self.known.contains(&Way::Sqrt3) => format!(
+                "{name} does not go with --scheme sqrt3; it knows the schemes that split triangles in four: loop, loop-warren, \
+                 butterfly"
+            ),
+            Way::Restricted => format!(
+                "{name} does not go with --method {}, a criterion of the literature; it is for other methods",
+                method.name()
+            ),
+            _ => format!("{name} is for exact refinement; it needs --method exact"),
+        }
     }
-    if arguments.limit {
-        return usage("--limit has no effect with --method exact, whose vertices lie on the limit surface");
-    }
+}
+
+/// Refuses goals and caps that do not go together.
+fn goals(arguments: &RefineArguments) -> anyhow::Result<()> {
     let exact = &arguments.exact;
     let cameras = !exact.camera.is_empty() || !exact.camera_path.is_empty();
     if exact.optimize && (arguments.angle.is_some() || cameras || exact.balance) {
@@ -112,35 +196,29 @@ fn stepwise_options(arguments: &RefineArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Refuses options of the exact method.
-fn exact_options(arguments: &RefineArguments) -> anyhow::Result<()> {
-    let exact = &arguments.exact;
-    let given = [
-        ("--tolerance", exact.tolerance.is_some()),
-        ("--triangles", exact.triangles.is_some()),
-        ("--pixels", exact.pixels.is_some()),
-        ("--camera", !exact.camera.is_empty()),
-        ("--camera-path", !exact.camera_path.is_empty()),
-        ("--balance", exact.balance),
-        ("--optimize", exact.optimize),
-        ("--divide-flat", exact.divide_flat),
-        ("--no-input-distance", exact.no_input_distance),
-        ("--max-memory", exact.max_memory.is_some()),
-        ("--dry-run", exact.dry_run),
-        ("--max-levels", exact.max_levels.is_some()),
-        ("--provenance", exact.provenance),
-        ("--uv-tolerance", arguments.channels.uv_tolerance.is_some()),
-        ("--attribute-tolerance", !arguments.channels.attribute_tolerance.is_empty()),
-        ("--morph-tolerance", arguments.asset.morph_tolerance.is_some()),
-    ];
-    match given.into_iter().find(|&(_, given)| given) {
-        Some((option, _)) => usage(format!("{option} is for exact refinement; it needs --method exact")),
-        None => Ok(()),
+/// Refuses goals that the criteria of the literature do not have.
+fn restricted(arguments: &RefineArguments) -> anyhow::Result<()> {
+    if arguments.angle.is_none() {
+        return Ok(());
     }
+    if arguments.method == Method::VertexError {
+        return usage(
+            "--angle does not go with --method vertex-error, whose goal is a distance: --tolerance",
+        );
+    }
+    if arguments.exact.tolerance.is_some() {
+        return usage(
+            "--method planarity goes by angles or by distances: --angle and --tolerance are not given together",
+        );
+    }
+    Ok(())
 }
 
 /// Refuses what has no effect on uniform refinement.
 fn uniform(arguments: &RefineArguments) -> anyhow::Result<()> {
+    if arguments.method != Method::Uniform {
+        return Ok(());
+    }
     if arguments.angle.is_some() {
         return usage("--angle has no effect with --method uniform, which divides every face");
     }

@@ -4,7 +4,7 @@ use limitmesh::Mesh;
 
 use super::exact::{Before, BeforeSurface};
 use super::interpolation;
-use crate::arguments::{Featured, Method, RefineArguments, RefiningScheme};
+use crate::arguments::{Featured, RefineArguments, Way};
 use crate::bulk::Bulk;
 use crate::format::counted;
 use crate::progress::Progress;
@@ -35,8 +35,7 @@ impl Control {
         progress: &Progress,
     ) -> anyhow::Result<Self> {
         let bulk = Bulk::of(&mesh);
-        let is_exact = arguments.method == Method::Exact && arguments.scheme != RefiningScheme::Sqrt3;
-        let is_compared = is_exact && !arguments.exact.no_input_distance;
+        let is_compared = arguments.way() == Way::Exact && !arguments.exact.no_input_distance;
         let surface = is_compared.then(|| BeforeSurface {
             positions: mesh.positions().to_vec(),
             triangles: mesh.triangles().to_vec(),
@@ -48,7 +47,7 @@ impl Control {
         diagnosis.concave_corners = featured.concave.corners.clone();
         let Featured { mesh, concave } = featured;
         let diagonal = diagonal.unwrap_or_else(|| mesh.diagonal());
-        let (mesh, interpolation) = match arguments.interpolation.are_given() {
+        let (mesh, interpolation) = match arguments.interpolation.given().is_some() {
             true => {
                 let asked = (arguments.interpolation, arguments.build.unit);
                 interpolation::apply(mesh, asked, arguments.scheme()?, progress)?

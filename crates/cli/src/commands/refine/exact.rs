@@ -181,7 +181,7 @@ impl Goals {
 }
 
 /// ` mm`, or nothing where no unit is known.
-fn unit_in_words(unit: Option<Unit>) -> String {
+pub(super) fn unit_in_words(unit: Option<Unit>) -> String {
     unit.map_or_else(String::new, |unit| format!(" {}", unit.name()))
 }
 
@@ -253,16 +253,13 @@ pub(super) fn run(
         inverted: Some(inverted),
         how: counted(levels, "level", "levels"),
         report: MethodReport {
-            steps: Vec::new(),
             rounds,
-            levels,
-            stop: exact_stop_name(stop),
-            needed_triangles: None,
             error: Some(error),
             input_distance: moved,
             pixels: pixels.filter(|pixels| pixels.is_finite()),
             open_cones: goals.angle_degrees.map(|_| open_cones),
             attributes,
+            ..MethodReport::new(levels, exact_stop_name(stop))
         },
         outcome,
     })
@@ -428,17 +425,13 @@ pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> Paramete
         angle_degrees: goals.angle_degrees,
         view: view_report(arguments),
         exact: Some(ExactParametersReport {
-            tolerance: goals.length,
-            tolerance_percent: goals.length.map(|length| 100.0 * length / goals.diagonal),
-            triangles: goals.triangles,
             pixels: goals.pixels,
             cameras: goals.cameras.iter().map(CameraReport::from).collect(),
             balance: options.balance,
             optimize: options.optimize,
             divide_flat: arguments.exact.divide_flat,
-            max_levels: options.max_levels,
             max_memory: options.max_memory,
-            provenance: arguments.exact.provenance,
+            ..ExactParametersReport::new(goals.length, goals.diagonal, options.max_levels, &arguments.exact)
         }),
         ..ParametersReport::common(arguments)
     }

@@ -17,7 +17,7 @@ use super::carried::Trail;
 use super::control::Control;
 use super::exact::{self, Goals};
 use super::{Refined, check, jobs, write};
-use crate::arguments::{Method, RefineArguments};
+use crate::arguments::{RefineArguments, Way};
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, seconds, upper_bound};
 use crate::input::{self, Input};
@@ -137,7 +137,8 @@ fn check_report(arguments: &RefineArguments, jobs: &[RefineArguments]) -> anyhow
 /// Refuses what has no meaning for frames, or is not done for them.
 fn refuse(arguments: &RefineArguments) -> anyhow::Result<()> {
     let given = [
-        ("--method other than exact", arguments.method != Method::Exact),
+        ("--scheme sqrt3", arguments.way().is_sqrt3()),
+        ("--method other than exact", arguments.way() != Way::Exact),
         ("--triangles", arguments.exact.triangles.is_some()),
         ("--balance", arguments.exact.balance),
         ("--optimize", arguments.exact.optimize),
@@ -145,15 +146,15 @@ fn refuse(arguments: &RefineArguments) -> anyhow::Result<()> {
         ("--provenance", arguments.exact.provenance),
         ("--split-normals", arguments.split_normals),
         ("--picture", arguments.picture.is_some()),
-        ("--interpolate", arguments.interpolation.are_given()),
     ];
     if let Some((option, _)) = given.into_iter().find(|&(_, given)| given) {
         return usage(format!("{option} does not go with --shared-topology"));
     }
-    if let Some(option) = arguments.channels.given_tolerance().or(arguments.asset.given()) {
+    let others = arguments.channels.given_tolerance().or(arguments.asset.given());
+    if let Some(option) = others.or(arguments.interpolation.given()) {
         return usage(format!("{option} does not go with --shared-topology"));
     }
-    arguments.scheme().map(drop)
+    Ok(())
 }
 
 /// How far results are from the inputs is not looked at.
@@ -315,18 +316,7 @@ fn refined(found: &Exact, channels: Channels) -> Refined {
         achieved: Vec::new(),
         inverted: None,
         how: String::new(),
-        report: MethodReport {
-            steps: Vec::new(),
-            rounds: Vec::new(),
-            levels: found.levels,
-            stop: exact_stop_name(found.stop),
-            needed_triangles: None,
-            error: None,
-            input_distance: None,
-            pixels: None,
-            open_cones: None,
-            attributes: Vec::new(),
-        },
+        report: MethodReport::new(found.levels, exact_stop_name(found.stop)),
         outcome: Outcome::Done,
     }
 }

@@ -19,6 +19,7 @@ mod selection;
 mod several;
 mod sqrt3;
 mod stepwise;
+mod ways;
 mod weights;
 
 use std::borrow::Cow;
@@ -28,13 +29,14 @@ use std::time::{Duration, Instant};
 use limitmesh::Mesh;
 use limitmesh::criterion::{View, Viewpoint};
 use limitmesh::mesh::{Channel, Semantic, Tags};
+use limitmesh::refine::ExactStop;
 use limitmesh_io::{Format, Output, WriteOptions};
 use limitmesh_render::Style;
 
 use super::channels::{Channels, Destination};
 use super::normals::Normals;
 use super::{interpolation, picture};
-use crate::arguments::{CreasesFrom, Method, RefineArguments, RefiningScheme, Unit};
+use crate::arguments::{CreasesFrom, RefineArguments, Unit};
 use crate::bulk::Bulk;
 use crate::creases::Hints;
 use crate::failure::Outcome;
@@ -47,8 +49,8 @@ use crate::report::{
     SecondsReport, SizeReport, VERSION, ViewReport,
 };
 use control::Control;
-use exact::Goals;
 use provenance::Provenance;
+use ways::Prepared;
 
 /// The dilatant factor where none is given: the paper's in most of its experiments.
 const USUAL_DILATATION: f64 = 1.0;
@@ -96,14 +98,12 @@ fn refine(
     progress: &Progress,
 ) -> anyhow::Result<Outcome> {
     if let Some(asset) = asset::Job::of(arguments, format)? {
-        sqrt3::refuse_scenes(arguments)?;
-        restricted::refuse_scenes(arguments)?;
+        check::scenes(arguments)?;
         arguments.features.check_of_asset()?;
         return asset.run(progress);
     }
     if let Some(package) = package::Job::of(arguments, format)? {
-        sqrt3::refuse_scenes(arguments)?;
-        restricted::refuse_scenes(arguments)?;
+        check::scenes(arguments)?;
         arguments.features.check_of_package()?;
         return package.run(progress);
     }
@@ -116,8 +116,6 @@ fn refine(
         progress.note(note);
     }
     let input = input.with_creases(arguments.features.creases_from)?;
-    let is_sqrt3 = arguments.scheme == RefiningScheme::Sqrt3;
-    let is_restricted = matches!(arguments.method, Method::Planarity | Method::VertexError);
     let input_report = InputReport {
         path: input.name,
         format: input.format,
@@ -127,7 +125,10 @@ fn refine(
         channels: input.channels.iter().map(|own| ChannelReport::chosen(own, &arguments.channels)).collect(),
     };
     let files = [input.material_libraries, input.texture_files];
-    let own = if is_sqrt3 { sqrt3::without_channels(input.channels, progress) } else { input.channels };
+    let own = match arguments.way().is_sqrt3() {
+        true => sqrt3::without_channels(input.channels, progress),
+        false => input.channels,
+    };
     let mut channels = Channels::of_input(own, files, &Destination::of(arguments, format), progress);
     let texture = |own: &Channel| own.semantic == Semantic::TextureCoordinates;
     let names = channels.all().iter().map(|own| (own.name.as_str(), texture(own)));
@@ -137,39 +138,21 @@ fn refine(
     let Control { featured: control, diagnosis, before: read, bulk: before, interpolation, diagonal } =
         control;
     channels.on_parts(&control.concave.parts, &control.mesh);
-    let goals = match arguments.method {
-        Method::Exact if !is_sqrt3 => {
-            let goals = Goals::new(arguments, &control.mesh, diagonal)?;
-            Some(goals.carrying(&channels, &control.mesh, arguments)?)
-        }
-        _ => None,
-    };
+    let way = Prepared::new(arguments, (&control.mesh, &channels), diagonal)?;
     let parameters = ParametersReport {
         interpolate_within: arguments.interpolation.within(diagonal, arguments.build.unit)?,
-        ..match &goals {
-            Some(goals) => exact::parameters(arguments, goals),
-            None if is_sqrt3 => sqrt3::parameters(arguments, diagonal)?,
-            None if is_restricted => restricted::parameters(arguments, diagonal)?,
-            None => stepwise::parameters(arguments),
-        }
+        ..way.parameters(arguments, diagonal)?
     };
-    // Without a name to write to, this is a dry run: the arguments see to that.
+    // Without a name to write to, this is a dry run, and that is exact: the checks of the arguments see to both.
     let (Some(path), Some(format), false) = (&arguments.output, format, arguments.exact.dry_run) else {
-        let goals = goals.map_or_else(|| Goals::new(arguments, &control.mesh, diagonal), Ok)?;
-        let told = (input_report, (&diagnosis).into(), parameters);
-        estimate::run(&control.mesh, &goals, arguments, told, progress)?;
+        if let Prepared::Exact(goals) = &way {
+            let told = (input_report, (&diagnosis).into(), parameters);
+            estimate::run(&control.mesh, goals, arguments, told, progress)?;
+        }
         return Ok(Outcome::Done);
     };
     let start = Instant::now();
-    let mut refined = match &goals {
-        _ if is_sqrt3 => sqrt3::run((control, &read, diagonal), arguments, format, progress)?,
-        _ if is_restricted => {
-            let asked = (&control, &read, diagonal);
-            restricted::run(asked, &channels, arguments, format, progress)?
-        }
-        Some(goals) => exact::run((&control, &read, &channels), goals, arguments, progress)?,
-        None => stepwise::run((control.mesh, &channels, false), arguments, Some(format), progress)?,
-    };
+    let mut refined = way.run((control, &read, diagonal), &channels, (arguments, format), progress)?;
     let refining = start.elapsed();
 
     let after = Bulk::of(&refined.mesh);
@@ -228,14 +211,26 @@ fn refine(
     Ok(outcome)
 }
 
-/// How methods end that take no triangles away, where there are more than asked: so many the control mesh had.
-fn has_more(mesh: &Mesh, arguments: &RefineArguments) -> Option<Outcome> {
-    let asked = arguments.exact.triangles.filter(|&asked| mesh.face_count() > asked)?;
-    Some(Outcome::StoppedShort(format!(
-        "the control mesh has {} already, more than --triangles {}; --method exact --optimize goes below",
-        thousands(mesh.face_count()),
-        thousands(asked),
-    )))
+/// How methods end that take no triangles away: where there are more than asked, so many the control mesh had.
+fn capped(mesh: &Mesh, stop: ExactStop, arguments: &RefineArguments) -> Outcome {
+    let count = mesh.face_count();
+    if let Some(asked) = arguments.exact.triangles.filter(|&asked| count > asked) {
+        return Outcome::StoppedShort(format!(
+            "the control mesh has {} already, more than --triangles {}; --method exact --optimize goes below",
+            thousands(count),
+            thousands(asked),
+        ));
+    }
+    let cap = match stop {
+        ExactStop::Met | ExactStop::Triangles => return Outcome::Done,
+        ExactStop::LevelCap => "levels (--max-levels)",
+        _ => "triangles (--max-triangles)",
+    };
+    Outcome::StoppedShort(format!(
+        "a cap on {cap} was reached before what was asked for; {} was written with {}",
+        arguments.output_name(),
+        counted(count, "triangle", "triangles"),
+    ))
 }
 
 /// Tells about normals that say that edges are sharp, where nothing says what to do about that.
@@ -328,7 +323,7 @@ impl Refined {
     /// Adds what became of area and volume to what is said, and what would have kept much of the volume that is gone.
     fn tell_size(&mut self, [before, after]: [Bulk; 2], arguments: &RefineArguments) {
         self.achieved.push(change_in_words(before, after, arguments.build.unit));
-        let is_kept = arguments.interpolation.are_given() || arguments.scheme == RefiningScheme::Sqrt3;
+        let is_kept = arguments.interpolation.given().is_some() || arguments.way().is_sqrt3();
         let is_told = self.achieved.iter().any(|line| line == INTERPOLATE);
         if let (Some(before), Some(after), false) = (before.volume, after.volume, is_kept || is_told)
             && after / before < 1.0 - MUCH_VOLUME

@@ -3,7 +3,7 @@
 
 use limitmesh::front::{Demand, Front, MOST_LEVELS, Measure, Snapshot};
 use limitmesh::mesh::SplitSurface;
-use limitmesh::refine::{ExactStop, Origin, Stop, Traced};
+use limitmesh::refine::{ExactStop, Origin, Traced};
 use limitmesh::scheme::Scheme;
 use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
 use limitmesh_io::Format;
@@ -11,12 +11,10 @@ use limitmesh_io::Format;
 use super::super::channels::Channels;
 use super::super::normals::Normals;
 use super::carried::Trail;
-use super::exact::Before;
+use super::exact::{Before, unit_in_words};
 use super::provenance::Provenance;
-use super::stepwise;
-use super::{Refined, has_more};
+use super::{Refined, capped};
 use crate::arguments::{Extent, Featured, Method, RefineArguments};
-use crate::failure::{Outcome, usage};
 use crate::format::{counted, number};
 use crate::progress::Progress;
 use crate::report::refinement::{ExactParametersReport, exact_stop_name};
@@ -98,71 +96,13 @@ impl Goal {
     }
 }
 
-/// Refuses what these methods have no answer to.
-pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<()> {
-    let exact = &arguments.exact;
-    let name = if arguments.method == Method::Planarity { "planarity" } else { "vertex-error" };
-    let given = [
-        ("--levels", arguments.levels.is_some()),
-        ("--seam", arguments.seam.is_some()),
-        ("--limit", arguments.limit),
-        ("--pixels", exact.pixels.is_some()),
-        ("--camera", !exact.camera.is_empty()),
-        ("--camera-path", !exact.camera_path.is_empty()),
-        ("--balance", exact.balance),
-        ("--optimize", exact.optimize),
-        ("--divide-flat", exact.divide_flat),
-        ("--no-input-distance", exact.no_input_distance),
-        ("--max-memory", exact.max_memory.is_some()),
-        ("--dry-run", exact.dry_run),
-        ("--uv-tolerance", arguments.channels.uv_tolerance.is_some()),
-        ("--attribute-tolerance", !arguments.channels.attribute_tolerance.is_empty()),
-        ("--morph-tolerance", arguments.asset.morph_tolerance.is_some()),
-        ("--angle", arguments.angle.is_some() && arguments.method == Method::VertexError),
-    ];
-    if let Some((option, _)) = given.into_iter().find(|&(_, given)| given) {
-        return usage(format!(
-            "{option} does not go with --method {name}, a criterion of the literature; it is for other methods"
-        ));
-    }
-    if arguments.angle.is_some() && exact.tolerance.is_some() {
-        return usage(
-            "--method planarity goes by angles or by distances: --angle and --tolerance are not given together",
-        );
-    }
-    Ok(())
-}
-
-/// Refuses assets and packages, whose meshes share one tolerance.
-pub(super) fn refuse_scenes(arguments: &RefineArguments) -> anyhow::Result<()> {
-    match arguments.method {
-        Method::Planarity | Method::VertexError => usage(
-            "--method planarity and vertex-error are there to be compared with, mesh by mesh, so they do not edit glTF assets and \
-             3MF packages; OBJ, PLY, STL and OFF files they refine",
-        ),
-        _ => Ok(()),
-    }
-}
-
 /// What was asked for, defaults filled in.
 pub(super) fn parameters(arguments: &RefineArguments, diagonal: f64) -> anyhow::Result<ParametersReport> {
     let goal = Goal::of(arguments, diagonal)?;
-    let exact = &arguments.exact;
+    let max_levels = most_levels(arguments) as usize;
     Ok(ParametersReport {
         angle_degrees: goal.angle_degrees,
-        exact: Some(ExactParametersReport {
-            tolerance: goal.tolerance,
-            tolerance_percent: goal.tolerance.map(|tolerance| 100.0 * tolerance / diagonal),
-            triangles: exact.triangles,
-            pixels: None,
-            cameras: Vec::new(),
-            balance: false,
-            divide_flat: false,
-            optimize: false,
-            max_levels: most_levels(arguments) as usize,
-            max_memory: None,
-            provenance: exact.provenance,
-        }),
+        exact: Some(ExactParametersReport::new(goal.tolerance, diagonal, max_levels, &arguments.exact)),
         ..ParametersReport::common(arguments)
     })
 }
@@ -215,31 +155,16 @@ pub(super) fn run(
     let Snapshot { mesh, origins, parents, .. } = found;
     let places = (&before.faces[..], &control.concave.parts);
     let provenance = arguments.exact.provenance.then(|| Provenance::new(&origins, parents, places));
-    let unit = arguments.build.unit.map_or(String::new(), |unit| format!(" {}", unit.name()));
-    let outcome = match (has_more(&mesh, arguments), stop) {
-        (Some(short), _) => short,
-        (None, ExactStop::Met | ExactStop::Triangles) => Outcome::Done,
-        _ => Outcome::StoppedShort(format!(
-            "a cap on {} was reached before what was asked for; {} was written with {}",
-            if stop == ExactStop::LevelCap { "levels (--max-levels)" } else { "triangles (--max-triangles)" },
-            arguments.output_name(),
-            counted(mesh.face_count(), "triangle", "triangles"),
-        )),
-    };
     Ok(Refined {
         normals,
         channels,
         provenance,
         trail: Trail::default(),
-        achieved: vec![goal.in_words(worst, &unit)],
+        achieved: vec![goal.in_words(worst, &unit_in_words(arguments.build.unit))],
         inverted: None,
         how: counted(levels, "level", "levels"),
-        outcome,
-        report: MethodReport {
-            levels,
-            stop: exact_stop_name(stop),
-            ..stepwise::report(&[], Stop::Satisfied)
-        },
+        outcome: capped(&mesh, stop, arguments),
+        report: MethodReport::new(levels, exact_stop_name(stop)),
         mesh,
     })
 }

@@ -11,7 +11,7 @@ use super::super::channels::Channels;
 use super::control::Control;
 use super::exact::{self, Goals};
 use super::{Refined, phases, picture, stepwise, summary, turned_over};
-use crate::arguments::{Extent, Length, Method, RefineArguments};
+use crate::arguments::{Extent, Length, RefineArguments, Way};
 use crate::bulk::Bulk;
 use crate::failure::Outcome;
 use crate::format::counted;
@@ -60,8 +60,8 @@ pub(super) fn set_lengths(arguments: &mut RefineArguments, diagonal: f64) -> any
 
 /// What was asked for, defaults filled in.
 pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> ParametersReport {
-    match arguments.method {
-        Method::Exact => exact::parameters(arguments, goals),
+    match arguments.way() {
+        Way::Exact => exact::parameters(arguments, goals),
         _ => stepwise::parameters(arguments),
     }
 }
@@ -76,8 +76,8 @@ pub(super) fn one(
 ) -> anyhow::Result<One> {
     let start = Instant::now();
     let Control { featured, before, bulk, .. } = control;
-    let mut refined = match arguments.method {
-        Method::Exact => exact::run((featured, before, channels), goals, arguments, progress)?,
+    let mut refined = match arguments.way() {
+        Way::Exact => exact::run((featured, before, channels), goals, arguments, progress)?,
         _ => stepwise::run((featured.mesh.clone(), channels, keeps_origins), arguments, format, progress)?,
     };
     let refining = start.elapsed();

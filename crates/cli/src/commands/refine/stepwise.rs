@@ -1,5 +1,7 @@
 //! Refinement step by step: uniform, by limit normals, by neighbouring normals.
 
+use std::ops::ControlFlow;
+
 use limitmesh::Mesh;
 use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal};
 use limitmesh::limit::LimitTable;
@@ -65,18 +67,26 @@ pub(super) fn run(
 pub(super) fn report(steps: &[StepReport], stop: Stop) -> MethodReport {
     MethodReport {
         steps: steps.iter().map(StepEntry::from).collect(),
-        rounds: Vec::new(),
-        levels: steps.len(),
-        stop: stop_name(stop),
         needed_triangles: match stop {
             Stop::TriangleCap { needed } => Some(needed),
             _ => None,
         },
-        error: None,
-        input_distance: None,
-        pixels: None,
-        open_cones: None,
-        attributes: Vec::new(),
+        ..MethodReport::new(steps.len(), stop_name(stop))
+    }
+}
+
+/// Shows each of at most so many steps as it begins.
+pub(super) fn watch(
+    levels: usize,
+    progress: &Progress,
+) -> impl FnMut(&limitmesh::progress::Progress) -> ControlFlow<()> {
+    let mut shown = None;
+    move |at| {
+        if at.done < levels && shown.replace(at.done) != Some(at.done) {
+            let faces = counted(at.triangles, "triangle", "triangles");
+            progress.stage(format!("{}: step {} of at most {levels}, from {faces}", at.stage, at.done + 1));
+        }
+        progress.answer(at)
     }
 }
 
@@ -88,25 +98,12 @@ fn refine(
     progress: &Progress,
 ) -> anyhow::Result<Refinement> {
     let levels = levels(arguments);
-    let mut shown = None;
-    let mut observer = |at: &limitmesh::progress::Progress| {
-        if at.done < levels && shown.replace(at.done) != Some(at.done) {
-            let faces = counted(at.triangles, "triangle", "triangles");
-            progress.stage(format!("{}: step {} of at most {levels}, from {faces}", at.stage, at.done + 1));
-        }
-        progress.answer(at)
-    };
+    let mut observer = watch(levels, progress);
     let scheme = arguments.scheme()?;
     let cap = Some(arguments.max_triangles());
-    let angle = arguments.angle.unwrap_or(USUAL_ANGLE).to_radians();
-    let criterion: Box<dyn Criterion> = match (arguments.method, view(arguments)) {
-        (Method::Amresh, _) => Box::new(NeighbourNormal::new(angle)),
-        (Method::LimitNormal, Some(view)) => Box::new(LimitNormal::new(angle).view(view)),
-        (Method::LimitNormal, None) => Box::new(LimitNormal::new(angle)),
-        (Method::Uniform | Method::Exact | Method::Planarity | Method::VertexError, _) => {
-            let options = UniformOptions::default().levels(levels).origins(keeps_origins).max_triangles(cap);
-            return Ok(uniform_observed(control, scheme, &options, &mut observer)?);
-        }
+    let Some(criterion) = criterion(arguments) else {
+        let options = UniformOptions::default().levels(levels).origins(keeps_origins).max_triangles(cap);
+        return Ok(uniform_observed(control, scheme, &options, &mut observer)?);
     };
     let options = StepwiseOptions::default()
         .levels(levels)
@@ -114,6 +111,17 @@ fn refine(
         .origins(keeps_origins)
         .max_triangles(cap);
     Ok(stepwise_observed(control, scheme, criterion.as_ref(), &options, &mut observer)?)
+}
+
+/// What marks the faces that a step divides; none where it divides all.
+fn criterion(arguments: &RefineArguments) -> Option<Box<dyn Criterion>> {
+    let angle = arguments.angle.unwrap_or(USUAL_ANGLE).to_radians();
+    match (arguments.method, view(arguments)) {
+        (Method::Amresh, _) => Some(Box::new(NeighbourNormal::new(angle))),
+        (Method::LimitNormal, Some(view)) => Some(Box::new(LimitNormal::new(angle).view(view))),
+        (Method::LimitNormal, None) => Some(Box::new(LimitNormal::new(angle))),
+        _ => None,
+    }
 }
 
 /// Takes limit normals where the output or the picture shows them, then moves the vertices to the limit if asked.
