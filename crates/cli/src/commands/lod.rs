@@ -112,7 +112,6 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     write(arguments, format, &written, &reports, asset.as_ref())?;
     progress.clear();
     progress.note(in_words(&reports, arguments));
-    let stop = levels.last().map_or(ExactStop::Met, |level| level.exact.stop);
     let certified = levels.iter().all(|level| level.exact.error.certified);
     if let Some(path) = &arguments.report {
         let picture =
@@ -121,24 +120,23 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
             LodReport { version: VERSION, input: told, diagonal, certified, picture, levels: reports };
         output::write_json(path, &report)?;
     }
-    Ok(match stop {
-        ExactStop::Met => Outcome::Done,
-        stop => Outcome::StoppedShort(short(stop, (found, &asked), levels.last())),
-    })
+    // Levels end with the first that could not be reached.
+    let short = levels.last().filter(|last| last.exact.stop != ExactStop::Met);
+    Ok(short.map_or(Outcome::Done, |last| Outcome::StoppedShort(in_short(last, found, &asked))))
 }
 
-/// Why the last level that was begun, of those asked for, is not as near as it should be.
-fn short(stop: ExactStop, (found, asked): (usize, &LodOptions), last: Option<&Level>) -> String {
+/// Why the last level is not as near as it should be: the one with that number, counted from 1, of those asked for.
+fn in_short(last: &Level, which: usize, asked: &LodOptions) -> String {
+    let stop = last.exact.stop;
     let cap = match (stop, asked.max_triangles) {
         (ExactStop::TriangleCap, Some(most)) => format!("--max-triangles {}", thousands(most)),
         (ExactStop::LevelCap, _) => "the most that a face is divided".to_owned(),
         _ => exact_stop_name(stop).to_owned(),
     };
-    let wanted = last.map_or(0.0, |level| level.tolerance);
     format!(
-        "{cap} was reached before level {found} of {}, counted from the coarsest, was within {}: LOD0 is as near as that allows",
+        "{cap} was reached before level {which} of {}, counted from the coarsest, was within {}: LOD0 is as near as that allows",
         asked.tolerances.len(),
-        number(wanted),
+        number(last.tolerance),
     )
 }
 
