@@ -107,7 +107,6 @@ fn limit_surfaces_are_drawn_by_rays() {
     assert!(exact == draw("--exact --threads 1"), "the same bytes on one thread");
     assert!(exact != draw("--exact --scheme loop-warren"));
     assert!(exact != draw("--exact --crease-angle 30"));
-    run("render builtin:cube -o {} --exact --scheme butterfly", &[&path]).expect(1).saying("Loop family");
     run("render builtin:cube -o {} --exact --wireframe", &[&path]).expect(2);
     run("render builtin:cube -o {} --exact --smooth", &[&path]).expect(2).saying("--smooth");
     run("render builtin:cube -o {} --scheme loop", &[&path]).expect(2).saying("it needs --exact");
