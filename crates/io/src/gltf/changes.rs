@@ -5,9 +5,11 @@ use super::container::Container;
 use super::edit::{Edits, Members, items_of, quoted};
 use super::flaw::{GltfFlaw, Result};
 use super::geometry::{Appended, NewPrimitive};
-use super::idle::{self, Idle};
+use super::idle::Idle;
 use super::json::At;
+use super::rest::Rest;
 use super::source::Source;
+use super::unused::Unused;
 use super::uri::{self, Uri};
 use serde_json::{Value, json};
 use std::borrow::Cow;
@@ -45,12 +47,19 @@ impl Changes {
         let text = &source.container.text;
         let top = Members::of(text)?;
         let mut edits = Edits::new(text);
-        let idle = Idle::of(source, self);
+        let rest = Rest::of(&source.json, self);
+        let is_anew = matches!(place, Place::Chunk) || source.is_in_chunk();
+        let unused = match is_anew && !self.primitives.is_empty() {
+            true => Unused::of(&source.json, &rest.json),
+            false => Unused::default(),
+        };
+        let idle = Idle::of(source, (self, &rest, &unused));
         let mut new = Cow::from(&self.appended.bytes);
         let starts = if idle.has_views() { idle.append_to(new.to_mut()) } else { Vec::new() };
-        let (buffer, start, bytes) = buffer(&new, source, place, (&top, &mut edits))?;
+        let (buffer, start, bytes) = buffer(&new, (source, &unused), place, (&top, &mut edits))?;
         let starts: Vec<usize> = starts.into_iter().map(|own| start + own).collect();
         idle.edit((text, &top), &mut edits, (buffer, &starts))?;
+        unused.edit(&top, &mut edits, |view| idle.makes_plain(view))?;
         let count = |key: &str| source.json.get(key).and_then(Value::as_array).map_or(0, Vec::len);
         let (views, accessors) = (count("bufferViews"), count("accessors"));
         let new_views = self.appended.views.iter().map(|view| {
@@ -72,7 +81,8 @@ impl Changes {
             accessor.to_string()
         });
         append(&mut edits, text, &top, "accessors", new_accessors.collect())?;
-        self.primitives_in(&top, &mut edits, accessors)?;
+        self.primitives_in(&top, &mut edits, (accessors, &rest))?;
+        rest.edit(&top, &mut edits)?;
         if let Some(way) = way.filter(|way| !way.is_empty()) {
             link_images(&top, &mut edits, way)?;
         }
@@ -90,7 +100,12 @@ impl Changes {
     }
 
     /// New attributes, indices and modes of primitives; `first` is the number of the first new accessor.
-    fn primitives_in<'a>(&self, top: &Members<'a>, edits: &mut Edits<'a>, first: usize) -> Result<()> {
+    fn primitives_in<'a>(
+        &self,
+        top: &Members<'a>,
+        edits: &mut Edits<'a>,
+        (first, rest): (usize, &Rest),
+    ) -> Result<()> {
         let meshes = top.get("meshes").map_or_else(|| Ok(Vec::new()), items_of)?;
         for (&(mesh, primitive), new) in &self.primitives {
             let missing =
@@ -113,11 +128,8 @@ impl Changes {
             if members.get("mode").is_some_and(|mode| mode != "4") {
                 changes.push(("mode", Some("4".to_owned())));
             }
-            if let Some(extensions) = members.get("extensions")
-                && Members::of(extensions)?.0.iter().any(|(key, _)| idle::OF_TRIANGLES.contains(&&key[..]))
-            {
-                changes.push(("extensions", idle::without(&members, &idle::OF_TRIANGLES)?));
-            }
+            let stays = &rest.json["meshes"][mesh]["primitives"][primitive];
+            changes.extend(Rest::extensions(stays, &members)?.map(|new| ("extensions", new)));
             edits.replace(old, members.with(&changes));
         }
         Ok(())
@@ -127,7 +139,7 @@ impl Changes {
 /// The number of the buffer with the new bytes, where they start in it, and all of what goes to the place.
 fn buffer<'a>(
     new: &[u8],
-    source: &'a Source,
+    (source, unused): (&'a Source, &Unused),
     place: &Place<'_>,
     (top, edits): (&Members<'a>, &mut Edits<'a>),
 ) -> Result<(usize, usize, Vec<u8>)> {
@@ -143,7 +155,7 @@ fn buffer<'a>(
     // The first buffer is the chunk's, or was and has to go elsewhere.
     let is_in_chunk = source.is_in_chunk();
     if let (Some(&first), true) = (buffers.first(), matches!(place, Place::Chunk) || is_in_chunk) {
-        let mut bytes = source.first_buffer()?.to_vec();
+        let mut bytes = unused.cut(source.first_buffer()?);
         if !new.is_empty() {
             bytes.resize(bytes.len().next_multiple_of(4), 0);
         }

@@ -11,6 +11,7 @@ use super::edit::Members;
 use super::flaw::Result;
 use super::idle::without;
 use super::levels::LOD;
+use super::rest::names_in;
 
 /// The arrays that the document has others of.
 const ARRAYS: [&str; 6] = ["nodes", "meshes", "skins", "animations", "cameras", "scenes"];
@@ -36,9 +37,9 @@ impl Gone {
         let mut names: BTreeSet<String> = root.iter().cloned().chain([LOD.to_owned()]).collect();
         let mut needed = BTreeSet::new();
         needed.extend(kept.iter().map(|(name, _)| (*name).clone()));
-        kept.iter().for_each(|(_, value)| used(value, &mut needed));
+        kept.iter().for_each(|(_, value)| names_in(value, &mut needed));
         for (key, value) in json.as_object().into_iter().flatten().filter(|(key, _)| *key != "extensions") {
-            used(value, if ARRAYS.contains(&&key[..]) { &mut names } else { &mut needed });
+            names_in(value, if ARRAYS.contains(&&key[..]) { &mut names } else { &mut needed });
         }
         Self { root, names: &names - &needed }
     }
@@ -58,21 +59,5 @@ fn names_some(value: &Value) -> bool {
         }),
         Value::Array(items) => items.iter().any(names_some),
         _ => false,
-    }
-}
-
-/// Adds the names of all extensions of a value and of what is in it.
-fn used(value: &Value, names: &mut BTreeSet<String>) {
-    match value {
-        Value::Object(members) => {
-            for (key, value) in members {
-                if let ("extensions", Value::Object(own)) = (&key[..], value) {
-                    names.extend(own.keys().cloned());
-                }
-                used(value, names);
-            }
-        }
-        Value::Array(items) => items.iter().for_each(|item| used(item, names)),
-        _ => {}
     }
 }

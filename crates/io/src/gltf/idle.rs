@@ -4,22 +4,17 @@
 //! What is written is never compressed, quantised or encoded as polygons, so names go from the document's lists where no primitive that
 //! stays needs them. Views that meshopt compressed stay, as something that nobody here knows may name them; where nothing
 //! that is known does, and the extension is required, they become plain views of what they hold, so that the document
-//! says the same as before to a program without the decoder.
+//! says the same as before to a program without the decoder; but for those of which it is known that nothing names them (`unused.rs`).
 
 use super::changes::Changes;
 use super::edit::{Edits, Members, items_of, quoted};
 use super::flaw::Result;
 use super::json::At;
-use super::primitive::DRACO;
+use super::rest::{Rest, STORING};
 use super::source::{MESHOPT, Source};
+use super::unused::Unused;
 use serde_json::Value;
 use std::collections::BTreeSet;
-
-/// The extension of primitives whose triangles stand in the order of polygons.
-const POLYGONS: &str = "FB_ngon_encoding";
-
-/// Extensions of a primitive that say something of the triangles that it had.
-pub(super) const OF_TRIANGLES: [&str; 2] = [DRACO, POLYGONS];
 
 /// The extension that allows vertices' attributes of other types than the specification does.
 const QUANTIZATION: &str = "KHR_mesh_quantization";
@@ -38,7 +33,7 @@ const ONE_BYTE: &str = "\"data:application/octet-stream;base64,AA==\"";
 /// What nothing uses any more.
 pub(super) struct Idle {
     /// Names that the document's lists lose.
-    names: Vec<&'static str>,
+    names: Vec<String>,
     /// Compressed views that become plain: their numbers, and their bytes.
     views: Vec<(usize, Vec<u8>)>,
     /// Buffers of these that have no bytes.
@@ -47,46 +42,57 @@ pub(super) struct Idle {
 
 impl Idle {
     /// What nothing uses any more of a document in which primitives are replaced.
-    pub(super) fn of(source: &Source, changes: &Changes) -> Self {
-        let json = &source.json;
-        let mut idle = Self { names: Vec::new(), views: Vec::new(), hollow: Vec::new() };
+    pub(super) fn of(source: &Source, (changes, rest, unused): (&Changes, &Rest, &Unused)) -> Self {
+        let json = &rest.json;
+        let mut idle =
+            Self { names: rest.gone.iter().cloned().collect(), views: Vec::new(), hollow: Vec::new() };
         if changes.primitives.is_empty() {
             return idle;
         }
-        let kept: Vec<&Value> = kept_primitives(json, changes).collect();
+        let kept: Vec<&Value> =
+            items(json, "meshes").iter().flat_map(|mesh| items(mesh, "primitives")).collect();
         let used = used_views(json, &kept);
         for name in listed(json) {
             let is_used = match name {
                 QUANTIZATION => kept.iter().any(|primitive| is_quantized(json, primitive)),
-                _ if OF_TRIANGLES.contains(&name) => kept.iter().any(|primitive| has(primitive, name)),
-                _ => !idle.make_plain(source, name, &used),
+                _ if STORING.contains(&name) => kept.iter().any(|primitive| has(primitive, name)),
+                _ => !idle.make_plain(source, name, (&used, unused)),
             };
             if !is_used {
-                idle.names.push(name);
+                idle.names.push(name.to_owned());
             }
         }
         idle
     }
 
     /// Finds the bytes of views that meshopt compressed; `false` if the extension is still needed or there are none to be had.
-    fn make_plain(&mut self, source: &Source, name: &str, used: &BTreeSet<usize>) -> bool {
+    fn make_plain(
+        &mut self,
+        source: &Source,
+        name: &str,
+        (used, unused): (&BTreeSet<usize>, &Unused),
+    ) -> bool {
         let json = &source.json;
         let (views, buffers) = (items(json, "bufferViews"), items(json, "buffers"));
-        let compressed: Vec<usize> = (0..views.len()).filter(|&i| has(&views[i], name)).collect();
+        let needs = |&i: &usize| has(&views[i], name) && !unused.has_view(i);
+        let compressed: Vec<usize> = (0..views.len()).filter(needs).collect();
         let hollow: Vec<usize> = (0..buffers.len())
             .filter(|&i| has(&buffers[i], name) && buffers[i].get("uri").is_none())
             .collect();
+        if buffers.iter().any(|buffer| has(buffer, name) && buffer.get("uri").is_some()) {
+            return false;
+        }
         if compressed.is_empty() && hollow.is_empty() {
             return true;
         }
-        let is_read_plainly = |view: &Value| {
-            let of = view.get("buffer").and_then(index);
-            !has(view, name) && of.is_some_and(|buffer| hollow.contains(&buffer))
+        let is_read_plainly = |i: usize| {
+            let (view, of) = (&views[i], views[i].get("buffer").and_then(index));
+            !has(view, name) && !unused.has_view(i) && of.is_some_and(|buffer| hollow.contains(&buffer))
         };
         let is_required = items(json, LISTS[1]).iter().any(|own| own == name);
         if !is_required
             || compressed.iter().any(|view| used.contains(view))
-            || views.iter().any(is_read_plainly)
+            || (0..views.len()).any(is_read_plainly)
         {
             return false;
         }
@@ -109,6 +115,11 @@ impl Idle {
             start
         };
         self.views.iter().map(|(_, own)| append(own)).collect()
+    }
+
+    /// Whether a view becomes plain.
+    pub(super) fn makes_plain(&self, view: usize) -> bool {
+        self.views.iter().any(|(own, _)| *own == view)
     }
 
     /// Whether views become plain.
@@ -181,21 +192,20 @@ pub(super) fn without(members: &Members<'_>, names: &[&str]) -> Result<Option<St
 
 /// Extensions that are looked after here and that one of the document's lists has.
 fn listed(json: &Value) -> Vec<&'static str> {
-    let known = OF_TRIANGLES.into_iter().chain([QUANTIZATION]).chain(MESHOPT);
+    let known = STORING.into_iter().chain([QUANTIZATION]).chain(MESHOPT);
     let is_listed = |name: &&str| LISTS.iter().any(|list| items(json, list).iter().any(|own| own == name));
     known.filter(is_listed).collect()
 }
 
-/// Primitives that keep their geometry.
-fn kept_primitives<'a>(json: &'a Value, changes: &'a Changes) -> impl Iterator<Item = &'a Value> {
-    items(json, "meshes").iter().enumerate().flat_map(move |(i, mesh)| {
-        let all = items(mesh, "primitives").iter().enumerate();
-        all.filter(move |&(j, _)| !changes.primitives.contains_key(&(i, j))).map(|(_, primitive)| primitive)
-    })
-}
-
 /// Views that accessors name which these primitives, animations, skins and instances do.
 fn used_views(json: &Value, primitives: &[&Value]) -> BTreeSet<usize> {
+    let accessors =
+        used_accessors(json, primitives).filter_map(|number| items(json, "accessors").get(number));
+    accessors.flat_map(views_of).collect()
+}
+
+/// Accessors that these primitives, animations, skins and instances name.
+pub(super) fn used_accessors(json: &Value, primitives: &[&Value]) -> impl Iterator<Item = usize> {
     let mut accessors: Vec<&Value> = Vec::new();
     for primitive in primitives {
         accessors.extend(primitive.get("indices"));
@@ -212,12 +222,15 @@ fn used_views(json: &Value, primitives: &[&Value]) -> BTreeSet<usize> {
             node.get("extensions").and_then(|own| own.get(INSTANCING)?.get("attributes")?.as_object());
         accessors.extend(instances.into_iter().flat_map(|own| own.values()));
     }
-    let accessors = accessors.into_iter().filter_map(|number| items(json, "accessors").get(index(number)?));
-    let views = accessors.flat_map(|accessor| {
-        let sparse = |key: &str| accessor.get("sparse")?.get(key)?.get("bufferView");
-        [accessor.get("bufferView"), sparse("indices"), sparse("values")]
-    });
-    views.flatten().filter_map(index).collect()
+    let numbers: Vec<usize> = accessors.into_iter().filter_map(index).collect();
+    numbers.into_iter()
+}
+
+/// The views that an accessor names.
+pub(super) fn views_of(accessor: &Value) -> impl Iterator<Item = usize> {
+    let sparse = |key: &str| accessor.get("sparse")?.get(key)?.get("bufferView");
+    let views = [accessor.get("bufferView"), sparse("indices"), sparse("values")];
+    views.into_iter().flatten().filter_map(index)
 }
 
 /// By attribute of a primitive and of its morph targets: name, accessor, and whether it is a target's.
@@ -252,7 +265,7 @@ fn has(object: &Value, name: &str) -> bool {
 }
 
 /// The items of an array; none where there is none.
-fn items<'a>(object: &'a Value, key: &str) -> &'a [Value] {
+pub(super) fn items<'a>(object: &'a Value, key: &str) -> &'a [Value] {
     object.get(key).and_then(Value::as_array).map_or(&[], Vec::as_slice)
 }
 

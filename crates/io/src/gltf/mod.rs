@@ -32,10 +32,12 @@ mod levels;
 mod materials;
 mod parts;
 mod primitive;
+mod rest;
 mod scene;
 mod scene_channels;
 mod source;
 mod tangents;
+mod unused;
 mod uri;
 mod write;
 
@@ -54,6 +56,7 @@ use crate::read::read_all;
 use changes::Changes;
 use flaw::Result as Flawed;
 use limitmesh::PolygonSoup;
+use rest::Rest;
 use scene::{Placement, Scene};
 use scene_channels::SceneChannels;
 use source::Source;
@@ -294,7 +297,7 @@ impl Asset {
         all.channels = channels.into_channels(&self.source).map_err(|flaw| self.told(flaw))?;
         all.left_out = names.into_iter().map(str::to_owned).collect();
         if self.source.json.get("materials").is_some() {
-            all.left_out.push("materials but for their names".to_owned());
+            all.left_out.push("colours and textures of materials".to_owned());
         }
         Ok(all)
     }
@@ -368,7 +371,8 @@ impl Asset {
         })
     }
 
-    /// Replaces the triangles of a mesh's primitive; its material, extras and other extensions stay.
+    /// Replaces the triangles of a mesh's primitive; its material, extras and extensions stay, but for those that say something of
+    /// the triangles and vertices that it had.
     ///
     /// # Errors
     /// The geometry does not fit together, or has numbers that 32-bit floats cannot hold.
@@ -382,6 +386,12 @@ impl Asset {
         let new = self.changes.appended.add(geometry, &place)?;
         self.changes.primitives.insert((mesh, primitive), new);
         Ok(())
+    }
+
+    /// The names of extensions that said something of triangles and vertices that were replaced, and go with these when the document is
+    /// written.
+    pub fn left_out(&self) -> Vec<String> {
+        Rest::of(&self.source.json, &self.changes).left_out.into_iter().collect()
     }
 }
 

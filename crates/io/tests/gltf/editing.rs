@@ -14,11 +14,11 @@ fn geometry() -> Geometry<'static> {
     Geometry { positions: &SQUARE, normals: Some(&UP), triangles: &HALVES, attributes: &[], targets: &[] }
 }
 
-/// A triangle amid things that nobody knows, spelt in ways that no writer would.
+/// A triangle amid things that nobody knows, and that may name its accessor, spelt in ways that no writer would.
 fn odd() -> String {
     let top = r#" "buffers" : [ {"byteLength":36, "name":"b"} ],
 	"bufferViews":[{"buffer":0,"byteLength":36}], "accessors":[{"count":3,"type":"VEC3","componentType":5126,"bufferView":0}],
-	"nodes":[{"mesh":0,"translation":[1.0e+0,0.10,-0]}],"extensions":{"ODD_thing":{"b":[1,2, 3],"a":"\u00e9\/"}},
+	"nodes":[{"mesh":0,"translation":[1.0e+0,0.10,-0]}],"extensions":{"ODD_thing":{"b":[0,2, 3],"a":"\u00e9\/"}},
 	"extras":{"z":1.000000000000000000001,"a":12345678901234567890123}, "materials":[{}]"#;
     document(top, r#""extras":{"y":1.50},"material":0,"mode":4,"attributes":{"POSITION":0}"#)
 }

@@ -12,4 +12,6 @@ mod joining;
 mod levels;
 mod mutations;
 mod scenes;
+mod stale;
 mod support;
+mod unused;

@@ -132,6 +132,7 @@ impl Job {
         for mesh in 0..asset.mesh_count() {
             self.mesh((mesh, &selection), &mut asset, diagonal, &mut done, progress)?;
         }
+        done.left_out.extend(asset.left_out());
         self.finish(&asset, &name, reading, done, progress)
     }
 

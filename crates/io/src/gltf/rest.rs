@@ -1,0 +1,215 @@
+//! What of a document stays where primitives are replaced: the document without their geometry, and without what extensions say of
+//! triangles and vertices that are no more.
+//!
+//! Takes the document and the numbers of the primitives; gives the JSON that is left, which is looked at and never written, what is told
+//! of it, and the extensions of a mesh, a primitive or a scene as they are written. Extensions of how geometry was stored go untold, as
+//! nothing is lost with them.
+
+use super::changes::Changes;
+use super::edit::{Edits, Members, items_of};
+use super::flaw::Result;
+use super::primitive::DRACO;
+use serde_json::Value;
+use std::collections::BTreeSet;
+
+/// The extension of primitives whose triangles stand in the order of polygons.
+const POLYGONS: &str = "FB_ngon_encoding";
+
+/// Extensions of how the triangles of a primitive are stored.
+pub(super) const STORING: [&str; 2] = [DRACO, POLYGONS];
+
+/// Extensions that name vertices, edges or triangles of a primitive or of a mesh by their numbers, wherever they stand.
+const NAMING: [&str; 6] = [
+    "CESIUM_mesh_vector",
+    "CESIUM_primitive_outline",
+    "EXT_mesh_bmesh",
+    "EXT_mesh_manifold",
+    "EXT_mesh_polygon",
+    "EXT_mesh_primitive_edge_visibility",
+];
+
+/// Extensions of a mesh that have other indices for several of its primitives together; as a mark of a primitive, that its indices have
+/// gaps.
+const RESTART: [&str; 2] = ["EXT_mesh_primitive_restart", "KHR_mesh_primitive_restart"];
+
+/// The extension of a mesh whose vertices follow those of another.
+const LINKING: &str = "MPEG_mesh_linking";
+
+/// The extension of a scene that counts its vertices and triangles.
+const COUNTING: &str = "FB_geometry_metadata";
+
+/// The extension of a primitive that says what its vertices belong to: by an attribute, by a texture, or else by their numbers.
+const FEATURES: &str = "EXT_mesh_features";
+
+/// What stays.
+#[derive(Debug, Default)]
+pub(super) struct Rest {
+    /// The document without what goes.
+    pub(super) json: Value,
+    /// Extensions that go with what they said, and nothing that stays has any more.
+    pub(super) gone: BTreeSet<String>,
+    /// What goes, for people.
+    pub(super) left_out: BTreeSet<String>,
+}
+
+impl Rest {
+    /// What stays of a document in which primitives are replaced.
+    pub(super) fn of(json: &Value, changes: &Changes) -> Self {
+        let mut rest = Self { json: json.clone(), ..Self::default() };
+        if changes.primitives.is_empty() {
+            return rest;
+        }
+        let mut removed = BTreeSet::new();
+        for (i, mesh) in list(&mut rest.json, "meshes").iter_mut().enumerate() {
+            for (j, primitive) in list(mesh, "primitives").iter_mut().enumerate() {
+                if changes.primitives.contains_key(&(i, j)) {
+                    if let Some(members) = primitive.as_object_mut() {
+                        members.retain(|key, _| !["attributes", "indices", "targets"].contains(&&key[..]));
+                    }
+                    take(primitive, |name, _| STORING.contains(&name));
+                    removed.extend(take(primitive, |name, _| is_stale(name)));
+                    rest.left_out.extend(without_numbered(primitive));
+                }
+            }
+            let is_new = |primitive: &Value| {
+                index(primitive).is_some_and(|primitive| changes.primitives.contains_key(&(i, primitive)))
+            };
+            let is_changed =
+                |mesh: usize| changes.primitives.range((mesh, 0)..=(mesh, usize::MAX)).next().is_some();
+            removed.extend(take(mesh, |name, own| match name {
+                LINKING => is_changed(i) || own.get("mesh").and_then(index).is_some_and(is_changed),
+                name if RESTART.contains(&name) => groups(own).any(is_new),
+                name => is_changed(i) && NAMING.contains(&name),
+            }));
+        }
+        for scene in list(&mut rest.json, "scenes") {
+            removed.extend(take(scene, |name, _| name == COUNTING));
+        }
+        let mut left = BTreeSet::new();
+        names_in(&rest.json, &mut left);
+        rest.gone = &removed - &left;
+        rest.left_out.extend(removed);
+        rest
+    }
+
+    /// Takes from the text of a mesh's, a primitive's or a scene's members what goes, where `rest` is what stays of it; gives the new text of its extensions if
+    /// they change, `None` in it if none are left.
+    pub(super) fn extensions(rest: &Value, members: &Members<'_>) -> Result<Option<Option<String>>> {
+        let Some(text) = members.get("extensions") else { return Ok(None) };
+        // Whatever else stands there is not ours to judge.
+        let Ok(own) = Members::of(text) else { return Ok(None) };
+        let mut changes = Vec::new();
+        for (name, text) in &own.0 {
+            match rest.get("extensions").and_then(|own| own.get(name)) {
+                None => changes.push((&name[..], None)),
+                Some(rest) if name == FEATURES => {
+                    changes.extend(numbered_taken(rest, text)?.map(|new| (FEATURES, Some(new))));
+                }
+                Some(_) => {}
+            }
+        }
+        let is_left = own.0.iter().any(|(name, _)| !changes.contains(&(&name[..], None)));
+        Ok((!changes.is_empty()).then(|| is_left.then(|| own.with(&changes))))
+    }
+
+    /// Takes what goes from the extensions of meshes and scenes.
+    pub(super) fn edit<'a>(&self, top: &Members<'a>, edits: &mut Edits<'a>) -> Result<()> {
+        if self.left_out.is_empty() {
+            return Ok(());
+        }
+        for key in ["meshes", "scenes"] {
+            let items = top.get(key).map_or_else(|| Ok(Vec::new()), items_of)?;
+            for (i, item) in items.into_iter().enumerate() {
+                let members = Members::of(item)?;
+                match Self::extensions(&self.json[key][i], &members)? {
+                    None => {}
+                    Some(None) => edits.remove(item, &["extensions"])?,
+                    Some(Some(new)) => {
+                        if let Some(old) = members.get("extensions") {
+                            edits.replace(old, new);
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether an extension of a primitive says something of its triangles or vertices by their numbers.
+fn is_stale(name: &str) -> bool {
+    NAMING.contains(&name) || RESTART.contains(&name) || name == LINKING
+}
+
+/// Takes from an object the extensions that are to go; gives their names.
+fn take(object: &mut Value, goes: impl Fn(&str, &Value) -> bool) -> Vec<String> {
+    let Some(own) = object.get_mut("extensions").and_then(Value::as_object_mut) else { return Vec::new() };
+    let names: Vec<String> =
+        own.iter().filter(|(name, own)| goes(name, own)).map(|(name, _)| name.clone()).collect();
+    for name in &names {
+        own.remove(name);
+    }
+    names
+}
+
+/// The numbers of the primitives in the groups of a mesh.
+fn groups(extension: &Value) -> impl Iterator<Item = &Value> {
+    let all = extension.get("primitiveGroups").and_then(Value::as_array).into_iter().flatten();
+    all.flat_map(|group| group.get("primitives").and_then(Value::as_array).into_iter().flatten())
+}
+
+/// Takes from a primitive the sets of features that go by the numbers of its vertices, and the extension if it has no others; gives what is told.
+fn without_numbered(primitive: &mut Value) -> Option<String> {
+    let sets = primitive.get_mut("extensions")?.get_mut(FEATURES)?.get_mut("featureIds")?.as_array_mut()?;
+    let before = sets.len();
+    sets.retain(|set| !is_numbered(set));
+    let (is_changed, is_empty) = (sets.len() < before, sets.is_empty());
+    if is_changed && is_empty {
+        take(primitive, |name, _| name == FEATURES);
+    }
+    is_changed.then(|| format!("{FEATURES} by vertex number"))
+}
+
+/// Whether a set of features goes by the numbers of vertices.
+fn is_numbered(set: &Value) -> bool {
+    set.is_object() && set.get("attribute").is_none() && set.get("texture").is_none()
+}
+
+/// The text of an extension without the sets that go by numbers, if it had any.
+fn numbered_taken(rest: &Value, text: &str) -> Result<Option<String>> {
+    let members = Members::of(text)?;
+    let Some(list) = members.get("featureIds") else { return Ok(None) };
+    let sets = items_of(list)?;
+    let stay = rest.get("featureIds").and_then(Value::as_array).map_or(sets.len(), Vec::len);
+    if stay == sets.len() {
+        return Ok(None);
+    }
+    let is_kept = |set: &&str| serde_json::from_str(set).is_ok_and(|set: Value| !is_numbered(&set));
+    let kept: Vec<&str> = sets.into_iter().filter(is_kept).collect();
+    Ok(Some(members.with(&[("featureIds", Some(format!("[{}]", kept.join(","))))])))
+}
+
+/// Adds the names of all extensions of a value and of what is in it.
+pub(super) fn names_in(value: &Value, names: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(members) => {
+            for (key, value) in members {
+                if let ("extensions", Value::Object(own)) = (&key[..], value) {
+                    names.extend(own.keys().cloned());
+                }
+                names_in(value, names);
+            }
+        }
+        Value::Array(items) => items.iter().for_each(|item| names_in(item, names)),
+        _ => {}
+    }
+}
+
+/// The items of an array; none where there is none.
+fn list<'a>(object: &'a mut Value, key: &str) -> &'a mut [Value] {
+    object.get_mut(key).and_then(Value::as_array_mut).map_or(&mut [], Vec::as_mut_slice)
+}
+
+fn index(value: &Value) -> Option<usize> {
+    usize::try_from(value.as_u64()?).ok()
+}
