@@ -66,8 +66,8 @@ impl<'a> DetailLevel<'a> {
 }
 
 /// Writes levels of detail, the finest first, as one document, whose nodes and meshes are called `name` with `_LOD0` and so on. With the
-/// asset that the levels were made of, its materials, textures and images come along, and all of its bytes; not its nodes, skins,
-/// animations and cameras, nor extensions that name them.
+/// asset that the levels were made of, its materials, textures and images come along, and the bytes that something may name; not its nodes,
+/// skins, animations and cameras, nor extensions that name them.
 ///
 /// # Errors
 /// The levels do not fit together, or have numbers that 32-bit floats cannot hold; or the system refuses.

@@ -8,8 +8,9 @@
 //!
 //! An asset is far more than its triangles: nodes, materials, animations, cameras, extras, extensions that nobody here has
 //! heard of. So documents are *edited, never written anew*: the JSON text is kept, new buffers, views and accessors are
-//! appended to its arrays, and of a primitive only `attributes`, `indices`, `targets` and `mode` change; what says how
-//! geometry was stored goes when none is stored so any more. All other bytes of the text are those that were read. The
+//! appended to its arrays, and of a primitive only `attributes`, `indices`, `targets` and `mode` change. What says how
+//! geometry was stored goes when none is stored so any more, what extensions say of triangles by number goes with these, and bytes that
+//! nothing names go from a buffer that is written anew, so that offsets of views change. All other bytes of the text are those that were read. The
 //! JSON is read by serde_json, and found again in its text by serde_json's raw values; a crate that has a document model of its own would write that model, not the text.
 //!
 //! What a document says of itself is not believed: every count, offset and index is checked before room is made for

@@ -92,8 +92,8 @@ impl Rest {
         rest
     }
 
-    /// Takes from the text of a mesh's, a primitive's or a scene's members what goes, where `rest` is what stays of it; gives the new text of its extensions if
-    /// they change, `None` in it if none are left.
+    /// The new text of a mesh's, a primitive's or a scene's extensions, given its members and what stays of it, if they change; `None` in
+    /// it if none are left.
     pub(super) fn extensions(rest: &Value, members: &Members<'_>) -> Result<Option<Option<String>>> {
         let Some(text) = members.get("extensions") else { return Ok(None) };
         // Whatever else stands there is not ours to judge.
@@ -158,7 +158,8 @@ fn groups(extension: &Value) -> impl Iterator<Item = &Value> {
     all.flat_map(|group| group.get("primitives").and_then(Value::as_array).into_iter().flatten())
 }
 
-/// Takes from a primitive the sets of features that go by the numbers of its vertices, and the extension if it has no others; gives what is told.
+/// Takes from a primitive the sets of features that go by the numbers of its vertices, and the extension if it has no others; gives what is
+/// told.
 fn without_numbered(primitive: &mut Value) -> Option<String> {
     let sets = primitive.get_mut("extensions")?.get_mut(FEATURES)?.get_mut("featureIds")?.as_array_mut()?;
     let before = sets.len();

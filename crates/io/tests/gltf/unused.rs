@@ -52,7 +52,10 @@ fn document() -> (Value, Vec<u8>) {
         );
         bin.extend((0..length).map(|at| (i * 40 + at % 37) as u8));
     }
-    let accessor = |view: usize, kind: usize, count: usize, shape: &str| json!({"bufferView": view, "componentType": kind, "count": count, "type": shape});
+    let accessor = |view: usize, kind: usize, count: usize, shape: &str| {
+        let [view, kind, count] = [view, kind, count].map(Value::from);
+        json!({"bufferView": view, "componentType": kind, "count": count, "type": shape})
+    };
     let mut position = accessor(0, 5126, 53, "VEC3");
     (position["min"], position["max"]) = (json!([0, 0, 0]), json!([1, 1, 1]));
     let document = json!({
