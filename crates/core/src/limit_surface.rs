@@ -85,7 +85,11 @@ impl<'a> LimitSurface<'a> {
     /// # Errors
     /// As for [`Self::new`].
     pub fn without_normals(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Result<Self, LimitError> {
-        let rules = Rules::of(scheme);
+        Self::by_rules(mesh, Rules::of(scheme))
+    }
+
+    /// [`Self::without_normals`] by rules that may share what is found with those of other surfaces.
+    fn by_rules(mesh: &'a Mesh, rules: Rules<'a>) -> Result<Self, LimitError> {
         let positions = rules.table().positions(mesh)?;
         let (sharpness, large) = (Sharpness::of(mesh), LargeRings::of(mesh));
         Ok(Self { mesh, sharpness, large, rules, positions, normals: None })

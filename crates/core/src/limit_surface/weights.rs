@@ -74,7 +74,7 @@ impl LimitSurface<'_> {
             positions[first..].iter_mut().take(3).enumerate().for_each(|(axis, at)| at[axis] = 1.0);
             // All positions are finite.
             let Ok(units) = small.clone().with_positions(positions) else { continue };
-            let surface = LimitSurface::without_normals(&units, self.scheme())?;
+            let surface = LimitSurface::by_rules(&units, self.rules.sharing())?;
             for (found, point) in found.iter_mut().zip(surface.over(FaceId(0), places)) {
                 let own = sources[first..].iter().zip(point.position).filter(|&(_, weight)| weight != 0.0);
                 found.extend(own.map(|(&vertex, weight)| (vertex, weight)));

@@ -1,7 +1,7 @@
 //! What the pieces of a surface need to know of its scheme: the weights and characteristic maps of the Loop family for
 //! those that say they are of it, limit stencils for all.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::characteristic::Characteristic;
 use super::settling;
@@ -15,10 +15,15 @@ const KEPT: usize = 32;
 pub(crate) struct Rules<'s> {
     scheme: &'s dyn Scheme,
     family: Option<LoopFamily>,
-    table: LimitTable<'s>,
+    betas: [f64; KEPT],
+    found: Arc<Found<'s>>,
     /// What went wrong first.
     failure: OnceLock<LimitError>,
-    betas: [f64; KEPT],
+}
+
+/// What takes long to find, and depends on nothing but the scheme.
+struct Found<'s> {
+    table: LimitTable<'s>,
     characteristics: [OnceLock<Characteristic>; KEPT],
     settling: [OnceLock<Option<f64>>; KEPT],
 }
@@ -35,12 +40,20 @@ impl<'s> Rules<'s> {
         Self {
             scheme,
             family,
-            table: LimitTable::new(scheme),
-            failure: OnceLock::new(),
             betas: core::array::from_fn(kept),
-            characteristics: [const { OnceLock::new() }; KEPT],
-            settling: [const { OnceLock::new() }; KEPT],
+            found: Arc::new(Found {
+                table: LimitTable::new(scheme),
+                characteristics: [const { OnceLock::new() }; KEPT],
+                settling: [const { OnceLock::new() }; KEPT],
+            }),
+            failure: OnceLock::new(),
         }
+    }
+
+    /// The same rules for another surface: what is found for one is known to both, and each has its own failures.
+    pub(crate) fn sharing(&self) -> Self {
+        let Self { scheme, family, betas, .. } = *self;
+        Self { scheme, family, betas, found: Arc::clone(&self.found), failure: OnceLock::new() }
     }
 
     /// The scheme whose masks count.
@@ -50,7 +63,7 @@ impl<'s> Rules<'s> {
 
     /// The scheme's limit stencils.
     pub(crate) fn table(&self) -> &LimitTable<'s> {
-        &self.table
+        &self.found.table
     }
 
     /// Whether the scheme is of the Loop family: what does not fade has a form of its own, and bounds hold.
@@ -85,14 +98,14 @@ impl<'s> Rules<'s> {
 impl Rules<'_> {
     /// The characteristic map of a valence; `None` for those that are not kept.
     pub(crate) fn characteristic(&self, valence: usize) -> Option<&Characteristic> {
-        let kept = self.characteristics.get(valence).filter(|_| valence >= 3)?;
+        let kept = self.found.characteristics.get(valence).filter(|_| valence >= 3)?;
         Some(kept.get_or_init(|| Characteristic::of(valence)))
     }
 
     /// How much what stands beside the characteristic map of a valence can grow ([`settling::growth`]); `None` where that is not known.
     pub(crate) fn settling(&self, valence: usize) -> Option<f64> {
         let map = self.characteristic(valence)?;
-        *self.settling.get(valence)?.get_or_init(|| settling::growth(map, self.beta(valence)))
+        *self.found.settling.get(valence)?.get_or_init(|| settling::growth(map, self.beta(valence)))
     }
 }
 

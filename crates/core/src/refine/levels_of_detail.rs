@@ -30,6 +30,7 @@ use super::adaptive::nested;
 use super::exact::scale;
 use super::exact_options::ExactOptions;
 use super::level::{Geomorph, Level};
+use crate::limit_surface::LimitSurface;
 use crate::mesh::{Mesh, MeshError};
 use crate::progress::{Observer, unobserved};
 use crate::scheme::Scheme;
@@ -156,10 +157,11 @@ fn all(
     options: &LodOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Vec<Level>, RefineError> {
+    let surface = LimitSurface::without_normals(control, scheme)?;
     let mut levels: Vec<Level> = Vec::with_capacity(options.tolerances.len());
     for &tolerance in &options.tolerances {
         let asked = (&options.exact(tolerance), tolerance);
-        let level = nested(control, scheme, asked, (levels.last(), options.geomorphs), observer)?;
+        let level = nested((&surface, scheme), asked, (levels.last(), options.geomorphs), observer)?;
         let is_met = level.exact.stop == super::ExactStop::Met;
         levels.push(level);
         if !is_met {

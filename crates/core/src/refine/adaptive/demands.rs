@@ -64,9 +64,17 @@ impl Demands {
 /// By goal and function, the surface over a node.
 type Sheets<'r, 'a> = Vec<Vec<(Sheet, &'r Rules<'a>)>>;
 
+/// A goal, with the surfaces that stand for its functions.
+#[derive(Clone, Copy)]
+struct Goal<'a> {
+    tolerance: f64,
+    kind: GoalKind,
+    surfaces: &'a [LimitSurface<'a>],
+}
+
 /// The functions that goals are about.
 pub(super) struct Functions<'a> {
-    goals: Vec<(&'a AttributeGoal, Vec<LimitSurface<'a>>)>,
+    goals: Vec<Goal<'a>>,
 }
 
 /// What emitted triangles hold of the functions.
@@ -77,15 +85,40 @@ pub(super) struct Held {
     pub(super) failing: Vec<Place>,
 }
 
+/// By goal, the surfaces that stand for its functions.
+///
+/// # Errors
+/// The scheme has no limit at the shape of some ring.
+pub(super) fn surfaces_of<'a>(
+    goals: &'a [AttributeGoal],
+    scheme: &'a dyn Scheme,
+) -> Result<Vec<Vec<LimitSurface<'a>>>, RefineError> {
+    let of_mesh = |mesh| LimitSurface::without_normals(mesh, scheme);
+    let of_goal = |goal: &'a AttributeGoal| goal.meshes.iter().map(of_mesh).collect::<Result<_, _>>();
+    Ok(goals.iter().map(of_goal).collect::<Result<_, _>>()?)
+}
+
 impl<'a> Functions<'a> {
-    /// # Errors
-    /// The scheme has no limit at the shape of some ring.
-    pub(super) fn of(goals: &'a [AttributeGoal], scheme: &'a dyn Scheme) -> Result<Self, RefineError> {
-        let of_goal = |goal: &'a AttributeGoal| {
-            let surfaces = goal.meshes.iter().map(|mesh| LimitSurface::without_normals(mesh, scheme));
-            Ok::<_, RefineError>((goal, surfaces.collect::<Result<_, _>>()?))
+    /// The functions of goals, of which these are the surfaces.
+    pub(super) fn of(goals: &[AttributeGoal], surfaces: &'a [Vec<LimitSurface<'a>>]) -> Self {
+        let of_goal = |(goal, surfaces): (&AttributeGoal, &'a Vec<_>)| Goal {
+            tolerance: goal.tolerance,
+            kind: goal.kind,
+            surfaces,
         };
-        Ok(Self { goals: goals.iter().map(of_goal).collect::<Result<_, _>>()? })
+        Self { goals: goals.iter().zip(surfaces).map(of_goal).collect() }
+    }
+
+    /// The positions of a surface as values, within a tolerance.
+    pub(super) fn positions(surface: &'a LimitSurface<'a>, tolerance: f64) -> Self {
+        let surfaces = core::slice::from_ref(surface);
+        Self { goals: vec![Goal { tolerance, kind: GoalKind::Values, surfaces }] }
+    }
+
+    /// The same functions with tolerances so many times as large.
+    pub(super) fn coarser(&self, times: f64) -> Self {
+        let coarser = |goal: &Goal<'a>| Goal { tolerance: times * goal.tolerance, ..*goal };
+        Self { goals: self.goals.iter().map(coarser).collect() }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -147,23 +180,19 @@ impl<'a> Functions<'a> {
 
     /// Whether all goals are met.
     pub(super) fn are_met(&self, bounds: &[f64]) -> bool {
-        self.goals.iter().zip(bounds).all(|((goal, _), &bound)| !exceeds(bound, goal.tolerance))
+        self.goals.iter().zip(bounds).all(|(goal, &bound)| !exceeds(bound, goal.tolerance))
     }
 
     fn sheets(&self, face: usize) -> Sheets<'_, 'a> {
         let face = FaceId(face as u32);
-        let of_goal = |(_, surfaces): &'_ (_, Vec<LimitSurface<'a>>)| surfaces.len();
-        debug_assert!(self.goals.iter().map(of_goal).all(|count| count > 0));
-        self.goals
-            .iter()
-            .map(|(_, surfaces)| surfaces.iter().map(|surface| surface.sheet(face)).collect())
-            .collect()
+        debug_assert!(self.goals.iter().all(|goal| !goal.surfaces.is_empty()));
+        let of_goal = |goal: &Goal<'a>| goal.surfaces.iter().map(|surface| surface.sheet(face)).collect();
+        self.goals.iter().map(of_goal).collect()
     }
 
     /// A stencil that failed on the way.
     fn check(&self) -> Result<(), RefineError> {
-        let mut failures =
-            self.goals.iter().flat_map(|(_, surfaces)| surfaces).filter_map(LimitSurface::failure);
+        let mut failures = self.goals.iter().flat_map(|goal| goal.surfaces).filter_map(LimitSurface::failure);
         failures.next().map_or(Ok(()), |failure| Err(failure.clone().into()))
     }
 }
@@ -185,7 +214,7 @@ impl<'s, 'a> Descent for Looking<'s, 'a> {
     fn leaf(&mut self, place: Place, sheets: Self::Node, covering: &[Covering]) {
         for &Covering { part, .. } in covering {
             let mut fails = false;
-            for (number, (goal, _)) in self.functions.goals.iter().enumerate() {
+            for (number, goal) in self.functions.goals.iter().enumerate() {
                 let bound = bound(goal, &sheets[number], part);
                 let known = &mut self.held.bounds[number];
                 *known = known.max(bound);
@@ -221,7 +250,7 @@ fn children<'r, 'a>(sheets: &[Vec<(Sheet, &'r Rules<'a>)>]) -> [Sheets<'r, 'a>; 
 }
 
 /// How far a goal's function is from what a triangle over a part of a node holds.
-fn bound(goal: &AttributeGoal, sheets: &[(Sheet, &Rules<'_>)], part: SubTriangle) -> f64 {
+fn bound(goal: &Goal<'_>, sheets: &[(Sheet, &Rules<'_>)], part: SubTriangle) -> f64 {
     match goal.kind {
         GoalKind::Values => {
             let target = goal.tolerance / (sheets.len() as f64).sqrt();
@@ -262,7 +291,7 @@ impl Dividing<'_, '_> {
         if place.level >= self.max_levels || (self.is_stopped)() {
             return;
         }
-        let fails = |((goal, _), sheets): (&(&AttributeGoal, _), &Vec<(Sheet, &Rules<'_>)>)| {
+        let fails = |(goal, sheets): (&Goal<'_>, &Vec<(Sheet, &Rules<'_>)>)| {
             exceeds(bound(goal, sheets, SubTriangle::Whole), goal.tolerance)
         };
         if !self.functions.goals.iter().zip(sheets).any(fails)

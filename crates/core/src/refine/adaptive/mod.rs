@@ -53,7 +53,6 @@ mod walk;
 pub(super) use nested::nested;
 
 use super::RefineError;
-use super::attribute_goal::AttributeGoal;
 use super::exact_options::ExactOptions;
 use super::exact_result::{Exact, ExactStop};
 use super::junctions::join_copies;
@@ -69,7 +68,7 @@ use balance::{Pending, balance};
 use chains::{Chains, first_of};
 use close::close;
 use decide::{Control, decide};
-use demands::{Demands, Functions};
+use demands::{Demands, Functions, surfaces_of};
 use emit::{Emission, Extend};
 use flat::{FlatRegions, Net};
 pub(super) use frames::frames;
@@ -104,7 +103,8 @@ pub(super) fn adaptive(
     options: &ExactOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
-    let functions = Functions::of(&options.attributes, scheme)?;
+    let surfaces = surfaces_of(&options.attributes, scheme)?;
+    let functions = Functions::of(&options.attributes, &surfaces);
     if functions.is_empty() {
         return once(mesh, scheme, (options, &Demands::default()), observer);
     }
@@ -115,7 +115,7 @@ pub(super) fn adaptive(
     let fits = demanded.is_some();
     let mut demands = match demanded {
         Some(demands) => demands,
-        None => fitting(&options.attributes, scheme, watched, observer)?,
+        None => fitting(&functions, watched, observer)?,
     };
     loop {
         let mut found = once(mesh, scheme, (options, &demands), observer)?;
@@ -141,26 +141,18 @@ pub(super) fn adaptive(
 /// The nodes that goals ask for which are as many times coarser, by powers of two, as it takes for there to be no more than there may be;
 /// none where no such goals are.
 fn fitting(
-    goals: &[AttributeGoal],
-    scheme: &dyn Scheme,
+    functions: &Functions<'_>,
     watched: (usize, u32, usize),
     observer: &mut Observer<'_>,
 ) -> Result<Demands, RefineError> {
     for halvings in 1..=COARSEST {
-        let coarser = scaled(goals, f64::from(halvings).exp2());
-        let functions = Functions::of(&coarser, scheme)?;
-        let found = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
+        let coarser = functions.coarser(f64::from(halvings).exp2());
+        let found = coarser.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
         if let Some(demands) = found {
             return Ok(demands);
         }
     }
     Ok(Demands::default())
-}
-
-/// Goals so many times as coarse.
-fn scaled(goals: &[AttributeGoal], times: f64) -> Vec<AttributeGoal> {
-    let coarser = |goal: &AttributeGoal| AttributeGoal { tolerance: times * goal.tolerance, ..goal.clone() };
-    goals.iter().map(coarser).collect()
 }
 
 /// Refines with some nodes divided in any case.
@@ -206,8 +198,8 @@ pub(super) fn count(
     times: f64,
     observer: &mut Observer<'_>,
 ) -> Result<usize, RefineError> {
-    let goals = scaled(&options.attributes, times);
-    let functions = Functions::of(&goals, scheme)?;
+    let surfaces = surfaces_of(&options.attributes, scheme)?;
+    let functions = Functions::of(&options.attributes, &surfaces).coarser(times);
     let watched = (mesh.face_count(), options.max_levels as u32, usize::MAX);
     let demands = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
     let demands = demands.unwrap_or_default();

@@ -16,7 +16,6 @@ use crate::parallel::IsStopped;
 use crate::patch::Rules;
 use crate::progress::{Observer, SharedWatch, Stage};
 use crate::refine::RefineError;
-use crate::refine::attribute_goal::AttributeGoal;
 use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{Exact, ExactStop};
 use crate::refine::level::Level;
@@ -30,22 +29,21 @@ const BLOCK: usize = 64;
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// The level within `options`' tolerance in which `coarser` is nested; with geomorphs the tolerances hold place by place, the coarser
-/// level's from the start.
+/// level's from the start. `surface` is the limit surface of the mesh that the level is one of.
 pub(in crate::refine) fn nested(
-    mesh: &Mesh,
-    scheme: &dyn Scheme,
+    (surface, scheme): (&LimitSurface<'_>, &dyn Scheme),
     (options, tolerance): (&ExactOptions, f64),
     (coarser, with_geomorph): (Option<&Level>, bool),
     observer: &mut Observer<'_>,
 ) -> Result<Level, RefineError> {
+    let mesh = surface.control();
     let (most, cap) = options.budget();
     let room = most.saturating_sub(mesh.face_count()) / ADDED;
     let mut demands = Demands::default();
     let mut fits = true;
     if with_geomorph {
-        let goals = [AttributeGoal::values(vec![mesh.clone()], tolerance)];
         let watched = (mesh.face_count(), options.max_levels as u32, room);
-        let functions = Functions::of(&goals, scheme)?;
+        let functions = Functions::positions(surface, tolerance);
         let found = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
         fits = found.is_some();
         demands = found.unwrap_or_default();
@@ -53,7 +51,6 @@ pub(in crate::refine) fn nested(
     if let Some(coarser) = coarser {
         divide_as(mesh, &coarser.exact, &mut demands, &SharedWatch::new(observer, Stage::Refining))?;
     }
-    let surface = LimitSurface::without_normals(mesh, scheme)?;
     loop {
         let exact = once(mesh, scheme, (options, &demands), observer)?;
         let watch = SharedWatch::new(observer, Stage::Bounding);
@@ -65,7 +62,7 @@ pub(in crate::refine) fn nested(
         let mut morph = morph.transpose()?;
         let start = morph.as_ref().map(|(morph, tolerance)| (&morph.positions[..], tolerance - rounding));
         let end = (exact.mesh.positions(), tolerance - rounding);
-        let apart = Apart { surface: &surface, ends: [Some(end), start] };
+        let apart = Apart { surface, ends: [Some(end), start] };
         let off = apart.off(mesh, &exact, &watch)?;
         if let Some(failure) = surface.failure() {
             return Err(failure.clone().into());
