@@ -7,7 +7,7 @@ use limitmesh::mesh::{Channel, Domain, FaceParts};
 use limitmesh::refine::Traced;
 use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, Triangles};
-use limitmesh_io::{Format, Output, WriteOptions, holds, splits_vertices, values_lost};
+use limitmesh_io::{Format, MATERIAL, Output, WriteOptions, holds, splits_vertices, values_lost};
 
 use super::linked;
 use crate::arguments::{ChannelArguments, RefineArguments};
@@ -68,18 +68,18 @@ impl Channels {
         if !lost.is_empty() {
             progress.note(format!("left out: {} (the output's format has no place for them)", names(&lost)));
         }
-        if kept.is_empty() {
-            return Self::default();
-        }
         if format != Format::Obj && !material_libraries.is_empty() {
+            let has_names = kept.iter().any(|own| own.name == MATERIAL);
+            let names = if has_names { "of materials the names alone; " } else { "" };
             let files = material_libraries.join("; ");
-            progress.note(format!(
-                "left out: {files} (of materials the names alone; only OBJ files name others)"
-            ));
+            progress.note(format!("left out: {files} ({names}only OBJ files name others)"));
         }
         if format != Format::Ply && !texture_files.is_empty() {
             let files = texture_files.join("; ");
             progress.note(format!("left out: {files} (only PLY files name pictures themselves)"));
+        }
+        if kept.is_empty() {
+            return Self::default();
         }
         let follow = |are_held: bool, files: Vec<String>| match are_held {
             true => linked::from_output(files, to.files, progress),

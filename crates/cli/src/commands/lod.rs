@@ -30,7 +30,7 @@ const USUAL_TOLERANCE: Extent = Extent::Percent(0.1);
 const USUAL_RATIO: f64 = 0.25;
 
 /// What a scene's soup says that it leaves out, which comes along with the asset.
-const MATERIALS: &str = "materials but for their names";
+const MATERIALS: &str = "colours and textures of materials";
 
 /// A level as it is written: a vertex for each side of sharp edges.
 struct Written {

@@ -17,7 +17,7 @@ use crate::progress::Progress;
 use crate::vector::{cross, minus};
 
 /// What pictures do without, or have by other ways.
-const UNSEEN: [&str; 3] = ["normals", "tangents", "materials but for their names"];
+const UNSEEN: [&str; 3] = ["normals", "tangents", "colours and textures of materials"];
 
 /// Reads a mesh and draws it.
 pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Outcome> {

@@ -161,6 +161,13 @@ fn materials_that_stay_behind_are_told() {
         .expect(0)
         .saying("left out: paint.mtl (of materials the names alone")
         .saying("3 corners have no texture coordinates");
+    // Where names have no place either, nothing is said of them.
+    for output in ["out.ply", "out.stl", "out.off"] {
+        run("refine {} -o {}", &[&input, &folder.path().join(output)])
+            .expect(0)
+            .saying("materials (the output's format has no place for them)")
+            .saying("left out: paint.mtl (only OBJ files name others)");
+    }
     let other = folder.path().join("other place/deep");
     std::fs::create_dir_all(&other).expect("folders");
     let library = |input: &Path| {

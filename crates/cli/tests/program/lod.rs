@@ -195,7 +195,7 @@ fn an_assets_materials_come_along() {
     let materials = document["meshes"][0]["primitives"].as_array().expect("primitives");
     assert_eq!([&materials[0]["material"], &materials[1]["material"]], [0, 1]);
     let all = run("lod {} -o {} --levels 2", &[&input, &folder.path().join("out.ply")]).expect(0);
-    all.saying("materials but for their names");
+    all.saying("colours and textures of materials");
 }
 
 /// Before any work, and of the files that are written, not of the name that they are called after.
