@@ -10,7 +10,6 @@ use crate::mesh::{Junctions, NONE, Tags};
 use crate::parallel::IsStopped;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::Origin;
-use crate::vector::{DVec3, vector};
 
 /// Regions that one call takes together.
 const BLOCK: usize = 1;
