@@ -2,6 +2,7 @@
 //!
 //! Takes a mesh, gives it with more tags; every method then honours them alike.
 
+use super::needles::SharpEdges;
 use super::{CornerTag, CreaseTag, Mesh, MeshError};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::parallel;
@@ -51,29 +52,53 @@ impl Mesh {
         self
     }
 
-    /// The mesh with creases that never fade along all edges whose faces' normals differ by more than `angle`
-    /// (radians); the tags that it has stay. Faces without area have no normal and give no crease.
+    /// The mesh with creases that never fade along the edges of [`Self::creases_above`]; the tags that it has stay.
     ///
     /// # Errors
     /// The angle is not within 0 … π.
-    pub fn with_creases_above(mut self, angle: f64) -> Result<Self, MeshError> {
+    pub fn with_creases_above(self, angle: f64) -> Result<Self, MeshError> {
+        let CreasesAbove { edges, .. } = self.creases_above(angle)?;
+        Ok(self.with_creases(&edges))
+    }
+
+    /// The mesh with creases that never fade along these edges; the tags that it has stay.
+    pub fn with_creases(mut self, edges: &[HalfEdgeId]) -> Self {
+        let ends = edges.iter().map(|&h| self.topology.ends(h).map(|v| v.0));
+        let creases: Vec<CreaseTag> =
+            ends.map(|vertices| CreaseTag { vertices, sharpness: f64::INFINITY }).collect();
+        self.tags.creases.extend(creases);
+        self.tags = self.tags.joined(&self.topology, &self.junctions);
+        self
+    }
+
+    /// The edges whose faces' normals differ by more than `angle` (radians). Faces without area have no normal and give none.
+    ///
+    /// Where two of them are the sides of a needle, a triangle with a tip of less than 45°, and nothing else is sharp at the tip, the faces
+    /// beyond them are compared instead: they give the sharper of the two edges, or none. The normal of a needle says little, and a
+    /// crease that turned back at its tip would fold the surface over.
+    ///
+    /// # Errors
+    /// The angle is not within 0 … π.
+    pub fn creases_above(&self, angle: f64) -> Result<CreasesAbove, MeshError> {
         if !(0.0..=core::f64::consts::PI).contains(&angle) {
             let (name, expected) = ("the crease angle", "radians from 0 to π");
             return Err(MeshError::BadOption { name, value: angle, expected });
         }
         let normals = parallel::map(self.face_count(), |face| self.unit_face_normal(face));
-        let topology = &self.topology;
-        let is_sharp = |h: HalfEdgeId| {
-            let Some(twin) = topology.twin(h).filter(|&twin| h < twin) else { return false };
-            let [a, b] = [h, twin].map(|h| normals[h.face().index()]);
-            // Two zeros give 0, which is not above any angle.
-            a.cross(b).length().atan2(a.dot(b)) > angle
-        };
-        let crease =
-            |h: HalfEdgeId| CreaseTag { vertices: topology.ends(h).map(|v| v.0), sharpness: f64::INFINITY };
-        let creases: Vec<CreaseTag> = topology.half_edges().filter(|&h| is_sharp(h)).map(crease).collect();
-        self.tags.creases.extend(creases);
-        self.tags = self.tags.joined(&self.topology, &self.junctions);
-        Ok(self)
+        let others = self.tags.creases.iter().filter(|tag| tag.sharpness > 0.0).map(|tag| tag.vertices);
+        let all = SharpEdges::above(angle, (&self.topology, &self.positions, &normals), others);
+        let count = all.edges().count();
+        let edges: Vec<HalfEdgeId> = all.without_needles(angle).edges().collect();
+        Ok(CreasesAbove { along_needles: count - edges.len(), edges })
     }
+}
+
+/// What [`Mesh::creases_above`] finds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct CreasesAbove {
+    /// The edges, once each.
+    pub edges: Vec<HalfEdgeId>,
+    /// Edges along needles that are as sharp and not among them.
+    pub along_needles: usize,
 }

@@ -10,6 +10,7 @@ mod diagnosis;
 mod face_parts;
 mod features;
 mod junctions;
+mod needles;
 mod ring_shapes;
 mod sharpness;
 mod soup;
@@ -24,7 +25,7 @@ pub use channel::{Channel, ChannelError, Domain, Interpolation, SeamRule, Semant
 pub use concave::ConcaveCorners;
 pub use diagnosis::{Diagnosis, Finding};
 pub use face_parts::FaceParts;
-pub use features::BoundaryRule;
+pub use features::{BoundaryRule, CreasesAbove};
 pub use junctions::{Groups, Junctions};
 pub(crate) use ring_shapes::RingShapes;
 pub use sharpness::{Sector, Sharpness};
