@@ -51,6 +51,8 @@ pub(crate) struct Featured {
     pub(crate) mesh: Mesh,
     /// What was done about concave corners.
     pub(crate) concave: limitmesh::mesh::ConcaveCorners,
+    /// Edges along needles that are as sharp as asked and have no tag for it.
+    pub(crate) along_needles: usize,
 }
 
 /// Where the surface is sharp, beside the tags of the file.
@@ -58,7 +60,8 @@ pub(crate) struct Featured {
 pub(crate) struct FeatureArguments {
     /// Keep edges sharp where the faces meet at more than this angle between their normals [degrees, above 0 to 180]
     ///
-    /// For parts with flat faces and round ones: 30 keeps a box a box, and makes a cylinder round between sharp rims.
+    /// For parts with flat faces and round ones: 30 keeps a box a box, and makes a cylinder round between sharp rims. Of the two sides of a
+    /// needle that meet at its tip, the faces beyond them decide.
     #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
     pub(crate) crease_angle: Option<f64>,
 
@@ -135,14 +138,15 @@ impl FeatureArguments {
             Boundary::Fixed => BoundaryRule::Fixed,
         };
         let mesh = mesh.with_boundary(rule);
-        let mesh = match self.crease_angle {
-            Some(angle) => mesh.with_creases_above(angle.to_radians())?,
-            None => mesh,
+        let found = self.crease_angle.map(|angle| mesh.creases_above(angle.to_radians())).transpose()?;
+        let (mesh, along_needles) = match found {
+            Some(found) => (mesh.with_creases(&found.edges), found.along_needles),
+            None => (mesh, 0),
         };
         let (mesh, concave) = match self.concave_corners() {
             ConcaveCorners::Divided => mesh.with_divided_concave_corners()?,
             ConcaveCorners::AsTagged => (mesh, Default::default()),
         };
-        Ok(Featured { mesh, concave })
+        Ok(Featured { mesh, concave, along_needles })
     }
 }

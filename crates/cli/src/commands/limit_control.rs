@@ -18,7 +18,7 @@ pub(super) fn prepared(
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, Vec<u32>)> {
     let Input { mesh, trace, .. } = input.with_creases(arguments.features.creases_from)?;
-    let Featured { mesh, concave } = arguments.features.apply(mesh)?;
+    let Featured { mesh, concave, .. } = arguments.features.apply(mesh)?;
     let interpolation = (arguments.interpolation, arguments.build.unit);
     let (mesh, _) = interpolation::apply(mesh, interpolation, arguments.scheme().scheme(), progress)?;
     let input_of = |face| trace.faces[concave.parts.whole(face) as usize];

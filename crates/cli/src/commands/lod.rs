@@ -89,7 +89,7 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     if asset.is_some() {
         progress.note("one mesh of all that the scene shows, in its coordinates, with its materials; nodes, skins, animations and cameras are left out");
     }
-    let Featured { mesh, concave } = arguments.features.apply(mesh)?;
+    let Featured { mesh, concave, .. } = arguments.features.apply(mesh)?;
     channels.on_parts(&concave.parts, &mesh);
     let scheme = arguments.scheme.scheme();
     let asked = (arguments.interpolation, arguments.build.unit);

@@ -206,3 +206,43 @@ fn cut_sheets_stay_together_where_creases_run_into_the_cut() {
     let tagged = mesh.clone().with_tags(Tags { creases: vec![crease(1, 6, 2.5)], ..Tags::default() });
     refined(&tagged.unwrap_or(mesh), &Loop, 2);
 }
+
+/// A sheet with a needle in its middle that stands across it by so much; to the right it is folded by an angle along the needle, and ever less
+/// on the way round to the left.
+fn needle(height: f64, fold: f64) -> Mesh {
+    let right = |x: f64, y: f64, z: f64, part: f64| {
+        let (s, c) = (part * fold).sin_cos();
+        [c * x - s * z, y, s * x + c * z]
+    };
+    let mut positions = vec![[0.0, 0.0, 0.0], [-0.01, -2.0, -height], right(0.01, -2.0, height, 1.0)];
+    let around = [(-45.0, 1.0), (-15.0, 0.96), (15.0, 0.83), (45.0, 0.63), (70.0, 0.375), (90.0, 0.0)];
+    positions.extend(around.map(|(turn, part)| {
+        let (s, c) = (turn * DEGREE).sin_cos();
+        right(2.5 * c, 2.5 * s, 0.0, part)
+    }));
+    positions.extend([[-2.0, 2.0, 0.0], [-2.0, -2.0, 0.0]]);
+    let last = positions.len() as u32 - 1;
+    let triangles = (1..=last).map(|i| [0, i, if i == last { 1 } else { i + 1 }]).collect();
+    Mesh::from_triangles(positions, triangles).unwrap()
+}
+
+#[test]
+fn the_sides_of_a_needle_are_no_crease_that_turns_back() {
+    let above = |mesh: &Mesh| {
+        let found = mesh.creases_above(21.0 * DEGREE).unwrap();
+        let ends = found.edges.iter().map(|&h| mesh.topology().ends(h).map(|v| v.0));
+        let mut ends: Vec<[u32; 2]> = ends.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        ends.sort_unstable();
+        (ends, found.along_needles)
+    };
+    // The faces beyond it lie in one plane.
+    let flat = needle(0.02, 0.0);
+    assert_eq!(above(&flat), (vec![], 2));
+    assert!(flat.creases_above(f64::NAN).is_err());
+    assert_eq!(flat.with_creases_above(20.0 * DEGREE).unwrap().tags().creases.len(), 0);
+    // Between faces that meet at 48° there is one edge, the sharper one: on the side that the needle leans away from.
+    assert_eq!(above(&needle(0.0002, 48.0 * DEGREE)), (vec![[0, 1]], 1));
+    assert_eq!(above(&needle(-0.0002, 48.0 * DEGREE)), (vec![[0, 2]], 1));
+    // Sides that are not sharp stay so.
+    assert_eq!(above(&needle(0.001, 0.0)), (vec![], 0));
+}

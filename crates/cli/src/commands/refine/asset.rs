@@ -366,7 +366,7 @@ fn attribute_goals(
 
 /// Edges of a control mesh that stay when others are collapsed: where attributes change, and between primitives.
 fn kept_edges(own: &MeshSoup, control: &Control, channels: &Channels) -> Vec<[u32; 2]> {
-    let Featured { mesh, concave } = &control.featured;
+    let Featured { mesh, concave, .. } = &control.featured;
     let primitive = |face: usize| {
         let input = control.before.faces[concave.parts.whole(face as u32) as usize] as usize;
         own.parts.iter().position(|part| part.faces.contains(&input)).unwrap_or(0) as u32

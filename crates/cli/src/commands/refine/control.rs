@@ -41,11 +41,11 @@ impl Control {
             triangles: mesh.triangles().to_vec(),
         });
         let featured = arguments.features.apply(mesh)?;
-        if let Some(note) = divided_corners(&featured) {
+        for note in [along_needles(&featured), divided_corners(&featured)].into_iter().flatten() {
             progress.note(note);
         }
         diagnosis.concave_corners = featured.concave.corners.clone();
-        let Featured { mesh, concave } = featured;
+        let Featured { mesh, concave, along_needles } = featured;
         let diagonal = diagonal.unwrap_or_else(|| mesh.diagonal());
         let (mesh, interpolation) = match arguments.interpolation.given().is_some() {
             true => {
@@ -54,11 +54,19 @@ impl Control {
             }
             false => (mesh, None),
         };
-        let featured = Featured { mesh, concave };
+        let featured = Featured { mesh, concave, along_needles };
         let before =
             Before { surface, faces, residual: interpolation.as_ref().map(|report| report.residual) };
         Ok(Self { featured, diagnosis, before, bulk, interpolation, diagonal })
     }
+}
+
+/// Tells about edges that are not sharp though their faces meet at more than the crease angle.
+fn along_needles(control: &Featured) -> Option<String> {
+    let edges = counted(control.along_needles, "edge", "edges");
+    let are = if control.along_needles == 1 { "is" } else { "are" };
+    (control.along_needles > 0)
+        .then(|| format!("{edges} along needles {are} not sharp: the faces beyond these decide"))
 }
 
 /// Tells about sharp edges that divide corners of 180° and more.
