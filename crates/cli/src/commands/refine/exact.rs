@@ -194,7 +194,7 @@ fn as_typed(x: f64) -> String {
 ///
 /// `before` is the mesh that was read.
 pub(super) fn run(
-    (Featured { mesh: control, concave }, before, channels): (&Featured, &Before, &Channels),
+    (Featured { mesh: control, concave, .. }, before, channels): (&Featured, &Before, &Channels),
     goals: &Goals,
     arguments: &RefineArguments,
     progress: &Progress,
