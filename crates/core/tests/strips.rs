@@ -231,3 +231,17 @@ fn threads_change_nothing() {
         assert_eq!(here.mesh.triangles(), there.mesh.triangles());
     }
 }
+
+/// Where quadrilaterals lie in planes and the surface is straight nowhere, all is as without the option.
+#[test]
+fn what_is_curved_both_ways_has_no_strips() {
+    for name in ["torus", "cup", "shoe"] {
+        let soup = limitmesh_models::find(name).unwrap().soup();
+        let mesh = Mesh::from_soup(&soup, &Default::default()).unwrap().0;
+        let options = within(1e-3 * mesh.diagonal());
+        let result = exact(&mesh, &Loop, &options).unwrap();
+        let kept = exact(&mesh, &Loop, &options.flat_regions(false)).unwrap();
+        assert_eq!(result.mesh.triangles(), kept.mesh.triangles(), "{name}");
+        assert_eq!(result.mesh.positions(), kept.mesh.positions(), "{name}");
+    }
+}

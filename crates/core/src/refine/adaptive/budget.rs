@@ -53,6 +53,10 @@ const MOST_IDLE: u32 = 2;
 /// Plans beyond the budget are counted to the end up to so many more triangles (one in so many): then the next guess is better.
 const COUNTED_BEYOND: usize = 4;
 
+/// Distances that are tried below what was found where finer divisions may take fewer triangles: how many, and the ratio of one to the next.
+const MOST_EVENER: usize = 10;
+const EVENER: f64 = 0.93;
+
 /// Plans that are made to spend what is left.
 const MOST_FILLS: usize = 9;
 
@@ -166,6 +170,19 @@ pub(super) fn search(
                 (high, best) = (next, plan);
             }
             found => (low, beyond) = (next, found.map(|plan| plan.triangles)),
+        }
+    }
+    if engine.control.flat.has_strips() {
+        // A finer division that is more even may leave fewer triangles once strips are put together.
+        let mut next = high;
+        for _ in 0..MOST_EVENER {
+            next *= EVENER;
+            if next < floor {
+                break;
+            }
+            if let Some(plan) = engine.plan(Goal::Within(next), most)? {
+                (best, high, low) = (plan, next, floor);
+            }
         }
     }
     if most < EXACT && low > 0.0 {

@@ -5,12 +5,15 @@
 //! lines where it is straight: before and after it is the same set of points but for rounding, or for how far the file's coordinates
 //! are off ([`FlatRegions::off_planes`]).
 //!
-//! Only control faces beside another in the same plane are looked at: a quadrilateral of a control mesh that is straight in one
-//! direction is such a pair.
+//! Only control faces over which the surface goes on in one direction all alike are looked at: regular pieces of which a derivative is the
+//! same everywhere, as over the quadrilaterals of an extruded profile, each two faces in one plane.
 
 use super::{FlatRegions, Plane};
 use crate::index::HalfEdgeId;
 use crate::mesh::NONE;
+use crate::patch::Patch;
+use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::normal_net::{CUBIC, tangents};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::decide::Control;
 use crate::refine::adaptive::quadtree::Edges;
@@ -111,7 +114,7 @@ impl Regions {
     }
 }
 
-/// The control faces beside another in the same plane, but for those of flat regions, ascending.
+/// The control faces over which the surface is straight in a direction that is the same all over, but for those of flat regions, ascending.
 pub(super) fn straight_faces(
     (control, edges): (&Control<'_>, &Edges<'_>),
     (flat, most): (&[u32], f64),
@@ -119,7 +122,7 @@ pub(super) fn straight_faces(
 ) -> Result<Vec<u32>, Cancelled> {
     let mesh = control.mesh;
     let is_flat = |face: u32| flat.get(face as usize).is_some_and(|&region| region != NONE);
-    let is_straight = |face: u32| {
+    let is_beside_its_like = |face: u32| {
         let corners = mesh.triangles()[face as usize].map(|vertex| vector(mesh.positions()[vertex as usize]));
         let plane = Plane { point: corners[0], normal: mesh.unit_face_normal(face as usize) };
         !is_flat(face)
@@ -135,9 +138,21 @@ pub(super) fn straight_faces(
             })
     };
     let found = watch.pieces(mesh.face_count(), super::BLOCK, |block| {
-        block.map(|face| face as u32).filter(|&face| is_straight(face)).collect::<Vec<u32>>()
+        let faces = block.map(|face| face as u32);
+        faces
+            .filter(|&face| is_beside_its_like(face) && has_direction(control, face, most))
+            .collect::<Vec<u32>>()
     })?;
     Ok(found.concat())
+}
+
+/// Whether the surface over a face is a regular piece that has the same derivative everywhere along one of the face's edges.
+fn has_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
+    let Patch::Regular(points) = control.patch(face) else { return false };
+    let [along, across] = tangents(&BezierTriangle::of(&points));
+    let between: [DVec3; CUBIC] = core::array::from_fn(|i| across[i] - along[i]);
+    let is_one = |net: &[DVec3; CUBIC]| net.iter().all(|own| own.distance(net[0]) <= most);
+    [along, across, between].iter().any(is_one)
 }
 
 impl FlatRegions {
