@@ -218,6 +218,47 @@ fn rounded_coordinates_have_strips_too() {
     assert!(apart.symmetric() <= 1e-3 + 2e-5, "{}", apart.symmetric());
 }
 
+/// Two sheets in one place, joined along their border.
+fn doubled(columns: u32, rows: u32, numbers: &mut Random) -> Mesh {
+    let sheet = corrugated(columns, rows, numbers);
+    let (mut positions, mut behind) = (sheet.positions().to_vec(), Vec::new());
+    for v in 0..columns * rows {
+        let is_inside = (1..columns - 1).contains(&(v % columns)) && (1..rows - 1).contains(&(v / columns));
+        behind.push(if is_inside { positions.len() as u32 } else { v });
+        positions.extend(is_inside.then_some(positions[v as usize]));
+    }
+    let back = |&[a, b, c]: &[u32; 3]| [a, c, b].map(|v| behind[v as usize]);
+    // The other diagonals behind: at the corners of the sheet the same would be edges of four faces.
+    let backs: Vec<[u32; 3]> = sheet.triangles().iter().map(back).collect();
+    let backs = backs.chunks(2).flat_map(|pair| {
+        let ([a, c, b], [_, d, _]) = (pair[0], pair[1]);
+        [[a, d, b], [b, d, c]]
+    });
+    let triangles = sheet.triangles().iter().copied().chain(backs).collect();
+    creased(positions, triangles)
+}
+
+/// Lines of two sheets in one place may have the same ends: then not both are put together, as an edge has two faces.
+#[test]
+fn sheets_may_touch_along_straight_lines() {
+    let mut numbers = Random::new(3);
+    let mut saved = 0;
+    for case in 0..12 {
+        let mesh = doubled(5 + case % 4, 3 + case % 2, &mut numbers);
+        let tolerance = [0.01, 0.003, 0.001][case as usize % 3];
+        let options = within(tolerance).unfold(case % 2 == 0);
+        let merged = exact(&mesh, &Loop, &options).unwrap();
+        let kept = exact(&mesh, &Loop, &options.flat_regions(false)).unwrap();
+        merged.mesh.validate().unwrap();
+        let again = Mesh::from_triangles(merged.mesh.positions().to_vec(), merged.mesh.triangles().to_vec());
+        assert!(again.is_ok(), "{case}: {again:?}");
+        assert_eq!(merged.mesh.topology().euler_characteristic(), 2, "{case}");
+        assert_eq!(merged.mesh.topology().boundary_edge_count(), 0, "{case}");
+        saved += kept.mesh.face_count() - merged.mesh.face_count();
+    }
+    assert!(saved > 1000, "{saved}");
+}
+
 /// The same bytes for any number of threads.
 #[test]
 fn threads_change_nothing() {

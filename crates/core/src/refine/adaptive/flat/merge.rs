@@ -56,6 +56,8 @@ enum Fate {
 struct Covering {
     /// Triangles with their control faces, by control face.
     triangles: Vec<([u32; 3], u32)>,
+    /// The edges of its rim that are new: straight lines, in the place of several edges each.
+    lines: Vec<[u32; 2]>,
     /// Whether some of the triangles in whose place these come are turned over.
     was_folded: bool,
 }
@@ -178,12 +180,14 @@ impl FlatRegions {
         if !is_divided && !was_folded || was_folded && own.flat.is_none() {
             return Some(Fate::Stays);
         }
-        let mut along = HashMap::new();
+        let (mut along, mut lines) = (HashMap::new(), Vec::new());
         for (ends, face) in &mut rim {
+            let next = ends[1];
             while let Some(&to) = after.get(&ends[1]) {
                 ends[1] = to;
             }
             along.insert(*ends, *face);
+            lines.extend((ends[1] != next).then_some(*ends));
         }
         let rim: Vec<[u32; 2]> = rim.iter().map(|(ends, _)| ends.map(|vertex| flat.number(vertex))).collect();
         let points = flat.points()?;
@@ -204,7 +208,7 @@ impl FlatRegions {
         if !is_whole || !is_same || was_folded && !self.unfolds {
             return None;
         }
-        Some(Fate::Covered(Covering { triangles: by_face(triangles, &along)?, was_folded }))
+        Some(Fate::Covered(Covering { triangles: by_face(triangles, &along)?, lines, was_folded }))
     }
 }
 
@@ -231,26 +235,27 @@ fn without_shared_edges(
             }
         }
     })?;
+    let mut all_lines = HashSet::new();
     watch.each((0u32..).zip(&mut coverings), |(region, covering)| {
-        let Some(Covering { triangles, .. }) = covering else { return };
+        let Some(Covering { triangles, lines, .. }) = covering else { return };
         let all = || triangles.iter().flat_map(|&(triangle, _)| edges(triangle));
         let directed: HashSet<[u32; 2]> = all().collect();
         let is_inner = |&[from, to]: &[u32; 2]| directed.contains(&[to, from]);
         let inner: Vec<[u32; 2]> = all().filter(|ends| ends[0] < ends[1] && is_inner(ends)).collect();
-        // Straight lines of rims are new as well.
-        let rim = all().filter(|ends| !is_inner(ends)).map(|[from, to]| [from.min(to), from.max(to)]);
-        let rim: Vec<[u32; 2]> = rim.collect();
-        let is_others =
-            |ends: &[u32; 2]| owners.get(ends).copied().flatten().is_some_and(|owner| owner != region);
-        if inner.iter().any(|ends| owners.get(ends).is_some_and(|&owner| owner != Some(region)))
-            || rim.iter().any(is_others)
-        {
+        let is_others = |ends: [u32; 2]| owners.get(&ends).is_some_and(|&owner| owner != Some(region));
+        // A line has one region on either side: where sheets touch, two may have the same ends.
+        let is_taken = |&[from, to]: &[u32; 2]| {
+            all_lines.contains(&[from, to])
+                || !all_lines.contains(&[to, from]) && is_others([from.min(to), from.max(to)])
+        };
+        if inner.iter().any(|&ends| is_others(ends)) || lines.iter().any(is_taken) {
             *covering = None;
         } else {
             owners.extend(inner.into_iter().map(|ends| (ends, Some(region))));
-            rim.into_iter().for_each(|ends| {
-                owners.entry(ends).or_insert(None);
-            });
+            for &[from, to] in &*lines {
+                all_lines.insert([from, to]);
+                owners.entry([from.min(to), from.max(to)]).or_insert(None);
+            }
         }
     })?;
     Ok(coverings)
