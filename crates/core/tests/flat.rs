@@ -311,3 +311,32 @@ fn rounded_coordinates_are_flat_and_curved_ones_are_not() {
     assert!(10 * flat < count && count <= same && (area - as_large).abs() < 1e-6, "{flat} {count} {same}");
     assert!(flat < facing(&kept, other).0);
 }
+
+/// A flat grid whose vertices were moved about: the rules fold some over their boundary.
+fn stirred_grid(columns: u32, rows: u32, numbers: &mut support::Random) -> Mesh {
+    let cells = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
+    let positions: Vec<[f64; 3]> =
+        cells.map(|(i, j)| [f64::from(i) + numbers.signed(), f64::from(j) + numbers.signed(), 0.0]).collect();
+    let quads = (0..rows - 1).flat_map(|j| (0..columns - 1).map(move |i| j * columns + i));
+    let triangles =
+        quads.flat_map(|v| [[v, v + 1, v + columns + 1], [v, v + columns + 1, v + columns]]).collect();
+    Mesh::from_triangles(positions, triangles).unwrap()
+}
+
+/// Regions that cannot be triangulated from their rims keep their triangles, and estimates count these.
+#[test]
+fn estimates_count_regions_that_stay() {
+    let mut numbers = support::Random::new(11);
+    let mut kept = 0;
+    for case in 0..40 {
+        let mesh = stirred_grid(4 + case % 3, 4 + case % 2, &mut numbers);
+        let options = within(3e-4 * mesh.diagonal()).unfold(case % 2 == 0);
+        let result = exact(&mesh, &Loop, &options).unwrap();
+        let estimate = exact_estimate(&mesh, &Loop, &options).unwrap();
+        assert_eq!(estimate.triangles, result.mesh.face_count(), "{case}");
+        // Else nothing but the rim and control vertices had any.
+        let on_rim = result.mesh.topology().boundary_edge_count();
+        kept += usize::from(result.mesh.vertex_count() > mesh.vertex_count() + on_rim);
+    }
+    assert!(kept > 3, "{kept}");
+}

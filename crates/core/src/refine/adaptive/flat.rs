@@ -241,6 +241,11 @@ impl FlatRegions {
         self.off_planes
     }
 
+    /// Whether there are neither regions nor places for strips.
+    pub(super) fn are_none(&self) -> bool {
+        self.regions.is_empty() && self.straight.is_empty()
+    }
+
     /// Whether there may be strips, so that only what is emitted tells how many triangles stay.
     pub(super) fn has_strips(&self) -> bool {
         !self.straight.is_empty()

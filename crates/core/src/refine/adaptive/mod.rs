@@ -203,7 +203,7 @@ pub(super) fn count(
     let watched = (mesh.face_count(), options.max_levels as u32, usize::MAX);
     let demands = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
     let demands = demands.unwrap_or_default();
-    with_engine(mesh, scheme, (options, &demands), observer, |engine| {
+    let (found, has_gaps) = with_engine(mesh, scheme, (options, &demands), observer, |engine| {
         let limit = engine.floor(options.tolerance.map(|tolerance| times * tolerance));
         let limit = if engine.control.criteria.is_some() { times } else { limit };
         let plan = if engine.is_balanced {
@@ -211,8 +211,20 @@ pub(super) fn count(
         } else {
             engine.plan(Goal::Within(limit), usize::MAX)?
         };
-        Ok(plan.map_or(0, |plan| plan.triangles))
-    })
+        let Some(mut plan) = plan else { return Ok((0, false)) };
+        let flat = &engine.control.flat;
+        if flat.are_none() {
+            return Ok((plan.triangles, false));
+        }
+        // Which regions cannot be triangulated from their rims nobody knows before.
+        let emission = engine.emit_all(&mut plan)?;
+        let found = engine.assemble(emission, plan.levels(engine.watch)?)?.mesh.face_count();
+        Ok((found, flat.has_gaps()))
+    })?;
+    match has_gaps {
+        true => count(mesh, scheme, &ExactOptions { by_rims: false, ..options.clone() }, times, observer),
+        false => Ok(found),
+    }
 }
 
 fn with_engine<T>(
