@@ -131,7 +131,9 @@ pub(super) fn search(
         high <= low * if triangles < enough { 1.0 + NEAR } else { PROMISED }
     };
     let mut first = if engine.is_settled_later() { None } else { expected(engine, FIRST_AIM * most as f64)? };
-    while !is_near(high, low, best.triangles) && high > f64::MIN_POSITIVE {
+    // Of distances below what is added to all of them nobody is any nearer.
+    let least = if engine.control.criteria.is_some() { f64::MIN_POSITIVE } else { engine.rounding };
+    while !is_near(high, low, best.triangles) && high > least.max(f64::MIN_POSITIVE) {
         let mut next = growth.distance(high, best.triangles, aim.min(STEP * best.triangles as f64), power);
         if let Some(expected) = first.take().filter(|&expected| low < expected && expected < high) {
             next = expected;
@@ -177,7 +179,7 @@ pub(super) fn search(
         let mut next = high;
         for _ in 0..MOST_EVENER {
             next *= EVENER;
-            if next < floor {
+            if next < floor.max(least) {
                 break;
             }
             if let Some(plan) = engine.plan(Goal::Within(next), most)? {
