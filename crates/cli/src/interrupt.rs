@@ -145,6 +145,12 @@ pub(crate) fn doing(what: &str) {
     state().doing.replace_range(.., what);
 }
 
+/// Runs what takes a moment and leaves nothing behind; a signal that comes meanwhile waits.
+pub(crate) fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
+    let _held = state();
+    work()
+}
+
 /// Runs `write`, which writes a file of that name, to its end even if a signal comes meanwhile; then ends the program if one
 /// did.
 pub(crate) fn uninterrupted<T, E>(name: String, write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {

@@ -115,5 +115,6 @@ pub(crate) fn check_writable(path: &Path) -> anyhow::Result<()> {
         .with_context(|| format!("{} cannot be written: no folder {}", path.display(), folder.display()))?;
     anyhow::ensure!(kind.is_dir(), "{} cannot be written: {} is no folder", path.display(), folder.display());
     anyhow::ensure!(!path.is_dir(), "{} cannot be written: it is a folder", path.display());
-    Ok(limitmesh_io::check_writable(path)?)
+    // It makes a file and removes it.
+    Ok(interrupt::undisturbed(|| limitmesh_io::check_writable(path))?)
 }
