@@ -320,6 +320,18 @@ fn channels_of_a_soup_reach_the_mesh() {
     assert_eq!(channel.value_count(), 4);
 }
 
+/// A mesh without faces has nothing to carry, and that is no error.
+#[test]
+fn an_empty_mesh_carries_nothing() {
+    let mesh = Mesh::from_triangles(Vec::new(), Vec::new()).unwrap();
+    let fine = uniform(&mesh, &Loop, &UniformOptions::default().levels(1).origins(true)).unwrap();
+    for semantic in [Semantic::TextureCoordinates, Semantic::Displacement, Semantic::Label] {
+        let channel = Channel::new("none", semantic, Domain::Corner, 1);
+        let carried = carried(std::slice::from_ref(&channel), &mesh, &Loop, &fine).unwrap();
+        assert_eq!(carried, [channel]);
+    }
+}
+
 /// A smooth channel whose values are the positions has the limits that refinement step by step moves its vertices to.
 #[test]
 fn uniform_refinement_carries_channels() {

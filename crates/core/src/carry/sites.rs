@@ -98,7 +98,9 @@ impl<'a> Sites<'a> {
             number += 1;
             own.1.end = number;
         });
-        runs.push(own);
+        if number > 0 {
+            runs.push(own);
+        }
         // A stable sort: runs of a face stay in order.
         runs.sort_by_key(|(face, _)| *face);
         let mut starts = vec![0; faces + 1];
