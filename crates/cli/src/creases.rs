@@ -2,7 +2,7 @@
 //! the borders of materials.
 
 use limitmesh::Mesh;
-use limitmesh::mesh::{Channel, CreaseTag, Domain, Semantic, Tags};
+use limitmesh::mesh::{Channel, Domain, Semantic};
 use limitmesh::{FaceId, HalfEdgeId};
 use limitmesh_io::channels::{GROUP, MATERIAL, OBJECT, SMOOTHING_GROUP};
 
@@ -19,11 +19,16 @@ pub(crate) struct Hints<'a> {
 }
 
 impl Hints<'_> {
-    /// The sharp edges, each once.
+    /// The edges that are to be sharp, each once; `name` is the file's.
     ///
     /// # Errors
     /// The file tells nothing of that kind.
-    fn edges(&self, mesh: &Mesh, from: CreasesFrom, name: &str) -> anyhow::Result<Vec<HalfEdgeId>> {
+    pub(crate) fn edges(
+        &self,
+        mesh: &Mesh,
+        from: CreasesFrom,
+        name: &str,
+    ) -> anyhow::Result<Vec<HalfEdgeId>> {
         let of_faces =
             |channel: &&Channel| channel.domain == Domain::Face && channel.semantic == Semantic::Label;
         let labels = |is_own: &dyn Fn(&str) -> bool| -> Vec<&Channel> {
@@ -46,24 +51,6 @@ impl Hints<'_> {
         let is_border =
             |a: FaceId, b: FaceId| found.iter().any(|channel| differ(channel, a.index(), b.index()));
         Ok(inner_edges(mesh, |h, twin| is_border(h.face(), twin.face())))
-    }
-
-    /// The tags of a mesh with these edges sharp; nothing where there are none.
-    ///
-    /// # Errors
-    /// The file tells nothing of that kind.
-    pub(crate) fn tags(&self, mesh: &Mesh, from: CreasesFrom, name: &str) -> anyhow::Result<Option<Tags>> {
-        let edges = self.edges(mesh, from, name)?;
-        if edges.is_empty() {
-            return Ok(None);
-        }
-        let mut tags = mesh.tags().clone();
-        let crease = |&h: &HalfEdgeId| CreaseTag {
-            vertices: mesh.topology().ends(h).map(|v| v.0),
-            sharpness: f64::INFINITY,
-        };
-        tags.creases.extend(edges.iter().map(crease));
-        Ok(Some(tags))
     }
 
     /// How many edges have normals that differ between their faces.

@@ -53,10 +53,8 @@ impl Input {
     /// # Errors
     /// It tells nothing of that kind.
     pub(crate) fn with_creases(self, from: CreasesFrom) -> anyhow::Result<Self> {
-        match self.hints().tags(&self.mesh, from, &self.name)? {
-            Some(tags) => Ok(Self { mesh: self.mesh.with_tags(tags)?, ..self }),
-            None => Ok(self),
-        }
+        let edges = self.hints().edges(&self.mesh, from, &self.name)?;
+        Ok(Self { mesh: self.mesh.with_creases(&edges), ..self })
     }
 }
 

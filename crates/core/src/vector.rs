@@ -17,16 +17,7 @@ pub(crate) trait Blend:
 {
 }
 
-impl<T> Blend for T where
-    T: Copy
-        + Default
-        + Add<Output = T>
-        + Sub<Output = T>
-        + SubAssign
-        + Mul<f64, Output = T>
-        + Div<f64, Output = T>
-{
-}
+impl Blend for DVec3 {}
 
 /// The first coordinates of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +30,8 @@ impl<const AXES: usize> Coordinates<AXES> {
         Self(from_fn(|axis| point[axis]))
     }
 }
+
+impl<const AXES: usize> Blend for Coordinates<AXES> {}
 
 impl<const AXES: usize> Default for Coordinates<AXES> {
     fn default() -> Self {

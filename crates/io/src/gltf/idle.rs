@@ -269,6 +269,7 @@ pub(super) fn items<'a>(object: &'a Value, key: &str) -> &'a [Value] {
     object.get(key).and_then(Value::as_array).map_or(&[], Vec::as_slice)
 }
 
-fn index(value: &Value) -> Option<usize> {
+/// A number of an item, if it is one.
+pub(super) fn index(value: &Value) -> Option<usize> {
     usize::try_from(value.as_u64()?).ok()
 }

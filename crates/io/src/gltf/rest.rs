@@ -8,6 +8,7 @@
 use super::changes::Changes;
 use super::edit::{Edits, Members, items_of};
 use super::flaw::Result;
+use super::idle::index;
 use super::primitive::DRACO;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -209,8 +210,4 @@ pub(super) fn names_in(value: &Value, names: &mut BTreeSet<String>) {
 /// The items of an array; none where there is none.
 fn list<'a>(object: &'a mut Value, key: &str) -> &'a mut [Value] {
     object.get_mut(key).and_then(Value::as_array_mut).map_or(&mut [], Vec::as_mut_slice)
-}
-
-fn index(value: &Value) -> Option<usize> {
-    usize::try_from(value.as_u64()?).ok()
 }

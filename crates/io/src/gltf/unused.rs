@@ -8,7 +8,7 @@
 
 use super::edit::{Edits, Members, items_of};
 use super::flaw::Result;
-use super::idle::{items, used_accessors, views_of, without};
+use super::idle::{index, items, used_accessors, views_of, without};
 use super::levels::LOD;
 use super::primitive::DRACO;
 use super::source::MESHOPT;
@@ -282,8 +282,4 @@ impl Named {
         self.numbers.extend(text.parse::<usize>());
         self.is_all |= ["/accessors", "/buffer"].iter().any(|way| text.contains(way));
     }
-}
-
-fn index(value: &Value) -> Option<usize> {
-    usize::try_from(value.as_u64()?).ok()
 }

@@ -225,14 +225,12 @@ impl Job {
     ) -> anyhow::Result<Mesh> {
         let Some(normals) = &own.normals else { return Ok(mesh) };
         let normals = normals.on_mesh(&own.soup, &mesh, trace)?;
-        let hints = || Hints { normals: Some(&normals), channels: &[] };
-        if let Some(note) = split_normals((hints(), &mesh), &self.arguments) {
+        let hints = Hints { normals: Some(&normals), channels: &[] };
+        if let Some(note) = split_normals((&hints, &mesh), &self.arguments) {
             progress.note(format!("{name}: {note}"));
         }
-        Ok(match hints().tags(&mesh, self.arguments.features.creases_from, name)? {
-            Some(tags) => mesh.with_tags(tags)?,
-            None => mesh,
-        })
+        let edges = hints.edges(&mesh, self.arguments.features.creases_from, name)?;
+        Ok(mesh.with_creases(&edges))
     }
 
     /// What was repaired, and what stays apart.

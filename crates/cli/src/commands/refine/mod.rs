@@ -112,7 +112,7 @@ fn refine(
     if let Some(note) = format.and_then(|format| lost_tags(input.mesh.tags(), format)) {
         progress.note(note);
     }
-    if let Some(note) = split_normals((input.hints(), &input.mesh), arguments) {
+    if let Some(note) = split_normals((&input.hints(), &input.mesh), arguments) {
         progress.note(note);
     }
     let input = input.with_creases(arguments.features.creases_from)?;
@@ -234,7 +234,7 @@ fn capped(mesh: &Mesh, stop: ExactStop, arguments: &RefineArguments) -> Outcome 
 }
 
 /// Tells about normals that say that edges are sharp, where nothing says what to do about that.
-fn split_normals((hints, mesh): (Hints<'_>, &Mesh), arguments: &RefineArguments) -> Option<String> {
+fn split_normals((hints, mesh): (&Hints<'_>, &Mesh), arguments: &RefineArguments) -> Option<String> {
     if arguments.features.crease_angle.is_some() || arguments.features.creases_from != CreasesFrom::None {
         return None;
     }
