@@ -92,6 +92,11 @@ fn coordinates(text: &str, has_count: bool) -> anyhow::Result<Vec<[f64; 3]>> {
         let words: Vec<&str> = words(line).take(3).collect();
         let numbers: Vec<f64> = words.iter().filter_map(|word| word.parse().ok()).collect();
         match <[f64; 3]>::try_from(numbers) {
+            Ok(_) if may_have_decimal_commas(line) => {
+                bail!(
+                    "line {row}: commas in '{line}' may be decimal ones; three numbers with decimal points are expected"
+                )
+            }
             Ok(point) if point.iter().all(|x| x.is_finite()) => found.push(point),
             Err(_) if row == 1 && !words.iter().any(|word| is_like_number(word)) => {}
             _ => bail!("line {row}: three coordinates are expected, not '{}'", words.join(" ")),
@@ -120,9 +125,21 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Whether a word is a number, or would be one with a decimal point or without a quote: it is not of a heading.
+/// Whether both blanks and commas without a blank beside them stand between the first three numbers of a line: `1,5 2,5 3,5`.
+fn may_have_decimal_commas(line: &str) -> bool {
+    if !line.contains(',') || line.contains([';', '"']) {
+        return false;
+    }
+    let parts = line.split_whitespace();
+    let are_apart = parts.clone().any(|part| part.starts_with(',') || part.ends_with(','));
+    let has_all = parts.clone().next().is_some_and(|first| first.split(',').count() >= 3);
+    !are_apart && !has_all && parts.take(3).any(|part| part.contains(','))
+}
+
+/// Whether a word is a number, or some, or would be with decimal points or without quotes: it is not of a heading.
 fn is_like_number(word: &str) -> bool {
-    word.replace(',', ".").replace('"', "").parse::<f64>().is_ok()
+    let plain = word.replace(',', ".").replace('"', "");
+    !plain.is_empty() && plain.split_whitespace().all(|part| part.parse::<f64>().is_ok())
 }
 
 #[cfg(test)]
@@ -133,6 +150,10 @@ mod tests {
     fn lines_are_points() {
         let text = "\u{feff}x;y;z\n1;2;3\n\n# none\n 4, 5 , 6, 255\n-1e-3\t0 7 # last\n1, 2 3\n";
         let expected = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [-1e-3, 0.0, 7.0], [1.0, 2.0, 3.0]];
+        assert_eq!(coordinates(text, false).expect("points"), expected);
+        // Commas that can be nothing else, and what comes after the coordinates.
+        let expected = [[1.0, 2.0, 3.0]; 4];
+        let text = "1,2,3 0,5\n1 2 3 0,5\n1 ,2,3\n1,2, 3\n";
         assert_eq!(coordinates(text, false).expect("points"), expected);
     }
 
@@ -165,6 +186,9 @@ mod tests {
             ("\"1,5\",\"2,5\",\"3,5\"\n", 1),
             ("1 2 3\n\"1,2,3\n", 2),
             ("3\n1 2 3\n", 1),
+            ("1 2 3;\n4;5;6\n", 1),
+            ("1,5 2,5 3,5\n", 1),
+            ("x y z\n1,5\t2,5\t3,5\n", 2),
         ] {
             let error = coordinates(text, false).expect_err(text).to_string();
             assert!(error.starts_with(&format!("line {row}: ")), "{text}: {error}");
