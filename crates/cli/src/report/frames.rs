@@ -18,6 +18,10 @@ pub(crate) struct FramesReport {
     pub(crate) levels: usize,
     /// `met` if the goals are met for all frames.
     pub(crate) stop: &'static str,
+    /// The greatest distance that any camera sees in any frame, at most.
+    pub(crate) pixels: Option<f64>,
+    /// Triangles outside the angle, as many as there are in the worst frame.
+    pub(crate) open_cones: Option<usize>,
     /// Bytes of the table that all frames were made with.
     pub(crate) table_bytes: usize,
     pub(crate) seconds: FramesSeconds,

@@ -400,13 +400,16 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, arguments: &Refin
         let vertices = counted(found.refused, "vertex", "vertices");
         lines.push(format!("{vertices} kept where a collapse was not proven"));
     }
-    if found.stop == ExactStop::Cones {
-        let triangles = counted(found.open_cones, "triangle stays", "triangles stay");
-        lines.push(format!(
-            "{triangles} outside the angle, where the surface has no tangent plane or as good as none"
-        ));
-    }
+    lines.extend(open_cones(found));
     lines
+}
+
+/// How many triangles stay outside the angle, where that is all that was not reached.
+pub(super) fn open_cones(found: &Exact) -> Option<String> {
+    let triangles = counted(found.open_cones, "triangle stays", "triangles stay");
+    (found.stop == ExactStop::Cones).then(|| {
+        format!("{triangles} outside the angle, where the surface has no tangent plane or as good as none")
+    })
 }
 
 /// Why no distance is certified.

@@ -3,7 +3,7 @@
 //! Takes files that share faces and tags; writes a file for each, and a report with what is proven of every frame.
 
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use limitmesh::mesh::Tags;
@@ -71,21 +71,12 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     let writing = start.elapsed();
     let worst = errors.iter().map(|error| error.upper).fold(0.0, f64::max);
     let mesh = &found.refined.mesh;
-    progress.note(format!(
-        "{}: {}, {} each ({}, {} for all frames; {})\n  within {} of the limit surface of every frame ({:.4} % of the diagonal of {name})",
-        counted(frames.len(), "frame", "frames"),
-        counted(mesh.face_count(), "triangle", "triangles"),
-        counted(mesh.vertex_count(), "vertex", "vertices"),
-        counted(found.refined.levels, "level", "levels"),
-        crate::format::bytes(found.replay.table_bytes()),
-        seconds(refining.as_secs_f64()),
-        upper_bound(worst),
-        100.0 * worst / diagonal,
-    ));
-    let is_beyond = goals.length().filter(|&length| worst > length);
-    let stop = match is_beyond {
-        Some(_) if found.refined.stop == ExactStop::Met => ExactStop::Rounding,
-        _ => found.refined.stop,
+    progress.note(in_words(&found, (worst, diagonal), &name, refining));
+    let stop = match found.refined.stop {
+        ExactStop::Met | ExactStop::Cones if goals.length().is_some_and(|length| worst > length) => {
+            ExactStop::Rounding
+        }
+        stop => stop,
     };
     if let Some(path) = &arguments.report {
         let frames = jobs.iter().zip(&errors).zip(&frames).map(|((job, error), positions)| FrameReport {
@@ -101,6 +92,8 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
             vertices: mesh.vertex_count(),
             levels: found.refined.levels,
             stop: exact_stop_name(stop),
+            pixels: found.refined.pixels.filter(|pixels| pixels.is_finite()),
+            open_cones: arguments.angle.map(|_| found.refined.open_cones),
             table_bytes: found.replay.table_bytes(),
             seconds: FramesSeconds { refine: refining.as_secs_f64(), write: writing.as_secs_f64() },
         };
@@ -108,16 +101,38 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         output::write_json(path, &report)?;
     }
     Ok(match stop {
-        ExactStop::Met => Outcome::Done,
+        ExactStop::Met | ExactStop::Cones => Outcome::Done,
         ExactStop::Rounding => Outcome::StoppedShort(format!(
             "the tolerance of {} is finer than rounding leaves certain",
             number(goals.length().unwrap_or_default())
         )),
+        // Caps on triangles and memory are errors: there would be no mesh for all frames.
         _ => Outcome::StoppedShort(format!(
             "--max-levels {} was reached before the goals were met for every frame",
             options.max_levels
         )),
     })
+}
+
+/// What came of all frames: `worst` is the greatest distance of any, per cent are of the diagonal of the first, which is called `name`.
+fn in_words(found: &Frames, (worst, diagonal): (f64, f64), name: &str, refining: Duration) -> String {
+    let mesh = &found.refined.mesh;
+    let made = format!(
+        "{}: {}, {} each ({}, {} for all frames; {})",
+        counted(found.errors.len(), "frame", "frames"),
+        counted(mesh.face_count(), "triangle", "triangles"),
+        counted(mesh.vertex_count(), "vertex", "vertices"),
+        counted(found.refined.levels, "level", "levels"),
+        crate::format::bytes(found.replay.table_bytes()),
+        seconds(refining.as_secs_f64()),
+    );
+    let near = format!(
+        "within {} of the limit surface of every frame ({:.4} % of the diagonal of {name})",
+        upper_bound(worst),
+        100.0 * worst / diagonal,
+    );
+    let lines = [Some(made), Some(near), exact::open_cones(&found.refined)];
+    lines.into_iter().flatten().collect::<Vec<_>>().join("\n  ")
 }
 
 fn is_scene(format: Format) -> bool {
