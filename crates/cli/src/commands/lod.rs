@@ -20,9 +20,7 @@ use crate::interrupt;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::refinement::exact_stop_name;
-use crate::report::{
-    ChannelReport, InputReport, LevelReport, LodReport, MorphReport, PictureReport, VERSION,
-};
+use crate::report::{InputReport, LevelReport, LodReport, MorphReport, PictureReport, VERSION};
 
 /// What holds where nothing is said.
 const USUAL_LEVELS: usize = 4;
@@ -76,7 +74,7 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     let input = input::load_for(&arguments.input, &arguments.build, (&kept, &arguments.channels), progress)?;
     let input = input.with_creases(arguments.features.creases_from)?;
     let diagonal = input.mesh.diagonal();
-    let told = input_report(&input, arguments);
+    let told = InputReport::of(&input, &arguments.channels);
     let Input { mesh, channels, material_libraries, texture_files, asset, .. } = input;
     let to = Destination {
         format: Some(format),
@@ -196,17 +194,6 @@ fn leave_out_needless(levels: &mut Vec<Level>, progress: &Progress) {
         ));
         finer.geomorph = None;
         levels.remove(0);
-    }
-}
-
-fn input_report(input: &Input, arguments: &LodArguments) -> InputReport {
-    InputReport {
-        path: input.name.clone(),
-        format: input.format,
-        vertices: input.diagnosis.input_vertices,
-        faces: input.diagnosis.input_faces,
-        left_out: input.left_out.clone(),
-        channels: input.channels.iter().map(|own| ChannelReport::chosen(own, &arguments.channels)).collect(),
     }
 }
 

@@ -34,6 +34,9 @@ pub(crate) use whole::Whole;
 
 use serde::Serialize;
 
+use crate::arguments::ChannelArguments;
+use crate::input::Input;
+
 /// The program's version, in every report.
 pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -52,4 +55,18 @@ pub(crate) struct InputReport {
     pub(crate) left_out: Vec<String>,
     /// What vertices, corners and faces carry.
     pub(crate) channels: Vec<ChannelReport>,
+}
+
+impl InputReport {
+    /// Of what was read, with channels that are carried as options say.
+    pub(crate) fn of(input: &Input, arguments: &ChannelArguments) -> Self {
+        Self {
+            path: input.name.clone(),
+            format: input.format,
+            vertices: input.diagnosis.input_vertices,
+            faces: input.diagnosis.input_faces,
+            left_out: input.left_out.clone(),
+            channels: input.channels.iter().map(|own| ChannelReport::chosen(own, arguments)).collect(),
+        }
+    }
 }

@@ -45,8 +45,8 @@ use crate::input::{self, Input};
 use crate::output;
 use crate::progress::Progress;
 use crate::report::{
-    ChannelReport, InputReport, MeshReport, MethodReport, OutputReport, ParametersReport, RefineReport,
-    SecondsReport, SizeReport, VERSION, ViewReport,
+    InputReport, MeshReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport,
+    SizeReport, VERSION, ViewReport,
 };
 use control::Control;
 use provenance::Provenance;
@@ -116,14 +116,7 @@ fn refine(
         progress.note(note);
     }
     let input = input.with_creases(arguments.features.creases_from)?;
-    let input_report = InputReport {
-        path: input.name,
-        format: input.format,
-        vertices: input.diagnosis.input_vertices,
-        faces: input.diagnosis.input_faces,
-        left_out: input.left_out,
-        channels: input.channels.iter().map(|own| ChannelReport::chosen(own, &arguments.channels)).collect(),
-    };
+    let input_report = InputReport::of(&input, &arguments.channels);
     let files = [input.material_libraries, input.texture_files];
     let own = match arguments.way().is_sqrt3() {
         true => sqrt3::without_channels(input.channels, progress),
@@ -160,16 +153,7 @@ fn refine(
 
     progress.stage(format!("writing {}", arguments.output_name()));
     let start = Instant::now();
-    let splits = refined.channels.split_vertices(format, refined.mesh.as_triangles());
-    // Vertices on sharp edges stand once for each side as asked for, or as a file has vertices several times anyway.
-    let is_split = arguments.split_normals || splits;
-    if let Some(note) = refined.normals.as_ref().and_then(|all| all.note(format, is_split)) {
-        progress.note(note);
-    }
-    if let Some(note) = refined.channels.note(format, refined.mesh.as_triangles(), splits) {
-        progress.note(note);
-    }
-    write(path, (format, is_split), arguments, &refined)?;
+    write_told(path, format, arguments, &refined, progress)?;
     let writing = start.elapsed();
     progress.note(summary(&arguments.output_name(), &refined, refining));
 
@@ -196,19 +180,47 @@ fn refine(
         output::write_json(report_path, &report)?;
     }
     if let Some(path) = &arguments.picture {
-        progress.stage(format!("drawing {}", path.display()));
-        let style = Style::default().wireframe(true);
-        let view = picture::view_direction(arguments.view);
-        let (surface, normals) = match &normals {
-            Some(normals) => {
-                let (surface, normals) = normals.surface(&mesh);
-                (surface, Some(normals))
-            }
-            None => (mesh.as_triangles(), None),
-        };
-        picture::draw(path, surface, normals, view, &style, picture::SIZE)?;
+        draw(path, (&mesh, normals.as_ref()), arguments, progress)?;
     }
     Ok(outcome)
+}
+
+/// Writes a mesh, and says what becomes of normals and of values where vertices have several.
+fn write_told(
+    path: &Path,
+    format: Format,
+    arguments: &RefineArguments,
+    refined: &Refined,
+    progress: &Progress,
+) -> anyhow::Result<()> {
+    let splits = refined.channels.split_vertices(format, refined.mesh.as_triangles());
+    // Vertices on sharp edges stand once for each side as asked for, or as a file has vertices several times anyway.
+    let is_split = arguments.split_normals || splits;
+    let notes = [
+        refined.normals.as_ref().and_then(|all| all.note(format, is_split)).map(str::to_owned),
+        refined.channels.note(format, refined.mesh.as_triangles(), splits),
+    ];
+    notes.into_iter().flatten().for_each(|note| progress.note(note));
+    write(path, (format, is_split), arguments, refined)
+}
+
+/// Draws a mesh, shaded by its normals if it has some.
+fn draw(
+    path: &Path,
+    (mesh, normals): (&Mesh, Option<&Normals>),
+    arguments: &RefineArguments,
+    progress: &Progress,
+) -> anyhow::Result<()> {
+    progress.stage(format!("drawing {}", path.display()));
+    let (surface, normals) = match normals {
+        Some(normals) => {
+            let (surface, normals) = normals.surface(mesh);
+            (surface, Some(normals))
+        }
+        None => (mesh.as_triangles(), None),
+    };
+    let view = picture::view_direction(arguments.view);
+    picture::draw(path, surface, normals, view, &Style::default().wireframe(true), picture::SIZE)
 }
 
 /// How methods end that take no triangles away: where there are more than asked, so many the control mesh had.
