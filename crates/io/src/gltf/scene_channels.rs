@@ -119,7 +119,9 @@ impl SceneChannels {
         if self.materials.iter().any(|&material| material != 0) {
             let mut labels = vec![String::new()];
             for (index, material) in source.root().list("materials")?.iter().enumerate() {
-                labels.push(material.name().map_or_else(|| format!("materials[{index}]"), str::to_owned));
+                // An empty label is that of faces without a material.
+                let name = material.name().filter(|name| !name.is_empty());
+                labels.push(name.map_or_else(|| format!("materials[{index}]"), str::to_owned));
             }
             let values = (0..labels.len()).map(|label| label as f64).collect();
             let channel = Channel::new(MATERIAL, Semantic::Label, Domain::Face, 1);

@@ -147,3 +147,30 @@ fn an_assets_materials_come_along_and_nothing_that_names_its_nodes() {
     let names: Vec<&str> = [0, 1].map(|face| &*material.labels[material.value(face)[0] as usize]).to_vec();
     assert_eq!(names, ["skin", "cloth"]);
 }
+
+/// Names are no more than names: materials without one, or with an empty one, stay what they are.
+#[test]
+fn materials_need_no_names() {
+    let bin = floats(&SQUARE.map(|p| p.map(|x| x as f32)).concat());
+    let primitive = |material: usize| json!({"attributes": {"POSITION": 0}, "material": material});
+    let text = json!({
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "materials": [{"name": "", "doubleSided": true}, {"alphaMode": "BLEND"}],
+        "meshes": [{"primitives": [primitive(1), primitive(0)]}],
+        "accessors": [{"count": 3, "type": "VEC3", "componentType": 5126, "bufferView": 0}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": bin.len()}],
+    });
+    let asset = Asset::from_bytes(&glb(&text.to_string(), &bin), None).expect("an asset");
+    let soup = asset.scene_soup().expect("two triangles");
+    let triangles: Vec<[u32; 3]> = soup.faces.iter().map(|face| face.try_into().expect("three")).collect();
+    let surface = Triangles { positions: &soup.positions, triangles: &triangles };
+    let level = DetailLevel::new(Output::new(surface).channels(&soup.channels));
+    let (_folder, path) = written(&[level], Some(&asset)).expect("written");
+    let document = document(&path);
+    assert_eq!(document["materials"], text["materials"]);
+    let primitives = document["meshes"][0]["primitives"].as_array().expect("primitives");
+    assert_eq!([&primitives[0]["material"], &primitives[1]["material"]], [1, 0], "{document:#}");
+}
