@@ -19,7 +19,7 @@ use crate::vector::vector;
 use pieces::Piece;
 use search::{Found, RayFrame, RaySearch};
 
-/// Control faces whose pieces are made together.
+/// Control faces whose pieces are made together, and rays that are followed together.
 const BLOCK: usize = 64;
 
 /// The least part of the surface's size that a tolerance can be: rounding may hide what is less.
