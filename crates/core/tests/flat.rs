@@ -317,10 +317,7 @@ fn stirred_grid(columns: u32, rows: u32, numbers: &mut support::Random) -> Mesh 
     let cells = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
     let positions: Vec<[f64; 3]> =
         cells.map(|(i, j)| [f64::from(i) + numbers.signed(), f64::from(j) + numbers.signed(), 0.0]).collect();
-    let quads = (0..rows - 1).flat_map(|j| (0..columns - 1).map(move |i| j * columns + i));
-    let triangles =
-        quads.flat_map(|v| [[v, v + 1, v + columns + 1], [v, v + columns + 1, v + columns]]).collect();
-    Mesh::from_triangles(positions, triangles).unwrap()
+    Mesh::from_triangles(positions, support::grid(columns, rows)).unwrap()
 }
 
 /// Regions that cannot be triangulated from their rims keep their triangles, and estimates count these.

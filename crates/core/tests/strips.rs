@@ -116,10 +116,7 @@ fn corrugated(columns: u32, rows: u32, numbers: &mut Random) -> Mesh {
     };
     let positions =
         (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))).map(|(i, j)| at(i, j)).collect();
-    let quads = (0..rows - 1).flat_map(|j| (0..columns - 1).map(move |i| j * columns + i));
-    let triangles =
-        quads.flat_map(|v| [[v, v + 1, v + columns + 1], [v, v + columns + 1, v + columns]]).collect();
-    Mesh::from_triangles(positions, triangles).unwrap()
+    Mesh::from_triangles(positions, support::grid(columns, rows)).unwrap()
 }
 
 /// Fewer triangles, and the same set of points as with all of the hierarchy, whatever the profile; control vertices stay.

@@ -80,8 +80,7 @@ impl<'a> SharpEdges<'a> {
 
     /// The half-edges of the triangle that leave a vertex and come to it, if they are all its sharp edges and it is a needle's tip.
     fn needle(&self, vertex: VertexId) -> Option<[HalfEdgeId; 2]> {
-        let (_, is_open) = self.topology.valence_and_openness(vertex);
-        if self.counts[vertex.index()] != 2 || is_open {
+        if self.counts[vertex.index()] != 2 || self.topology.is_boundary(vertex) {
             return None;
         }
         let mut leaving = self.topology.outgoing_ring(vertex);

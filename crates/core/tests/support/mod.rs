@@ -72,6 +72,12 @@ pub fn octahedron() -> Mesh {
     Mesh::from_triangles(positions, triangles).unwrap()
 }
 
+/// The triangles of a grid of so many columns and rows of vertices, row by row.
+pub fn grid(columns: u32, rows: u32) -> Vec<[u32; 3]> {
+    let quads = (0..rows - 1).flat_map(|j| (0..columns - 1).map(move |i| j * columns + i));
+    quads.flat_map(|v| [[v, v + 1, v + columns + 1], [v, v + columns + 1, v + columns]]).collect()
+}
+
 /// A torus-like grid of `m` by `n` quads, each cut in two: every vertex has valence 6.
 pub fn torus(m: u32, n: u32) -> Mesh {
     let tau = std::f64::consts::TAU;

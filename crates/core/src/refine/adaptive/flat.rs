@@ -17,7 +17,8 @@
 //!
 //! A face is flat where the control points whose hull holds its piece of the surface lie in the plane. A triangulation of
 //! a region with the same control vertices and K vertices inside its rim's control edges has K triangles more than there are
-//! control faces, by Euler's formula, whatever its holes: so plans know their triangles without any triangulation.
+//! control faces, by Euler's formula, whatever its holes: so plans know their triangles without any triangulation, but for what strips
+//! save, and for regions that turn out to have no triangulation and keep their triangles.
 
 mod flattened;
 mod merge;

@@ -452,7 +452,7 @@ impl Engine<'_> {
     }
 
     /// Triangles that a plan comes to.
-    fn triangles(&self, plan: &Plan) -> Result<usize, RefineError> {
+    fn triangles(&self, plan: &mut Plan) -> Result<usize, RefineError> {
         let (own, flat) = (|face: u32| plan.closed[face as usize].triangles as usize, &self.control.flat);
         let count = flat.count((self.control, &self.edges), &plan.chains, own);
         if !flat.has_strips() {
@@ -463,7 +463,11 @@ impl Engine<'_> {
         let Emission { positions, triangles, twins, parents, starts, .. } = &emission;
         let corners = self.control.mesh.vertex_count();
         let net = Net { positions, triangles, twins, parents, starts, sharp: &sharp, corners };
-        Ok(count - flat.saved(&net, self.watch)?.min(count))
+        let saved = flat.saved(&net, self.watch)?;
+        // Whoever emits it next need not write it again.
+        plan.emission = Some(emission);
+        plan.is_touched.fill(false);
+        Ok(count - saved.min(count))
     }
 
     fn split(&self, trees: &mut Trees, place: Place, fresh: impl FnMut(Place)) -> Result<(), RefineError> {

@@ -156,40 +156,16 @@ impl FlatRegions {
             return Some(Fate::Stays);
         }
         let mut flat = Flattened::new(&own.plane, self.off_planes, net.positions);
-        // By its start, what follows a vertex that need not stay.
-        let (mut rim, mut after) = (Vec::new(), HashMap::new());
-        let (mut area, mut around, mut was_folded) = (0.0, 0.0, false);
-        for &triangle in before {
-            let part = flat.area(net.triangles[triangle as usize])?;
-            area += part;
-            was_folded |= !flat.is_positive(part);
-            for h in 3 * triangle..3 * triangle + 3 {
-                let [from, to] = net.ends(h);
-                if !regions.is_rim(net, h) {
-                    if (from as usize) < net.corners {
-                        flat.number(from);
-                    }
-                } else if regions.drops(from) {
-                    after.insert(from, to);
-                } else {
-                    rim.push(([from, to], net.face(triangle)));
-                    around += net.at(from).distance(net.at(to));
-                }
-            }
-        }
-        if !is_divided && !was_folded || was_folded && own.flat.is_none() {
+        let outline = Outline::of(own, net, regions, &mut flat)?;
+        // Where the surface is proven not to be turned over, coarse triangles alone are.
+        let was_folded = outline.has_turned && (self.unfolds || !by_rim);
+        if !is_divided && !outline.has_turned || was_folded && own.flat.is_none() {
             return Some(Fate::Stays);
         }
-        let (mut along, mut lines) = (HashMap::new(), Vec::new());
-        for (ends, face) in &mut rim {
-            let next = ends[1];
-            while let Some(&to) = after.get(&ends[1]) {
-                ends[1] = to;
-            }
-            along.insert(*ends, *face);
-            lines.extend((ends[1] != next).then_some(*ends));
-        }
-        let rim: Vec<[u32; 2]> = rim.iter().map(|(ends, _)| ends.map(|vertex| flat.number(vertex))).collect();
+        let (along, lines) = outline.straightened();
+        let rim: Vec<[u32; 2]> =
+            along.iter().map(|(ends, _)| ends.map(|vertex| flat.number(vertex))).collect();
+        let along: HashMap<[u32; 2], u32> = along.into_iter().collect();
         let points = flat.points()?;
         let triangles = planar::triangulated(&points, &rim, is_stopped)?;
         let triangles: Vec<[u32; 3]> =
@@ -202,13 +178,70 @@ impl FlatRegions {
         }
         // A control vertex beyond the rim would be left over.
         let is_whole = is_used.iter().all(|&is_used| is_used);
-        let off = if after.is_empty() { 0.0 } else { 2.0 * self.off_planes * around };
+        let Outline { area, length, after, .. } = outline;
+        let off = if after.is_empty() { 0.0 } else { 2.0 * self.off_planes * length };
         let is_same =
             (by_rim || triangles.len() < before.len()) && (found - area).abs() <= SAME_AREA * area + off;
         if !is_whole || !is_same || was_folded && !self.unfolds {
             return None;
         }
         Some(Fate::Covered(Covering { triangles: by_face(triangles, &along)?, lines, was_folded }))
+    }
+}
+
+/// An edge on a rim, and the control face of its triangle.
+type RimEdge = ([u32; 2], u32);
+
+/// What is around a region.
+struct Outline {
+    /// The edges from vertices that stay.
+    rim: Vec<RimEdge>,
+    /// What follows a vertex that need not.
+    after: HashMap<u32, u32>,
+    /// Twice the area.
+    area: f64,
+    /// Of the edges in `rim`, all together.
+    length: f64,
+    /// Whether some of the triangles are turned over.
+    has_turned: bool,
+}
+
+impl Outline {
+    /// Numbers the control vertices inside; `None` where a triangle is not in the plane.
+    fn of(own: &Region, net: &Net<'_>, regions: &Regions, flat: &mut Flattened<'_>) -> Option<Self> {
+        let (rim, after) = (Vec::new(), HashMap::new());
+        let mut found = Self { rim, after, area: 0.0, length: 0.0, has_turned: false };
+        for &triangle in &own.triangles {
+            let part = flat.area(net.triangles[triangle as usize])?;
+            found.area += part;
+            found.has_turned |= !flat.is_positive(part);
+            for h in 3 * triangle..3 * triangle + 3 {
+                let [from, to] = net.ends(h);
+                if !regions.is_rim(net, h) {
+                    if (from as usize) < net.corners {
+                        flat.number(from);
+                    }
+                } else if regions.drops(from) {
+                    found.after.insert(from, to);
+                } else {
+                    found.rim.push(([from, to], net.face(triangle)));
+                    found.length += net.at(from).distance(net.at(to));
+                }
+            }
+        }
+        Some(found)
+    }
+
+    /// The edges between vertices that stay, and those of them that are new.
+    fn straightened(&self) -> (Vec<RimEdge>, Vec<[u32; 2]>) {
+        let (mut edges, mut lines) = (Vec::with_capacity(self.rim.len()), Vec::new());
+        for &([from, next], face) in &self.rim {
+            let after = |vertex: &u32| self.after.get(vertex).copied();
+            let to = core::iter::successors(Some(next), after).last().unwrap_or(next);
+            edges.push(([from, to], face));
+            lines.extend((to != next).then_some([from, to]));
+        }
+        (edges, lines)
     }
 }
 

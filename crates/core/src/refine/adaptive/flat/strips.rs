@@ -17,7 +17,7 @@ use crate::patch::normal_net::{CUBIC, tangents};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::decide::Control;
 use crate::refine::adaptive::quadtree::Edges;
-use crate::vector::{DVec3, unit_normal, vector};
+use crate::vector::{DVec3, unit_normal, unit_or_zero, vector};
 use std::collections::HashSet;
 
 /// Control faces that one call takes together.
@@ -286,17 +286,14 @@ impl FlatRegions {
                 }
                 let [from, to] = net.ends(h);
                 let own = regions.of_triangle[h as usize / 3];
-                match net.beyond(h).map(|twin| regions.of_triangle[twin as usize / 3]) {
-                    Some(other) if other != NONE => {
-                        between[from as usize].goes_on(own, to);
-                        if own < other {
-                            starts.push((own, from, to));
-                        }
-                    }
-                    _ => [from, to]
-                        .map(|vertex| between[vertex as usize].stays = true)
-                        .into_iter()
-                        .for_each(drop),
+                let Some(other) = net.beyond(h).and_then(|twin| regions.of(twin / 3)) else {
+                    between[from as usize].stays = true;
+                    between[to as usize].stays = true;
+                    continue;
+                };
+                between[from as usize].goes_on(own, to);
+                if own < other {
+                    starts.push((own, from, to));
                 }
             }
         })?;
@@ -322,7 +319,7 @@ impl FlatRegions {
         while let Some(line) = pending.pop() {
             let [first, inner @ .., last] = line else { continue };
             let [from, to] = [first, last].map(|&vertex| net.at(vertex));
-            let along = crate::vector::unit_or_zero(to - from);
+            let along = unit_or_zero(to - from);
             let off = |vertex: u32| (net.at(vertex) - from).reject_from_normalized(along).length();
             let farthest = (1..).zip(inner).map(|(at, &vertex)| (off(vertex), at));
             let Some((most, at)) = farthest.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
