@@ -2,10 +2,14 @@
 //! are cut apart where more than two meet, slivers, folds, thin sheets with holes, flat ones, tiny, huge and far from the
 //! origin.
 
+use limitmesh::mesh::MeshError;
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::{Mesh, PolygonSoup};
 
 use crate::support::{Point, Random, lumpy, octahedron, sheet, torus};
+
+/// Cages that are made for one seed at most, until one has faces.
+const MOST_TRIES: usize = 100;
 
 /// A random cage and what it is.
 pub(crate) struct Cage {
@@ -16,9 +20,14 @@ pub(crate) struct Cage {
 /// The cage of a seed.
 pub(crate) fn cage(seed: u64) -> Cage {
     let mut random = Random::new(seed);
-    let (mut positions, mut triangles, mut what) = base(&mut random, seed);
+    // A few of the small ones have no face that is any good.
+    core::iter::repeat_with(|| random_cage(&mut random, seed)).take(MOST_TRIES).flatten().next().unwrap()
+}
+
+fn random_cage(random: &mut Random, seed: u64) -> Option<Cage> {
+    let (mut positions, mut triangles, mut what) = base(random, seed);
     if random.below(3) == 0 {
-        flip(&mut triangles, &mut random);
+        flip(&mut triangles, random);
         what += ", flipped";
     }
     if random.below(4) == 0 && triangles.len() > 4 {
@@ -29,14 +38,18 @@ pub(crate) fn cage(seed: u64) -> Cage {
         what += ", holes";
     }
     if random.below(6) == 0 {
-        fins(&mut positions, &mut triangles, &mut random, &mut what);
+        fins(&mut positions, &mut triangles, random, &mut what);
     }
-    deform(&mut positions, &mut random, &mut what);
+    deform(&mut positions, random, &mut what);
     let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
     triangles.iter().for_each(|triangle| soup.faces.push(triangle));
-    let mesh = Mesh::from_soup(&soup, &Default::default()).unwrap().0;
-    let mesh = tagged(mesh, &mut random, &mut what);
-    Cage { mesh, what }
+    let mesh = match Mesh::from_soup(&soup, &Default::default()) {
+        Ok((mesh, _)) => mesh,
+        Err(MeshError::NoFaces { .. }) => return None,
+        Err(error) => panic!("{what}: {error}"),
+    };
+    let mesh = tagged(mesh, random, &mut what);
+    Some(Cage { mesh, what })
 }
 
 type Raw = (Vec<Point>, Vec<[u32; 3]>, String);
