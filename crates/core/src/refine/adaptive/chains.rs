@@ -75,6 +75,12 @@ impl Chains {
         self.own(first_of(edges, h)).1.len()
     }
 
+    /// The numbers of those.
+    pub(super) fn vertices(&self, edges: &Edges<'_>, h: u32) -> core::ops::Range<usize> {
+        let (first, places) = self.own(first_of(edges, h));
+        first as usize..first as usize + places.len()
+    }
+
     /// Appends the knots of a face's edges, and says where they are.
     pub(super) fn sides(
         &self,

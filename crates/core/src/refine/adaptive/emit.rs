@@ -65,7 +65,7 @@ pub(super) struct Emission {
 struct Numbers {
     /// By half-edge, the first of its own.
     on_edges: Vec<u32>,
-    /// By control face, the first inside it.
+    /// By control face, the first inside it; one more than there are faces.
     inside: Vec<u32>,
 }
 
@@ -73,6 +73,11 @@ impl Emission {
     /// The numbers of a control face's triangles.
     pub(super) fn triangles_of(&self, face: u32) -> core::ops::Range<usize> {
         self.starts[face as usize] as usize..self.starts[face as usize + 1] as usize
+    }
+
+    /// The vertices inside a control face.
+    pub(super) fn vertices_inside(&self, face: u32) -> core::ops::Range<usize> {
+        self.numbers.inside[face as usize] as usize..self.numbers.inside[face as usize + 1] as usize
     }
 
     /// Whether everything is here, and no control face has changed since.
@@ -233,11 +238,12 @@ impl Counts<'_> {
 
 impl Numbers {
     fn of(control: &Control<'_>, chains: &Chains, counts: &Counts<'_>) -> Self {
-        let mut next = (control.mesh.vertex_count() + chains.count()) as u32;
-        let inside = counts.vertices().map(|count| {
-            next += count;
-            next - count
+        let first = (control.mesh.vertex_count() + chains.count()) as u32;
+        let inside = counts.vertices().scan(first, |next, count| {
+            *next += count;
+            Some(*next)
         });
+        let inside = core::iter::once(first).chain(inside);
         let on_edges = (0..3 * counts.closed.len() as u32).map(|h| chains.own(h).0);
         Self { on_edges: on_edges.collect(), inside: inside.collect() }
     }

@@ -23,6 +23,7 @@
 mod flattened;
 mod merge;
 mod planar;
+mod replace;
 mod strips;
 mod unfolded;
 

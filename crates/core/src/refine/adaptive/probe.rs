@@ -85,7 +85,7 @@ pub(super) fn probe(
     };
     let mut best =
         ErrorBounds { lower: 0.0, upper: 0.0, at: [0.0; 3], certified: engine.control.rules.is_certified() };
-    let mesh = Nearest::of(engine, emission)?;
+    let mesh = Nearest::of(engine, plan, emission)?;
     // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
     let mut highest: Vec<(f64, Place)> =
         measured.iter().flat_map(|all| all.iter().map(|face| face.highest)).collect();
@@ -243,14 +243,23 @@ struct Nearest<'a, 'w> {
 }
 
 impl<'a, 'w> Nearest<'a, 'w> {
-    fn of(engine: &'a Engine<'w>, emission: &'a Emission) -> Result<Self, Cancelled> {
+    fn of(engine: &'a Engine<'w>, plan: &Plan, emission: &'a Emission) -> Result<Self, Cancelled> {
+        let (control, edges) = (engine.control.mesh, &engine.edges);
         let bounds = |face: usize| {
-            let own = &emission.triangles[emission.triangles_of(face as u32)];
-            let corners =
-                own.as_flattened().iter().map(|&vertex| vector(emission.positions[vertex as usize]));
-            corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+            let corners = control.triangles()[face].map(|vertex| vector(emission.positions[vertex as usize]));
+            let mut bounds =
+                (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+            let edges =
+                (3 * face as u32..3 * face as u32 + 3).map(|h| plan.chains.vertices(edges, h));
+            for run in edges.chain([emission.vertices_inside(face as u32)]) {
+                let (low, high) = &mut bounds;
+                for &point in &emission.positions[run] {
+                    (*low, *high) = (low.min(vector(point)), high.max(vector(point)));
+                }
+            }
+            bounds
         };
-        let faces = engine.control.mesh.face_count();
+        let faces = control.face_count();
         let boxes =
             engine.watch.pieces(faces, block(faces), |block| block.map(bounds).collect::<Vec<_>>())?;
         Ok(Self { watch: engine.watch, emission, boxes: boxes.concat() })

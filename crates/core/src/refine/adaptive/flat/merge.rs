@@ -4,9 +4,10 @@ use core::sync::atomic::Ordering;
 use std::collections::{HashMap, HashSet};
 
 use super::flattened::Flattened;
+use super::replace::Merged;
 use super::strips::{Net, Region, Regions};
 use super::{FlatRegions, planar};
-use crate::mesh::{Junctions, NONE, Tags};
+use crate::mesh::{Junctions, Tags};
 use crate::parallel::IsStopped;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::Origin;
@@ -53,13 +54,13 @@ enum Fate {
 }
 
 /// What a region's rim encloses.
-struct Covering {
+pub(super) struct Covering {
     /// Triangles with their control faces, by control face.
-    triangles: Vec<([u32; 3], u32)>,
+    pub(super) triangles: Vec<([u32; 3], u32)>,
     /// The edges of its rim that are new: straight lines, in the place of several edges each.
     lines: Vec<[u32; 2]>,
     /// Whether some of the triangles in whose place these come are turned over.
-    was_folded: bool,
+    pub(super) was_folded: bool,
 }
 
 impl Fate {
@@ -245,6 +246,11 @@ impl Outline {
     }
 }
 
+/// The edges of a triangle by their ends.
+pub(super) fn edges(triangle: [u32; 3]) -> [[u32; 2]; 3] {
+    [0, 1, 2].map(|edge| [triangle[edge], triangle[(edge + 1) % 3]])
+}
+
 /// The coverings whose new edges are none that the mesh has elsewhere: two flat sheets may share their rims, and an edge has two
 /// faces.
 fn without_shared_edges(
@@ -292,171 +298,6 @@ fn without_shared_edges(
         }
     })?;
     Ok(coverings)
-}
-
-/// Regions with what comes in the place of their triangles.
-struct Merged<'a> {
-    list: &'a [Region],
-    of_triangle: &'a [u32],
-    coverings: &'a [Option<Covering>],
-}
-
-impl Merged<'_> {
-    /// The region of a triangle that gives way, and what comes in its place.
-    fn covering(&self, triangle: u32) -> Option<(u32, &Covering)> {
-        let region = self.of_triangle[triangle as usize];
-        self.coverings.get(region as usize)?.as_ref().map(|covering| (region, covering))
-    }
-
-    /// The mesh with the coverings that there are.
-    fn replaced(
-        &self,
-        mut whole: Assembled,
-        starts: &[u32],
-        corners: usize,
-        watch: &SharedWatch<'_>,
-    ) -> Result<Assembled, Cancelled> {
-        self.unfold_normals(&mut whole);
-        // By control face and region, in that order.
-        let mut others: Vec<(u32, u32, [u32; 3])> = Vec::new();
-        watch.each((0u32..).zip(self.coverings), |(region, covering)| {
-            let all = covering.iter().flat_map(|covering| &covering.triangles);
-            others.extend(all.map(|&(triangle, face)| (face, region, triangle)));
-        })?;
-        others.sort_by_key(|&(face, region, _)| (face, region));
-        let mut others = others.into_iter().peekable();
-        let (mut triangles, mut parents, mut regions) = (Vec::new(), Vec::new(), Vec::new());
-        let mut first_new = vec![NONE; whole.triangles.len()];
-        // By its ends, each half-edge of the new triangles.
-        let (mut new, mut fresh) = (HashMap::new(), Vec::new());
-        watch.each(0..starts.len() as u32 - 1, |face| {
-            let before = starts[face as usize]..starts[face as usize + 1];
-            for triangle in before.filter(|&triangle| self.covering(triangle).is_none()) {
-                first_new[triangle as usize] = triangles.len() as u32;
-                triangles.push(whole.triangles[triangle as usize]);
-                parents.push(face);
-                regions.push(NONE);
-            }
-            while let Some((_, region, triangle)) = others.next_if(|&(parent, ..)| parent == face) {
-                for edge in 0..3 {
-                    let ends = [triangle[edge], triangle[(edge + 1) % 3]];
-                    let h = 3 * triangles.len() as u32 + edge as u32;
-                    new.insert(ends, h);
-                    fresh.push((ends, h));
-                }
-                triangles.push(triangle);
-                parents.push(face);
-                regions.push(region);
-            }
-        })?;
-        let ends = |h: u32| [0, 1].map(|i| whole.triangles[h as usize / 3][(h as usize + i) % 3]);
-        // What was inside a region is nowhere any more.
-        let moved = |h: u32| match first_new[h as usize / 3] {
-            NONE => new.get(&ends(h)).copied().unwrap_or(NONE),
-            first => 3 * first + h % 3,
-        };
-        let mut twins = vec![NONE; 3 * triangles.len()];
-        watch.each((0u32..).zip(&whole.twins), |(h, &twin)| {
-            let (now, beyond) = (moved(h), if twin == NONE { NONE } else { moved(twin) });
-            if now != NONE && beyond != NONE {
-                twins[now as usize] = beyond;
-            }
-        })?;
-        watch.each(fresh, |([from, to], h)| {
-            if let Some(&twin) = new.get(&[to, from]) {
-                twins[h as usize] = twin;
-            }
-        })?;
-        let sides = self.sides(&whole, (&triangles, &regions), &first_new, watch)?;
-        let mut renamed = vec![NONE; whole.positions.len()];
-        renamed[..corners].fill(0);
-        watch.each(triangles.as_flattened(), |&vertex| renamed[vertex as usize] = 0)?;
-        let kept: Vec<usize> = (0..renamed.len()).filter(|&vertex| renamed[vertex] == 0).collect();
-        watch.each((0..).zip(&kept), |(now, &vertex)| renamed[vertex] = now)?;
-        let name = |vertex: u32| renamed[vertex as usize];
-        watch.each(triangles.as_flattened_mut(), |vertex| *vertex = name(*vertex))?;
-        let (mut tags, mut junctions) = (whole.tags, whole.junctions);
-        tags.creases.iter_mut().for_each(|tag| tag.vertices = tag.vertices.map(name));
-        tags.corners.iter_mut().for_each(|tag| tag.vertex = name(tag.vertex));
-        junctions.vertices.rename(name);
-        let borders = core::mem::take(&mut junctions.edges);
-        borders.iter().for_each(|group| junctions.edges.push(group.iter().map(|&h| moved(h))));
-        let origins = if whole.origins.is_empty() { &[][..] } else { &kept[..] };
-        Ok(Assembled {
-            positions: kept.iter().map(|&vertex| whole.positions[vertex]).collect(),
-            normals: kept.iter().map(|&vertex| whole.normals[vertex]).collect(),
-            origins: origins.iter().map(|&vertex| whole.origins[vertex]).collect(),
-            triangles,
-            twins,
-            parents,
-            tags,
-            sides,
-            junctions,
-        })
-    }
-
-    /// Where a region was folded, gives its vertices that are not on sharp edges the normal of its plane: limit normals are turned
-    /// over where the surface is.
-    fn unfold_normals(&self, whole: &mut Assembled) {
-        let folded = self.list.iter().zip(self.coverings).filter_map(|(region, covering)| {
-            covering.as_ref().filter(|covering| covering.was_folded).map(|covering| (&region.plane, covering))
-        });
-        let mut folded = folded.peekable();
-        if folded.peek().is_none() {
-            return;
-        }
-        let corner = |&(h, _): &(u32, [f64; 3])| whole.triangles[h as usize / 3][h as usize % 3];
-        let is_sided: HashSet<u32> = whole.sides.iter().map(corner).collect();
-        for (plane, covering) in folded {
-            for &vertex in covering.triangles.iter().flat_map(|(triangle, _)| triangle) {
-                if !is_sided.contains(&vertex) {
-                    whole.normals[vertex as usize] = plane.normal.to_array();
-                }
-            }
-        }
-    }
-
-    /// The normals of corners at sharp edges: a region has one for each of its vertices that is on one.
-    fn sides(
-        &self,
-        whole: &Assembled,
-        (triangles, regions): (&[[u32; 3]], &[u32]),
-        first_new: &[u32],
-        watch: &SharedWatch<'_>,
-    ) -> Result<Vec<(u32, [f64; 3])>, Cancelled> {
-        let was_folded = |region: u32| {
-            self.coverings[region as usize].as_ref().is_some_and(|covering| covering.was_folded)
-        };
-        let (mut sides, mut at_rims) = (Vec::with_capacity(whole.sides.len()), HashMap::new());
-        watch.each(&whole.sides, |&(h, normal)| match first_new[h as usize / 3] {
-            NONE => {
-                let vertex = whole.triangles[h as usize / 3][h as usize % 3];
-                at_rims.insert((self.of_triangle[h as usize / 3], vertex), normal);
-            }
-            first => sides.push((3 * first + h % 3, normal)),
-        })?;
-        if at_rims.is_empty() {
-            return Ok(sides);
-        }
-        watch.each((0u32..).zip(triangles.iter().zip(regions)), |(triangle, (vertices, &region))| {
-            if region == NONE {
-                return;
-            }
-            for (corner, &vertex) in (0u32..).zip(vertices) {
-                let normal = at_rims.get(&(region, vertex)).map(|&normal| match was_folded(region) {
-                    true => self.list[region as usize].plane.normal.to_array(),
-                    false => normal,
-                });
-                sides.extend(normal.map(|normal| (3 * triangle + corner, normal)));
-            }
-        })?;
-        sides.sort_unstable_by_key(|&(h, _)| h);
-        Ok(sides)
-    }
-}
-
-fn edges(triangle: [u32; 3]) -> [[u32; 2]; 3] {
-    [0, 1, 2].map(|edge| [triangle[edge], triangle[(edge + 1) % 3]])
 }
 
 /// Gives each triangle a control face: that of a rim edge of its own, else that of a triangle beside it. `None` where one is
