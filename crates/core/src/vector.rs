@@ -109,17 +109,23 @@ pub(crate) trait Extremes {
     fn smaller(self, other: Self) -> Self;
 }
 
-impl Extremes for f64 {
-    #[inline]
-    fn larger(self, other: Self) -> Self {
-        if other > self { other } else { self }
-    }
+macro_rules! extremes {
+    ($($number:ty),*) => {$(
+        impl Extremes for $number {
+            #[inline]
+            fn larger(self, other: Self) -> Self {
+                if other > self { other } else { self }
+            }
 
-    #[inline]
-    fn smaller(self, other: Self) -> Self {
-        if other < self { other } else { self }
-    }
+            #[inline]
+            fn smaller(self, other: Self) -> Self {
+                if other < self { other } else { self }
+            }
+        }
+    )*};
 }
+
+extremes!(f64, f32);
 
 /// The unit normal of a triangle of any size; zero where it has no area.
 #[inline]

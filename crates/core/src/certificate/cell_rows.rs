@@ -6,16 +6,17 @@
 //! fails for sure, or has to be looked at by itself.
 
 mod few_parts;
+mod part_bounds;
 
 use core::array::from_fn;
 
-use super::quartic_cell::{
-    CUBIC, CURVE_CUBIC, DIRECTIONS, Domain, NEARLY_ONE, QUARTIC, QuarticJet, quadratic,
-};
-use crate::patch::Quartic;
+use super::quartic_cell::{CUBIC, CURVE_CUBIC, Domain, QUARTIC, QuarticJet, quadratic};
+use crate::patch::{Quartic, reciprocal_power};
 use crate::vector::DVec3;
 use crate::vector::Extremes;
 use few_parts::{FEW, FEW_DIVISIONS, FewParts};
+use part_bounds::{Found, LANES, Parts, Remainder, Slices, above, measure};
+use wide::f32x4;
 
 /// Divisions at most.
 pub(crate) const MOST_DIVISIONS: u32 = 6;
@@ -26,13 +27,11 @@ const WIDTH: usize = (1 << MOST_DIVISIONS) + 16;
 /// Bounds that do not leave more than this part of the target to the remainder are worth while.
 const REMAINDER: f64 = 0.06;
 
-/// What is added to a tilt for rounding.
-const ROUNDING: f64 = 1e-12;
-
-/// The greatest squared chord of the angle between triangles that help each other, as in [`super::deviation`].
-const SHARPEST: f64 = 3.464;
-
+/// Numbers by axis and place.
 type Row = [[f64; WIDTH]; 3];
+
+/// The same in single precision.
+type NarrowRow = [[f32; WIDTH]; 3];
 
 /// What becomes of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,48 +105,40 @@ impl Marks {
 /// Rows of what a level needs, kept from call to call.
 pub(crate) struct CellRows {
     points: [Row; 2],
-    normals: [Row; 2],
-    along: [Row; 2],
-    diagonal: Row,
-    upward: Row,
+    normals: Row,
+    narrow_normals: [NarrowRow; 2],
+    /// Edges along rows, and from row to row.
+    along: [NarrowRow; 2],
+    upward: NarrowRow,
+    /// Second derivatives along these, and along those of the third kind.
+    bends_along: [NarrowRow; 2],
+    bends_upward: NarrowRow,
+    bends_across: NarrowRow,
+    /// What the sums of the sizes of the coordinates of these are no greater than, those along rows by row.
+    sizes_along: [f32; 2],
+    size_between: f32,
     few: Box<FewParts>,
     found: Found,
 }
 
-/// By part of a row.
-struct Found {
-    bound: [f64; WIDTH],
-    low: [f64; WIDTH],
-    tilt: [f64; WIDTH],
-    slope: [f64; WIDTH],
-    drift_slope: [f64; WIDTH],
-}
-
 impl Default for CellRows {
     fn default() -> Self {
-        let row = [[0.0; WIDTH]; 3];
-        let [bound, low, tilt, slope, drift_slope] = [[0.0; WIDTH]; 5];
+        let (row, narrow) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
         Self {
             points: [row; 2],
-            normals: [row; 2],
-            along: [row; 2],
-            diagonal: row,
-            upward: row,
+            normals: row,
+            narrow_normals: [narrow; 2],
+            along: [narrow; 2],
+            upward: narrow,
+            bends_along: [narrow; 2],
+            bends_upward: narrow,
+            bends_across: narrow,
+            sizes_along: [0.0; 2],
+            size_between: 0.0,
             few: Box::default(),
-            found: Found { bound, low, tilt, slope, drift_slope },
+            found: Found::default(),
         }
     }
-}
-
-/// Bounds that hold for all parts of a level.
-#[derive(Clone, Copy)]
-struct Remainder {
-    height: f64,
-    /// Of the distance of curves from their edges, and of the slope towards their ends.
-    curve: f64,
-    steep: f64,
-    /// Of first derivatives along edges.
-    first: f64,
 }
 
 /// A node of a regular piece, and what bounds derivatives all over it.
@@ -156,6 +147,8 @@ pub(crate) struct RowBlock<'a> {
     jet: &'a QuarticJet,
     at: Domain,
     size: f64,
+    /// The tangents in the middle.
+    tangents: [DVec3; 2],
     /// The remainder's height for parts of size 1, by the third and the fourth derivatives.
     height: [f64; 2],
 }
@@ -176,11 +169,13 @@ impl<'a> RowBlock<'a> {
         let [a, b, c, d, e] = *jet.fourth();
         let pairs = [a, e, a - 4.0 * b + 6.0 * c - 4.0 * d + e, c, a - 2.0 * b + c, e - 2.0 * d + c];
         let fourth = pairs.iter().map(|pair| pair.length_squared()).fold(0.0, f64::max);
+        let third_of = size / 3.0;
         Self {
             piece,
             jet,
             at,
             size,
+            tangents: piece.tangents(at[0] + third_of, at[1] + third_of),
             height: [CUBIC * third.sqrt() + bubble.sqrt() / 27.0, QUARTIC * fourth.sqrt()],
         }
     }
@@ -188,8 +183,7 @@ impl<'a> RowBlock<'a> {
     /// The divisions below which parts certainly fail, as far as the second derivatives in a few places tell, and those by which
     /// they pass.
     pub(crate) fn levels(&self, distance: f64) -> (u32, u32) {
-        let third = self.size / 3.0;
-        let [u, v] = self.piece.tangents(self.at[0] + third, self.at[1] + third);
+        let [u, v] = self.tangents;
         let normal = u.cross(v).normalize_or_zero();
         let (mut least, mut most) = (f64::INFINITY, 0.0f64);
         let square = self.size * self.size;
@@ -210,21 +204,39 @@ impl<'a> RowBlock<'a> {
         (levels(least), levels(most))
     }
 
-    fn remainder(&self, divisions: u32) -> Remainder {
-        let step = (self.size / f64::from(1u32 << divisions)).abs();
+    /// How high over the quadratic part the surface may stand over a part.
+    fn rest(&self, step: f64) -> f64 {
         let cube = step * step * step;
+        self.height[0] * cube + self.height[1] * cube * step
+    }
+
+    /// What bounds all parts of a size, times a factor.
+    fn remainder(&self, step: f64, scale: f64) -> Remainder {
         let (third, fourth) = self.jet.most(step);
-        Remainder {
-            height: self.height[0] * cube + self.height[1] * cube * step,
-            curve: CURVE_CUBIC * third + fourth / 384.0,
-            steep: third / 12.0 + fourth / 48.0,
-            first: 0.5 * third + fourth,
-        }
+        let bounds = [
+            self.rest(step),
+            CURVE_CUBIC * third + fourth / 384.0,
+            third / 12.0 + fourth / 48.0,
+            0.5 * third + fourth,
+        ];
+        let [height, curve, steep, first] = bounds.map(|bound| above(scale * bound));
+        Remainder { height, curve, steep, first }
+    }
+
+    /// The power of two that makes edges of parts about 1.
+    fn scale(&self, step: f64) -> f64 {
+        let [u, v] = self.tangents;
+        reciprocal_power(step * u.abs().max(v.abs()).max_element())
+    }
+
+    /// The size of the parts of a level.
+    fn step(&self, divisions: u32) -> f64 {
+        (self.size / f64::from(1u32 << divisions)).abs()
     }
 
     /// Whether parts of a level are small enough for their remainders not to matter.
     pub(crate) fn is_fine(&self, divisions: u32, distance: f64) -> bool {
-        self.remainder(divisions).height <= REMAINDER * distance
+        self.rest(self.step(divisions)) <= REMAINDER * distance
     }
 }
 
@@ -244,13 +256,14 @@ impl CellRows {
             list.clear();
             list.resize(n * n, Mark::Passes);
         }
-        let rest = block.remainder(divisions);
+        let scale = block.scale(block.step(divisions));
+        let rest = block.remainder(block.step(divisions), scale);
         if divisions <= FEW_DIVISIONS {
             let few = &mut self.few;
-            few.fill(block, n);
+            few.fill(block, n, scale);
             measure(n * n, &few.parts(), &rest, target, &mut self.found);
             let mut found = [Mark::Passes; FEW];
-            let worst = self.found.mark(n * n, target, extent, &mut found);
+            let worst = self.found.mark((n * n, scale), target, extent, &mut found);
             for (number, &(i, j, is_headlong)) in few.places[..n * n].iter().enumerate() {
                 let list = if is_headlong { &mut marks.headlong } else { &mut marks.upright };
                 list[j * n + i] = found[number];
@@ -260,216 +273,128 @@ impl CellRows {
             }
             return;
         }
-        let step = block.size / n as f64;
-        self.row(block, step, 0, n, 0);
+        let steps = (block.size / n as f64, scale);
+        self.row(block, steps, 0, n, 0);
         for j in 0..n {
             let (count, now) = (n - j, j % 2);
-            self.row(block, step, j + 1, n, 1 - now);
-            self.middles(block, step, j, count);
-            let (lower, upper) = (&self.points[now], &self.points[1 - now]);
-            let (lower_normals, upper_normals) = (&self.normals[now], &self.normals[1 - now]);
+            self.row(block, steps, j + 1, n, 1 - now);
+            self.between(block, steps, j, count, now);
+            let (lower, upper) = (&self.narrow_normals[now], &self.narrow_normals[1 - now]);
             let upright = Parts {
-                corners: [at(lower, 0), at(lower, 1), at(upper, 0)],
-                normals: [at(lower_normals, 0), at(lower_normals, 1), at(upper_normals, 0)],
-                bends: [at(&self.along[now], 0), at(&self.diagonal, 0), at(&self.upward, 0)],
+                edges: [at(&self.along[now], 0), at(&self.upward, 0)],
+                is_turned: false,
+                normals: [at(lower, 0), at(lower, 1), at(upper, 0)],
+                bends: [at(&self.bends_along[now], 0), at(&self.bends_across, 0), at(&self.bends_upward, 0)],
+                size: self.size_between.larger(self.sizes_along[now]),
             };
             measure(count, &upright, &rest, target, &mut self.found);
-            let found = &self.found;
-            if let Some(i) = found.mark(count, target, extent, &mut marks.upright[j * n..j * n + count]) {
+            let (found, own) = (&self.found, &mut marks.upright[j * n..j * n + count]);
+            if let Some(i) = found.mark((count, scale), target, extent, own) {
                 extent.worst = Some((i, j, false, divisions));
             }
             if count > 1 {
                 let headlong = Parts {
-                    corners: [at(upper, 1), at(upper, 0), at(lower, 1)],
-                    normals: [at(upper_normals, 1), at(upper_normals, 0), at(lower_normals, 1)],
-                    bends: [at(&self.along[1 - now], 0), at(&self.diagonal, 0), at(&self.upward, 1)],
+                    edges: [at(&self.along[1 - now], 0), at(&self.upward, 1)],
+                    is_turned: true,
+                    normals: [at(upper, 1), at(upper, 0), at(lower, 1)],
+                    bends: [
+                        at(&self.bends_along[1 - now], 0),
+                        at(&self.bends_across, 0),
+                        at(&self.bends_upward, 1),
+                    ],
+                    size: self.size_between.larger(self.sizes_along[1 - now]),
                 };
                 measure(count - 1, &headlong, &rest, target, &mut self.found);
                 let (found, own) = (&self.found, &mut marks.headlong[j * n..j * n + count - 1]);
-                if let Some(i) = found.mark(count - 1, target, extent, own) {
+                if let Some(i) = found.mark((count - 1, scale), target, extent, own) {
                     extent.worst = Some((i, j, true, divisions));
                 }
             }
         }
     }
 
-    /// The corners in row j, and the second derivatives along its edges.
-    fn row(&mut self, block: &RowBlock<'_>, step: f64, j: usize, n: usize, slot: usize) {
+    /// The corners in row j, its edges, and the second derivatives along them.
+    fn row(&mut self, block: &RowBlock<'_>, (step, scale): (f64, f64), j: usize, n: usize, slot: usize) {
         let v = block.at[1] + step * j as f64;
-        let out = [&mut self.points[slot], &mut self.normals[slot]];
-        block.piece.by_axis_along(v, block.at[0], step, n - j + 1, out);
-        let [uu, ..] = block.jet.second();
-        quadratic_row(uu, [block.at[0] + 0.5 * step, v], step, n - j, step * step, &mut self.along[slot]);
+        let count = n - j;
+        let points = &mut self.points[slot];
+        block.piece.by_axis_along(v, block.at[0], step, count + 1, [&mut *points, &mut self.normals]);
+        for axis in 0..3 {
+            let (points, normals) = (&points[axis][..count + 1], &self.normals[axis][..count + 1]);
+            differences(&points[..count], &points[1..], scale, &mut self.along[slot][axis]);
+            let narrow = self.narrow_normals[slot][axis].iter_mut();
+            narrow.zip(normals).for_each(|(narrow, &normal)| *narrow = normal as f32);
+        }
+        let ([uu, ..], factor) = (block.jet.second(), step * step * scale);
+        let bends = &mut self.bends_along[slot];
+        self.sizes_along[slot] = quadratic_row(uu, [block.at[0] + 0.5 * step, v], step, count, factor, bends);
     }
 
-    /// The second derivatives along the edges between rows.
-    fn middles(&mut self, block: &RowBlock<'_>, step: f64, j: usize, count: usize) {
+    /// The edges between row j and the next, and the second derivatives along them.
+    fn between(
+        &mut self,
+        block: &RowBlock<'_>,
+        (step, scale): (f64, f64),
+        j: usize,
+        count: usize,
+        now: usize,
+    ) {
+        let [lower, upper] = [&self.points[now], &self.points[1 - now]];
+        for axis in 0..3 {
+            differences(&lower[axis][..count], &upper[axis][..count], scale, &mut self.upward[axis]);
+        }
         let v = block.at[1] + step * (j as f64 + 0.5);
         let [uu, uv, vv] = block.jet.second();
         let across: [DVec3; 6] = from_fn(|i| uu[i] - 2.0 * uv[i] + vv[i]);
-        let square = step * step;
-        quadratic_row(&across, [block.at[0] + 0.5 * step, v], step, count, square, &mut self.diagonal);
-        quadratic_row(vv, [block.at[0], v], step, count + 1, square, &mut self.upward);
+        let factor = step * step * scale;
+        let middle = [block.at[0] + 0.5 * step, v];
+        let across = quadratic_row(&across, middle, step, count, factor, &mut self.bends_across);
+        let upward = quadratic_row(vv, [block.at[0], v], step, count + 1, factor, &mut self.bends_upward);
+        self.size_between = across.larger(upward);
     }
 }
 
-/// A quadratic polynomial along a row, times a factor.
-fn quadratic_row(c: &[DVec3; 6], [u, v]: Domain, step: f64, count: usize, factor: f64, out: &mut Row) {
+/// From each number to the other, times a factor.
+#[inline]
+fn differences(from: &[f64], to: &[f64], factor: f64, out: &mut [f32]) {
+    for ((out, from), to) in out.iter_mut().zip(from).zip(to) {
+        *out = ((to - from) * factor) as f32;
+    }
+}
+
+/// A quadratic polynomial along a row, times a factor. Gives what the sums of the sizes of its coordinates are no greater than; values are
+/// off by ten roundings of that at most.
+fn quadratic_row(
+    c: &[DVec3; 6],
+    [u, v]: Domain,
+    step: f64,
+    count: usize,
+    factor: f64,
+    out: &mut NarrowRow,
+) -> f32 {
+    // By the number of the place over that of all.
+    let length = step * count as f64;
     let (square, linear) = (c[3] * factor, (c[1] + c[4] * v) * factor);
     let constant = (c[0] + (c[2] + c[5] * v) * v) * factor;
-    let count = count.next_multiple_of(8).min(WIDTH);
+    let from = (square * u + linear) * u + constant;
+    let (by_one, by_two) = ((2.0 * u * square + linear) * length, square * (length * length));
+    let (mut size, share) = (0.0, 1.0 / count as f32);
     for axis in 0..3 {
-        let (a, b, c) = (square[axis], linear[axis], constant[axis]);
-        for (i, value) in out[axis][..count].iter_mut().enumerate() {
-            let t = u + step * i as f64;
-            *value = (a * t + b) * t + c;
+        let (a, b, c) = (by_two[axis] as f32, by_one[axis] as f32, from[axis] as f32);
+        size += a.abs() + b.abs() + c.abs();
+        let mut number = f32x4::from([0.0, 1.0, 2.0, 3.0]);
+        for four in out[axis].as_chunks_mut::<LANES>().0.iter_mut().take(count.div_ceil(LANES)) {
+            let t = number * share;
+            *four = ((a * t + b) * t + c).to_array();
+            number += LANES as f32;
         }
     }
+    size
 }
 
-type Slices<'a> = [&'a [f64]; 3];
-
-fn at(row: &Row, from: usize) -> Slices<'_> {
+fn at(row: &NarrowRow, from: usize) -> Slices<'_> {
     let [x, y, z] = row;
     [&x[from..], &y[from..], &z[from..]]
-}
-
-/// Parts of a row: their corners, the limit normals there, and the second derivatives along their edges.
-struct Parts<'a> {
-    corners: [Slices<'a>; 3],
-    normals: [Slices<'a>; 3],
-    bends: [Slices<'a>; 3],
-}
-
-/// Bounds of the first `count` parts.
-#[inline(never)]
-fn measure(count: usize, parts: &Parts<'_>, rest: &Remainder, target: &RowTarget, found: &mut Found) {
-    let n = count.next_multiple_of(4).min(WIDTH - 8);
-    let [p0, p1, p2] = parts.corners.map(|slices| shortened(&slices, n));
-    let [m0, m1, m2] = parts.normals.map(|slices| shortened(&slices, n));
-    let [w0, w1, w2] = parts.bends.map(|slices| shortened(&slices, n));
-    let (bound, low) = (&mut found.bound[..n], &mut found.low[..n]);
-    let (tilt_out, slope_out, drift_out) =
-        (&mut found.tilt[..n], &mut found.slope[..n], &mut found.drift_slope[..n]);
-    let (allowed, share, neighbour) = (target.slope, target.drift_share, target.tilt);
-    for i in 0..n {
-        let at = |s: &Slices<'_>| [s[0][i], s[1][i], s[2][i]];
-        let (a, b) = (minus(at(&p1), at(&p0)), minus(at(&p2), at(&p0)));
-        let c = minus(b, a);
-        let across = cross(a, b);
-        let square = dot(across, across);
-        let area = square.sqrt();
-        let normal = scaled(across, 1.0 / area);
-        // Heights of the quadratic part.
-        let (wa, wc, wb) = (at(&w0), at(&w1), at(&w2));
-        let (p, q, s) = (dot(wa, normal), dot(wc, normal), dot(wb, normal));
-        let edges = 0.125 * p.abs().larger(q.abs()).larger(s.abs());
-        let (l2, l1, l0) = (p * (q + s - p), s * (p + q - s), q * (p + s - q));
-        let total = l0 + l1 + l2;
-        let inner = (0.5 * p * q * s / total).abs();
-        let is_inside = (l0 * total > 0.0) & (l1 * total > 0.0) & (l2 * total > 0.0);
-        let height = if is_inside { edges.larger(inner) } else { edges };
-        low[i] = height - rest.height;
-        // Tilts.
-        let off = |m: &Slices<'_>| {
-            let d = minus(at(m), normal);
-            dot(d, d)
-        };
-        let tilt = off(&m0).larger(off(&m1)).larger(off(&m2)).sqrt() + ROUNDING;
-        let chord = tilt + neighbour;
-        // Angles.
-        let (la, lb, lc) = (dot(a, a), dot(b, b), dot(c, c));
-        let (first, second, third) = (dot(a, b), -dot(a, c), dot(b, c));
-        let slope = area / first.larger(second).larger(third);
-        // Beside the edges: the second derivatives outwards, times the edges' lengths.
-        let out = [-dot(wa, cross(a, normal)), -dot(wc, cross(c, normal)), dot(wb, cross(b, normal))];
-        let longest = la.larger(lb).larger(lc);
-        let steep = rest.steep * longest.sqrt();
-        let ratio = |out: f64, bend: [f64; 3], edge: [f64; 3], square: f64| {
-            (0.5 * out.abs() + steep) / (square - 0.5 * dot(bend, edge).abs() - steep)
-        };
-        let (ra, rc, rb) = (ratio(out[0], wa, a, la), ratio(out[1], wc, c, lc), ratio(out[2], wb, b, lb));
-        let drift_slope = ra.larger(rb).larger(rc);
-        // Negative where there is no room at all.
-        let is_roomy = (ra >= 0.0) & (rb >= 0.0) & (rc >= 0.0);
-        let reach = out[0].larger(out[1]).larger(out[2]).larger(0.0);
-        let drift = 0.125 * (reach * reach / la.smaller(lb).smaller(lc)).sqrt() + rest.curve;
-        // Within the angles at each edge.
-        let (first, second, third) = (first.abs(), second.abs(), third.abs());
-        let most = share * area;
-        let stays = (ra * first.larger(second).larger(area) <= most)
-            & (rc * second.larger(third).larger(area) <= most)
-            & (rb * third.larger(first).larger(area) <= most);
-        // No two points in one place: see `quartic_cell`. Changes of barycentric coordinates times the area.
-        let (oa, ob) = (cross(a, normal), cross(b, normal));
-        let stretched = |w: [f64; 3]| {
-            let (x, y) = (dot(w, oa), dot(w, ob));
-            x * x + y * y - x * y
-        };
-        let most = stretched(wa).larger(stretched(wb)).larger(stretched(wc)).sqrt();
-        let stretch = (0.5 * (la + lb + lc)).sqrt();
-        let is_apart = most + DIRECTIONS * rest.first * stretch < NEARLY_ONE * area;
-        let is_plain = is_roomy & stays & is_apart & (drift_slope <= allowed) & (chord * chord <= SHARPEST);
-        let value = (height + rest.height) * (1.0 + 0.5 * chord * chord) + chord * drift;
-        bound[i] = if is_plain { value } else { f64::INFINITY };
-        tilt_out[i] = tilt;
-        slope_out[i] = slope;
-        drift_out[i] = drift_slope;
-    }
-}
-
-fn shortened<'a>([x, y, z]: &Slices<'a>, n: usize) -> Slices<'a> {
-    [&x[..n], &y[..n], &z[..n]]
-}
-
-impl Found {
-    /// Marks parts, and keeps what those that pass come to. Gives the number of one with a greater bound than any before.
-    fn mark(
-        &self,
-        count: usize,
-        target: &RowTarget,
-        extent: &mut RowExtent,
-        marks: &mut [Mark],
-    ) -> Option<usize> {
-        let mut worst = None;
-        for (i, mark) in marks.iter_mut().enumerate().take(count) {
-            let bound = self.bound[i];
-            *mark = if bound <= target.distance {
-                extent.tilt = extent.tilt.larger(self.tilt[i]);
-                extent.slope = extent.slope.smaller(self.slope[i]);
-                extent.drift_slope = extent.drift_slope.larger(self.drift_slope[i]);
-                if bound > extent.bound {
-                    (extent.bound, worst) = (bound, Some(i));
-                }
-                Mark::Passes
-            } else if self.low[i] > target.distance {
-                Mark::Fails
-            } else {
-                Mark::Open
-            };
-        }
-        worst
-    }
-}
-
-#[inline(always)]
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-#[inline(always)]
-fn scaled(a: [f64; 3], by: f64) -> [f64; 3] {
-    [a[0] * by, a[1] * by, a[2] * by]
 }
 
 impl QuarticJet {

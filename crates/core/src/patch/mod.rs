@@ -32,7 +32,7 @@ pub(crate) use box_spline::{Points, Refined};
 use extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use mesh_patch::{MeshPatch, RefinedMeshPatch};
 use pole::{LARGEST_RING, PolePatch, RefinedPole};
-pub(crate) use quartic::Quartic;
+pub(crate) use quartic::{Quartic, reciprocal_power};
 use sector::{Far, RefinedSectors, SectorPatch};
 use semi_sharp::{RefinedSemiSharp, SemiSharpPatch};
 pub(crate) use spot::Spot;

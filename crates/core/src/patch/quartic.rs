@@ -463,7 +463,7 @@ fn differences<V: Blend, const N: usize>(mut values: [V; N]) -> [V; N] {
 
 /// The reciprocal of the greatest power of two that is no greater than `size`, as far as that is a normal number.
 #[inline]
-fn reciprocal_power(size: f64) -> f64 {
+pub(crate) fn reciprocal_power(size: f64) -> f64 {
     const BITS: u32 = f64::MANTISSA_DIGITS - 1;
     let exponent = size.to_bits() >> BITS;
     f64::from_bits(2046u64.saturating_sub(exponent).max(1) << BITS)

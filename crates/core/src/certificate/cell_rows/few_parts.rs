@@ -4,8 +4,9 @@
 use core::array::from_fn;
 
 use super::super::quartic_cell::quadratic;
-use super::{Parts, RowBlock, Slices};
-use crate::vector::DVec3;
+use super::RowBlock;
+use super::part_bounds::{Parts, Slices, above};
+use crate::vector::{DVec3, Extremes};
 
 /// Divisions that give so few parts that rows of them would be mostly empty.
 pub(super) const FEW_DIVISIONS: u32 = 2;
@@ -17,7 +18,7 @@ pub(super) const FEW: usize = 1 << (2 * FEW_DIVISIONS);
 const FEW_CORNERS: usize = 16;
 
 /// Numbers by axis and part.
-type Few = [[f64; FEW]; 3];
+type Few = [[f32; FEW]; 3];
 
 /// Numbers by axis and corner of few parts.
 type Corners = [[f64; FEW_CORNERS]; 3];
@@ -25,16 +26,18 @@ type Corners = [[f64; FEW_CORNERS]; 3];
 /// Few parts, one after the other instead of row by row: all that stand upright, then those on their heads.
 #[derive(Default)]
 pub(super) struct FewParts {
-    corners: [Few; 3],
+    edges: [Few; 2],
     normals: [Few; 3],
     bends: [Few; 3],
+    /// What the sums of the sizes of their coordinates are no greater than.
+    size: f32,
     /// Column, row, and whether on its head.
     pub(super) places: [(usize, usize, bool); FEW],
 }
 
 impl FewParts {
-    /// The parts of a node whose edges are cut into n.
-    pub(super) fn fill(&mut self, block: &RowBlock<'_>, n: usize) {
+    /// The parts of a node whose edges are cut into n, in a unit that makes so much of lengths.
+    pub(super) fn fill(&mut self, block: &RowBlock<'_>, n: usize, scale: f64) {
         let step = block.size / n as f64;
         let [mut u, mut v] = block.at.map(|at| [at; FEW_CORNERS]);
         let mut count = 0;
@@ -53,7 +56,7 @@ impl FewParts {
                 normals[axis][4 * four..4 * four + 4].copy_from_slice(&normal[axis]);
             }
         }
-        let all = (&points, &normals);
+        let all = (&points, &normals, scale);
         let corner = |i: usize, j: usize| j * (n + 1) - j * j.saturating_sub(1) / 2 + i;
         let mut number = 0;
         for j in 0..n {
@@ -63,7 +66,7 @@ impl FewParts {
                 number += 1;
             }
         }
-        self.set_bends(block, (step, number), (&u, &v), corner);
+        self.set_bends(block, (step, scale), number, (&u, &v), corner);
         let upright = |i: usize, j: usize| j * n - j * j.saturating_sub(1) / 2 + i;
         for j in 0..n - 1 {
             for i in 0..n - 1 - j {
@@ -78,11 +81,18 @@ impl FewParts {
         }
     }
 
-    fn set_corners(&mut self, number: usize, corners: [usize; 3], (points, normals): (&Corners, &Corners)) {
-        for (corner, &from) in corners.iter().enumerate() {
-            for axis in 0..3 {
-                self.corners[corner][axis][number] = points[axis][from];
-                self.normals[corner][axis][number] = normals[axis][from];
+    fn set_corners(
+        &mut self,
+        number: usize,
+        corners: [usize; 3],
+        (points, normals, scale): (&Corners, &Corners, f64),
+    ) {
+        for axis in 0..3 {
+            let [first, second, third] = corners.map(|corner| points[axis][corner]);
+            self.edges[0][axis][number] = ((second - first) * scale) as f32;
+            self.edges[1][axis][number] = ((third - first) * scale) as f32;
+            for (own, &corner) in self.normals.iter_mut().zip(&corners) {
+                own[axis][number] = normals[axis][corner] as f32;
             }
         }
     }
@@ -91,19 +101,23 @@ impl FewParts {
     fn set_bends(
         &mut self,
         block: &RowBlock<'_>,
-        (step, number): (f64, usize),
+        (step, scale): (f64, f64),
+        number: usize,
         (u, v): (&[f64; FEW_CORNERS], &[f64; FEW_CORNERS]),
         corner: impl Fn(usize, usize) -> usize,
     ) {
         let [uu, uv, vv] = block.jet.second();
         let across: [DVec3; 6] = from_fn(|i| uu[i] - 2.0 * uv[i] + vv[i]);
+        self.size = 0.0;
         let edges = [(uu, [0.5, 0.0]), (&across, [0.5, 0.5]), (vv, [0.0, 0.5])];
         for (at, &(i, j, _)) in self.places.iter().enumerate().take(number) {
             let first = corner(i, j);
             for (edge, (derivative, [s, t])) in edges.iter().enumerate() {
-                let bend = quadratic(derivative, [u[first] + s * step, v[first] + t * step]) * (step * step);
+                let place = [u[first] + s * step, v[first] + t * step];
+                let bend = quadratic(derivative, place) * (step * step * scale);
+                self.size = self.size.larger(above(bend.abs().element_sum()));
                 for axis in 0..3 {
-                    self.bends[edge][axis][at] = bend[axis];
+                    self.bends[edge][axis][at] = bend[axis] as f32;
                 }
             }
         }
@@ -111,9 +125,11 @@ impl FewParts {
 
     pub(super) fn parts(&self) -> Parts<'_> {
         Parts {
-            corners: self.corners.each_ref().map(slices),
+            edges: self.edges.each_ref().map(slices),
+            is_turned: false,
             normals: self.normals.each_ref().map(slices),
             bends: self.bends.each_ref().map(slices),
+            size: self.size,
         }
     }
 }

@@ -249,8 +249,7 @@ impl<'a, 'w> Nearest<'a, 'w> {
             let corners = control.triangles()[face].map(|vertex| vector(emission.positions[vertex as usize]));
             let mut bounds =
                 (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
-            let edges =
-                (3 * face as u32..3 * face as u32 + 3).map(|h| plan.chains.vertices(edges, h));
+            let edges = (3 * face as u32..3 * face as u32 + 3).map(|h| plan.chains.vertices(edges, h));
             for run in edges.chain([emission.vertices_inside(face as u32)]) {
                 let (low, high) = &mut bounds;
                 for &point in &emission.positions[run] {

@@ -109,6 +109,13 @@ impl Node<'_> {
         self.sides.iter().all(|side| side.segments() == 1 << self.depth)
     }
 
+    /// The vertex inside it in column i and row j, both from 1 on.
+    #[inline]
+    pub(super) fn inside(&self, i: usize, j: usize) -> u32 {
+        let n = 1usize << self.depth;
+        self.interior + ((j - 1) * (n - 1) - (j - 1) * j / 2 + i - 1) as u32
+    }
+
     /// Triangles that its leaves are covered with.
     pub(super) fn triangles(&self) -> usize {
         let split: usize = self.sides.iter().map(|side| side.segments() - (1 << self.depth)).sum();

@@ -151,7 +151,7 @@ impl Writer<'_> {
         } else if i + j == n {
             knots[self.rim.corner(1, j)].vertex
         } else {
-            node.interior + ((j - 1) * (n - 1) - (j - 1) * j / 2 + i - 1) as u32
+            node.inside(i, j)
         }
     }
 
@@ -161,9 +161,13 @@ impl Writer<'_> {
         let n = 1usize << node.depth;
         self.below.clear();
         self.below.resize(n, NONE);
+        let has_conditions = node.is_conditional || !self.conditions[CLOSING].is_empty();
         for j in 0..n {
-            let mut left = NONE;
-            for i in 0..n - j {
+            let (mut i, mut left) = (0, NONE);
+            while i < n - j {
+                if i == 1 && j > 0 && !has_conditions {
+                    (i, left) = self.inner(node, j, left);
+                }
                 let corners = [(i, j), (i + 1, j), (i, j + 1)].map(|(i, j)| self.vertex(node, knots, i, j));
                 let right = self.upright(node, knots, (i, j), corners, left);
                 if i + j + 1 < n {
@@ -173,11 +177,40 @@ impl Writer<'_> {
                     left = first;
                     self.below[i] = first + 1;
                 }
+                i += 1;
             }
             if self.is_over(j) {
                 return;
             }
         }
+    }
+
+    /// The leaves of a row from column 1 on, as long as their vertices and those of the ones to their right are inside the node: none is
+    /// on a side. `left` is the half-edge beyond the first one's left edge; gives the column of the next, and that for it.
+    fn inner(&mut self, node: &Node<'_>, j: usize, mut left: u32) -> (usize, u32) {
+        let n = 1usize << node.depth;
+        let end = (n - j).saturating_sub(2).max(1);
+        let base = 3 * self.first_triangle;
+        let at = (self.next_triangle - self.first_triangle) as usize;
+        let (lower, upper) = (node.inside(1, j), node.inside(1, j + 1));
+        let pairs = self.triangles[at..].as_chunks_mut::<2>().0.iter_mut().take(end - 1);
+        for (i, pair) in (0u32..).zip(pairs) {
+            let [a, b] = [lower + i, upper + i];
+            *pair = [[a, a + 1, b], [a + 1, b + 1, b]];
+        }
+        for i in 1..end {
+            let first = 3 * self.next_triangle;
+            let beneath = core::mem::replace(&mut self.below[i], first + 4);
+            let own = (first - base) as usize;
+            self.twins[own..own + 6].copy_from_slice(&[beneath, first + 5, left, first + 8, NONE, first + 1]);
+            self.twins[(beneath - base) as usize] = first;
+            if i == 1 {
+                self.twins[(left - base) as usize] = first + 2;
+            }
+            left = first + 3;
+            self.next_triangle += 2;
+        }
+        (end, left)
     }
 
     /// The triangles of an upright leaf, whose left edge has the given half-edge beyond it. Gives the half-edge along its
@@ -213,7 +246,7 @@ impl Writer<'_> {
                 self.twins[(first + h as u32 - 3 * self.first_triangle) as usize] = first + twin as u32;
             }
         }
-        if node.is_conditional || !self.conditions[1].is_empty() {
+        if node.is_conditional || !self.conditions[CLOSING].is_empty() {
             let closing = node.is_unjudged || bits != 0;
             let place = node.place.leaf(node.depth, (i, j), false);
             self.condition((place, node.is_conditional), usize::from(closing), first / 3);

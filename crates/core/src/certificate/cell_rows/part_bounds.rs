@@ -1,0 +1,285 @@
+//! Bounds of many parts of a regular piece at once, in single precision: twice as many parts to a register, and all that it takes away is
+//! added again.
+//!
+//! **What rounding may do.** Let u = 2⁻²⁴, η = 16u L/A ([`UNSURE`]) for a part whose longest edge has the square L and whose edges span the
+//! parallelogram A ≤ √(3/4) L, and w what the sums of the sizes of bends' coordinates are no greater than. Edges and limit normals come
+//! rounded once, bends are off by 10uw. Then
+//!
+//! * a × b is off by 8u|a||b| at most, so the unit normal by 8u|a||b|/A + 4u ≤ ¾η, products of bends with it by ¾ηw + 14uw ≤ 1.6ηw, and
+//!   the greatest height of the quadratic part, ½ Σ λᵢλⱼWᵢⱼ with Σ λᵢλⱼ ≤ 1/3, by 0.3ηw;
+//! * distances between the normal and limit normals are off by less than 2η;
+//! * A and the products of edges are off by 8u|a||b|: A by the part η of it, and the greatest product, at least L/4, by 3η;
+//! * products of bends with edges, or with what is at right angles to them, are off by 2ηw√L.
+//!
+//! **The quadratic's greatest height** is an eighth of the greatest bend W, or that of the point where both derivatives vanish, if it is
+//! inside. The point's barycentric coordinates are the three products of [`quadratic_height`] over their sum. Each of them is off by
+//! 12uW², the sum by 40uW²: where the sum is more than W²/256, coordinates are off by less than 2⁻¹⁰, and so is the height, relatively
+//! ([`NEARLY`]). Where it is less, the quadratic is nearly one of one direction. If there is a greatest height inside, then the ridge
+//! through the middle of the edge that bends most is concave and starts with the slope ¼(W₁ + W₂ − W), the other bends counted as W
+//! is: its height is W/8 and as much more as that comes to, and never more than W/6.
+//!
+//! [`quadratic_height`]: super::super::quartic_cell::quadratic_height
+
+use super::super::quartic_cell::{DIRECTIONS, NEARLY_ONE};
+use super::{Mark, RowExtent, RowTarget, WIDTH};
+use crate::vector::Extremes;
+use wide::f32x4;
+
+/// Parts that are measured together.
+pub(super) const LANES: usize = 4;
+
+/// By this times L/A a part is known less well than it is: 16 times 2⁻²⁴.
+const UNSURE: f32 = 1.0 / (1 << 20) as f32;
+
+/// What coordinates of the highest point are off by at most, and the part of its height.
+const NEARLY: f32 = 1.0 / (1 << 10) as f32;
+
+/// Sums of products of bends below this part of the greatest bend's square tell nothing of the highest point.
+const UNKNOWN: f32 = 1.0 / (1 << 8) as f32;
+
+/// The same for sums as such: products below vanish.
+const VANISHING: f32 = 1e-24;
+
+/// For what the last few operations do.
+const A_LITTLE_MORE: f32 = 1.0 + 1.0 / (1 << 18) as f32;
+
+/// The greatest squared chord of the angle between triangles that help each other, as in [`super::super::deviation`].
+const SHARPEST: f32 = 3.464;
+
+/// Rows of numbers, by axis.
+pub(super) type Slices<'a> = [&'a [f32]; 3];
+
+/// Parts in a row, in a unit in which their edges are about 1.
+pub(super) struct Parts<'a> {
+    /// The edges to the second and the third corner from the first.
+    pub(super) edges: [Slices<'a>; 2],
+    /// Whether they run the other way.
+    pub(super) is_turned: bool,
+    /// The limit normals at the corners.
+    pub(super) normals: [Slices<'a>; 3],
+    /// The second derivatives along the edges from the first corner to the second, on to the third, and back.
+    pub(super) bends: [Slices<'a>; 3],
+    /// What the sums of the sizes of their coordinates are no greater than.
+    pub(super) size: f32,
+}
+
+/// Bounds that hold for all parts of a level, in that unit.
+#[derive(Clone, Copy)]
+pub(super) struct Remainder {
+    pub(super) height: f32,
+    /// Of the distance of curves from their edges, and of the slope towards their ends.
+    pub(super) curve: f32,
+    pub(super) steep: f32,
+    /// Of first derivatives along edges.
+    pub(super) first: f32,
+}
+
+/// By part of a row, in that unit.
+pub(super) struct Found {
+    bound: [f32; WIDTH],
+    low: [f32; WIDTH],
+    tilt: [f32; WIDTH],
+    slope: [f32; WIDTH],
+    drift_slope: [f32; WIDTH],
+}
+
+impl Default for Found {
+    fn default() -> Self {
+        let [bound, low, tilt, slope, drift_slope] = [[0.0; WIDTH]; 5];
+        Self { bound, low, tilt, slope, drift_slope }
+    }
+}
+
+/// A number that is no less.
+pub(super) fn above(x: f64) -> f32 {
+    (x * (1.0 + 1e-6)) as f32
+}
+
+/// A positive number that is no greater.
+fn below(x: f64) -> f32 {
+    (x * (1.0 - 1e-6)) as f32
+}
+
+/// Bounds of the first `count` parts.
+#[inline(never)]
+pub(super) fn measure(
+    count: usize,
+    parts: &Parts<'_>,
+    rest: &Remainder,
+    target: &RowTarget,
+    found: &mut Found,
+) {
+    let fours = count.div_ceil(LANES);
+    let [e0, e1] = parts.edges.map(|row| by_fours(row, fours));
+    let [m0, m1, m2] = parts.normals.map(|row| by_fours(row, fours));
+    let [w0, w1, w2] = parts.bends.map(|row| by_fours(row, fours));
+    let Found { bound, low, tilt: tilts, slope: slopes, drift_slope: drift_slopes } = found;
+    let [bound, low, tilts, slopes, drift_slopes] =
+        [bound, low, tilts, slopes, drift_slopes].map(|row| &mut row.as_chunks_mut::<LANES>().0[..fours]);
+    let (allowed, share) = (below(target.slope), below(target.drift_share));
+    let neighbour = above(target.tilt);
+    let size = f32x4::splat(parts.size);
+    let facing: f32 = if parts.is_turned { -1.0 } else { 1.0 };
+    for i in 0..fours {
+        let at = |row: &Fours<'_>| row.map(|axis| f32x4::from(axis[i]));
+        let (a, b) = (at(&e0), at(&e1));
+        let c = minus(b, a);
+        let across = cross(a, b);
+        let area = dot(across, across).sqrt();
+        let normal = scaled(across, 1.0 / area);
+        let (la, lb, lc) = (dot(a, a), dot(b, b), dot(c, c));
+        let longest = larger([la, lb, lc]);
+        let length = longest.sqrt();
+        let unsure = UNSURE * longest / area;
+        let (wa, wc, wb) = (at(&w0), at(&w1), at(&w2));
+        let off = 2.0 * unsure * size * length;
+        // Heights of the quadratic part.
+        let (least, most) = heights([dot(wa, normal), dot(wc, normal), dot(wb, normal)]);
+        let height = most + 0.3 * unsure * size;
+        low[i] = (least - rest.height).to_array();
+        // Tilts.
+        let apart = [m0, m1, m2].map(|m| {
+            let d = minus(at(&m), normal);
+            dot(d, d)
+        });
+        let tilt = larger(apart).sqrt() + 2.0 * unsure;
+        let chord = tilt + neighbour;
+        // Angles.
+        let [first, second, third] = [dot(a, b), -dot(a, c), dot(b, c)];
+        let slope = area * (1.0 - 4.0 * unsure) / larger([first, second, third]);
+        // Beside the edges: the second derivatives outwards, times the edges' lengths.
+        let out = [-dot(wa, cross(a, normal)), -dot(wc, cross(c, normal)), dot(wb, cross(b, normal))];
+        let out = out.map(|out| facing * out);
+        let steep = rest.steep * length + off;
+        let less = steep + unsure * longest;
+        let ratio = |out: f32x4, bend: [f32x4; 3], edge: [f32x4; 3], square: f32x4| {
+            (0.5 * out.abs() + steep) / (square - 0.5 * dot(bend, edge).abs() - less)
+        };
+        let (ra, rc, rb) = (ratio(out[0], wa, a, la), ratio(out[1], wc, c, lc), ratio(out[2], wb, b, lb));
+        let drift_slope = larger([ra, rb, rc]) * A_LITTLE_MORE;
+        // Negative where there is no room at all.
+        let zero = f32x4::ZERO;
+        let is_roomy = ra.simd_ge(zero) & rb.simd_ge(zero) & rc.simd_ge(zero);
+        let reach = larger(out).fast_max(zero) + off;
+        let drift = 0.125 * reach / la.fast_min(lb).fast_min(lc).sqrt() + rest.curve;
+        // Within the angles at each edge.
+        let (first, second, third) = (first.abs(), second.abs(), third.abs());
+        let most = share * area * (1.0 - 8.0 * unsure);
+        let stays = (ra * larger([first, second, area])).simd_le(most)
+            & (rc * larger([second, third, area])).simd_le(most)
+            & (rb * larger([third, first, area])).simd_le(most);
+        // No two points in one place: see `quartic_cell`. Changes of barycentric coordinates times the area.
+        let (oa, ob) = (cross(a, normal), cross(b, normal));
+        let stretched = [wa, wb, wc].map(|w| {
+            let (x, y) = (dot(w, oa), dot(w, ob));
+            x * x + y * y - x * y
+        });
+        let most = larger(stretched).sqrt() + 2.0 * off;
+        let stretch = (0.5 * (la + lb + lc)).sqrt();
+        let is_apart = (most + DIRECTIONS as f32 * rest.first * stretch)
+            .simd_lt(NEARLY_ONE as f32 * area * (1.0 - 2.0 * unsure));
+        let is_near = (chord * chord).simd_le(f32x4::splat(SHARPEST));
+        let is_plain = is_roomy & stays & is_apart & drift_slope.simd_le(f32x4::splat(allowed)) & is_near;
+        let value = (height + rest.height) * (1.0 + 0.5 * chord * chord) + chord * drift;
+        let value = is_plain.bitselect(value * A_LITTLE_MORE, f32x4::splat(f32::INFINITY));
+        bound[i] = value.to_array();
+        tilts[i] = tilt.to_array();
+        slopes[i] = slope.to_array();
+        drift_slopes[i] = drift_slope.to_array();
+    }
+}
+
+/// What the greatest height of a quadratic that is 0 at the corners is about, and no greater than, by its second derivatives along the
+/// edges from the first corner to the second, on to the third, and back.
+#[inline(always)]
+fn heights([p, q, s]: [f32x4; 3]) -> (f32x4, f32x4) {
+    let most = larger([p, q, s].map(f32x4::abs));
+    let edges = 0.125 * most;
+    let (l2, l1, l0) = (p * (q + s - p), s * (p + q - s), q * (p + s - q));
+    let total = l0 + l1 + l2;
+    let share = 1.0 / total;
+    let inner = (0.5 * (p * share) * q * s).abs();
+    let is_known = total.abs().simd_gt((UNKNOWN * most * most).fast_max(f32x4::splat(VANISHING)));
+    let outside = f32x4::splat(-NEARLY);
+    let is_inside = [l0, l1, l2].map(|l| (l * share).simd_gt(outside));
+    let known = is_known & is_inside[0] & is_inside[1] & is_inside[2] & inner;
+    // The greatest bend of either sign, and all as it counts.
+    let bends_up = larger([p, q, s]).simd_ge(most);
+    let all = p + q + s;
+    let slope = 0.25 * (bends_up.bitselect(all, -all) - 2.0 * most);
+    let unknown = edges + slope.fast_max(f32x4::ZERO).fast_min(most * (1.0 / 24.0));
+    let above = is_known.bitselect(known * (1.0 + NEARLY), unknown);
+    (edges.fast_max(known), edges.fast_max(above) * A_LITTLE_MORE)
+}
+
+/// Rows of numbers, four at a time, by axis.
+type Fours<'a> = [&'a [[f32; LANES]]; 3];
+
+/// The first of them.
+fn by_fours([x, y, z]: Slices<'_>, count: usize) -> Fours<'_> {
+    [x, y, z].map(|axis| &axis.as_chunks().0[..count])
+}
+
+impl Found {
+    /// Marks parts, and keeps what those that pass come to, `scale` being what their unit makes of lengths. Gives the number of one with
+    /// a greater bound than any before.
+    pub(super) fn mark(
+        &self,
+        (count, scale): (usize, f64),
+        target: &RowTarget,
+        extent: &mut RowExtent,
+        marks: &mut [Mark],
+    ) -> Option<usize> {
+        let (most, mut worst) = (target.distance * scale, None);
+        let mut greatest = extent.bound * scale;
+        for (i, mark) in marks.iter_mut().enumerate().take(count) {
+            let bound = f64::from(self.bound[i]);
+            *mark = if bound <= most {
+                extent.tilt = extent.tilt.larger(f64::from(self.tilt[i]));
+                extent.slope = extent.slope.smaller(f64::from(self.slope[i]));
+                extent.drift_slope = extent.drift_slope.larger(f64::from(self.drift_slope[i]));
+                if bound > greatest {
+                    (greatest, worst) = (bound, Some(i));
+                }
+                Mark::Passes
+            } else if f64::from(self.low[i]) > most {
+                Mark::Fails
+            } else {
+                Mark::Open
+            };
+        }
+        if worst.is_some() {
+            extent.bound = greatest / scale;
+        }
+        worst
+    }
+}
+
+#[inline(always)]
+fn minus(a: [f32x4; 3], b: [f32x4; 3]) -> [f32x4; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn dot(a: [f32x4; 3], b: [f32x4; 3]) -> f32x4 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross(a: [f32x4; 3], b: [f32x4; 3]) -> [f32x4; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+fn scaled(a: [f32x4; 3], by: f32x4) -> [f32x4; 3] {
+    a.map(|a| a * by)
+}
+
+/// The greatest of three.
+#[inline(always)]
+fn larger([a, b, c]: [f32x4; 3]) -> f32x4 {
+    a.fast_max(b).fast_max(c)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,152 @@
+//! Single precision against the same quantities of each part by itself in double precision, by other code.
+
+use super::*;
+use crate::certificate::TriangleFrame;
+use crate::certificate::quartic_cell::quadratic_height;
+use crate::vector::DVec3;
+
+struct Numbers(u64);
+
+impl Numbers {
+    /// Between −1 and 1.
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next())
+    }
+}
+
+/// A part: its corners, the limit normals there, and the second derivatives along its edges.
+struct Part {
+    corners: [DVec3; 3],
+    normals: [DVec3; 3],
+    bends: [DVec3; 3],
+}
+
+impl Part {
+    /// Any shape but the thinnest; bends of a quadratic that may be nearly of one direction.
+    fn random(numbers: &mut Numbers, case: usize, size: f64) -> Self {
+        let thin = 10f64.powi(-(case as i32 % 5));
+        let first = numbers.vector();
+        let along = numbers.vector().normalize();
+        let across = along.cross(numbers.vector()).normalize();
+        let second = first + along;
+        let third = first + numbers.next() * along + thin * (0.6 + 0.5 * numbers.next()) * across;
+        let corners = if case % 2 == 0 { [first, second, third] } else { [second, third, first] };
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
+        let edges = [0, 1, 2].map(|edge| corners[(edge + 1) % 3] - corners[edge]);
+        // By a quadratic form within the plane, one of whose directions may bend next to nothing.
+        let size = size * thin;
+        let less = [1.0, -0.5, 1e-3, 1e-5, 1e-7, 1e-9, 0.0][case % 7] * numbers.next();
+        let turn = (3.0 * numbers.next()).sin_cos();
+        let directions = [along * turn.0 + across * turn.1, across * turn.0 - along * turn.1];
+        let aside = 3.0 * numbers.vector().reject_from_normalized(normal);
+        let bends = edges.map(|edge| {
+            let [x, y] = directions.map(|direction| direction.dot(edge));
+            size * ((x * x + less * y * y) * normal + x * y * aside)
+        });
+        let tilt = 0.05 * numbers.next();
+        let normals = [0; 3].map(|_| (normal + tilt * numbers.vector()).normalize());
+        Self { corners, normals, bends }
+    }
+}
+
+/// The rows of some parts.
+fn rows(parts: &[Part], is_turned: bool) -> [[[f32; WIDTH]; 3]; 8] {
+    let mut rows = [[[0.0; WIDTH]; 3]; 8];
+    for (i, Part { corners: [a, b, c], normals, bends }) in parts.iter().enumerate() {
+        let edges = if is_turned { [a - b, a - c] } else { [b - a, c - a] };
+        let all = edges.into_iter().chain(*normals).chain(*bends);
+        for (row, vector) in rows.iter_mut().zip(all) {
+            (0..3).for_each(|axis| row[axis][i] = vector[axis] as f32);
+        }
+    }
+    rows
+}
+
+#[test]
+fn single_precision_is_on_the_safe_side() {
+    let mut numbers = Numbers(3);
+    let (mut compared, mut round_ones, mut tight) = (0, 0, 0);
+    for round in 0..3000 {
+        // Parts of a row are much alike.
+        let size = 10f64.powf(-3.0 + 2.0 * numbers.next());
+        let parts: Vec<Part> = (0..8).map(|i| Part::random(&mut numbers, 35 * i + round, size)).collect();
+        let rows = rows(&parts, round % 2 == 1);
+        let slices = |row: usize| rows[row].each_ref().map(|axis| &axis[..]);
+        let input = Parts {
+            edges: [slices(0), slices(1)],
+            is_turned: round % 2 == 1,
+            normals: [slices(2), slices(3), slices(4)],
+            bends: [slices(5), slices(6), slices(7)],
+            size: above(
+                parts.iter().flat_map(|part| part.bends).map(|w| w.abs().element_sum()).fold(0.0, f64::max),
+            ),
+        };
+        let rest = Remainder { height: 1e-6, curve: 2e-7, steep: 1e-6, first: 3e-6 };
+        let target = RowTarget { distance: 1.0, tilt: 0.1, slope: f64::INFINITY, drift_share: 0.41 };
+        let mut found = Found::default();
+        measure(8, &input, &rest, &target, &mut found);
+        for (i, Part { corners, normals, bends }) in parts.iter().enumerate() {
+            let frame = TriangleFrame::new(*corners);
+            let height = quadratic_height(bends.map(|bend| bend.dot(frame.normal())));
+            let tilt = normals.iter().map(|n| n.distance(frame.normal())).fold(0.0, f64::max);
+            let (mut drift, mut drift_slope, mut reach) = (0.0f64, 0.0f64, 0.0f64);
+            for edge in 0..3 {
+                let out = -bends[edge].dot(frame.outward(edge));
+                let along = bends[edge].dot(frame.along(edge)).abs();
+                let steep = f64::from(rest.steep);
+                let room = frame.length(edge) - 0.5 * along - steep;
+                drift = drift.max(0.125 * out);
+                reach = reach.max(0.125 * out * frame.length(edge));
+                let slope = if room > 0.0 { (0.5 * out.abs() + steep) / room } else { f64::INFINITY };
+                drift_slope = drift_slope.max(slope);
+            }
+            let chord = tilt + target.tilt;
+            let value = |drift: f64| {
+                (height + f64::from(rest.height)) * (1.0 + 0.5 * chord * chord)
+                    + chord * (drift + f64::from(rest.curve))
+            };
+            let shortest = (0..3).map(|edge| frame.length(edge)).fold(f64::INFINITY, f64::min);
+            let bound = f64::from(found.bound[i]);
+            if bound == f64::INFINITY {
+                continue;
+            }
+            compared += 1;
+            let least = value(drift);
+            assert!(bound >= least, "round {round}, {i}: {bound:e}, not {least:e}");
+            assert!(f64::from(found.tilt[i]) >= tilt && f64::from(found.slope[i]) <= frame.least_slope());
+            assert!(f64::from(found.drift_slope[i]) >= drift_slope, "round {round}, {i}");
+            // And not far off.
+            if round % 5 == 0 {
+                round_ones += 1;
+                tight += usize::from(
+                    bound <= 1.05 * value(reach / shortest)
+                        && f64::from(found.low[i]) >= 0.99 * height - 1.1e-6,
+                );
+            }
+        }
+    }
+    assert!(compared > 10_000 && tight > round_ones * 9 / 10, "{compared}, {tight} of {round_ones}");
+}
+
+/// The greatest height of a quadratic, by the places where it can be and none other, is never above what is told.
+#[test]
+fn heights_of_nearly_cylindrical_quadratics_are_no_less_than_they_are() {
+    let mut numbers = Numbers(7);
+    for case in 0..200_000 {
+        let small = 10f64.powf(-(case as f64 % 9.0)) * numbers.next();
+        let (x, y) = (numbers.next(), numbers.next());
+        let form = |[s, t]: [f64; 2]| (x * s + y * t).powi(2) + small * (y * s - x * t).powi(2);
+        let sign = if case % 2 == 0 { 1.0 } else { -1.0 };
+        let bends = [[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]].map(|edge| (sign * form(edge)) as f32);
+        let expected = quadratic_height(bends.map(f64::from));
+        let (low, high) = heights(bends.map(f32x4::splat));
+        let [low, high] = [low, high].map(|height| f64::from(height.to_array()[0]));
+        assert!(high >= expected, "{bends:?}: {high:e}, not {expected:e}");
+        assert!(low <= expected * 1.001 && high <= expected * 1.02, "{bends:?} {low} {high} {expected}");
+    }
+}
