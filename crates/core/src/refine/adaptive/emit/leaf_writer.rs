@@ -61,8 +61,8 @@ pub(super) struct Writer<'a> {
     pub(super) face: u32,
     /// Those of the face that have not come yet.
     pub(super) diagonals: &'a [bool],
-    /// Conditions of the face that have not come yet: those of its division, some of whose leaves were divided since, and
-    /// those of its closing, whose leaves all come.
+    /// Conditions of the face that have not come yet, in the order of the walk: those of its division, some of whose leaves were divided
+    /// since, and those of its closing, whose leaves all come.
     pub(super) conditions: [&'a [Condition]; 2],
     pub(super) found: Vec<(Condition, u32, u32)>,
     pub(super) next_triangle: u32,
@@ -275,27 +275,32 @@ impl Writer<'_> {
     /// Keeps the condition of a leaf, if it has one in the list; leaves that were marked for theirs and closings that are
     /// passed over must not get lost, so they count as beyond every bound.
     fn condition(&mut self, (place, is_marked): (Place, bool), list: usize, first: u32) {
-        let conditions = self.conditions[list];
-        if let Some(at) = conditions.iter().position(|condition| condition.place == place) {
-            self.found.push((conditions[at], first, self.next_triangle));
-            self.conditions[list] = &conditions[at + 1..];
-            if list == CLOSING {
-                self.lose(&conditions[..at]);
+        let known = &mut self.conditions[list];
+        if list == DIVISION {
+            // Leaves that were divided since.
+            while let [passed, rest @ ..] = *known
+                && passed.place.precedes(place)
+            {
+                *known = rest;
             }
-        } else if list == DIVISION && is_marked {
-            self.found.push((Condition::unknown(place), first, self.next_triangle));
+        }
+        match *known {
+            [condition, rest @ ..] if condition.place == place => {
+                *known = rest;
+                self.found.push((*condition, first, self.next_triangle));
+            }
+            _ if list == DIVISION && is_marked => {
+                self.found.push((Condition::unknown(place), first, self.next_triangle));
+            }
+            _ => {}
         }
     }
 
     /// Ends a face.
     pub(super) fn end(&mut self) {
-        let conditions = core::mem::take(&mut self.conditions[CLOSING]);
-        self.lose(conditions);
-    }
-
-    fn lose(&mut self, conditions: &[Condition]) {
+        let lost = core::mem::take(&mut self.conditions[CLOSING]);
         let at = self.next_triangle;
-        self.found.extend(conditions.iter().map(|condition| (Condition::unknown(condition.place), at, at)));
+        self.found.extend(lost.iter().map(|condition| (Condition::unknown(condition.place), at, at)));
     }
 
     /// Adds a triangle; gives its first half-edge.
