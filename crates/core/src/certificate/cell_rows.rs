@@ -25,7 +25,7 @@ pub(crate) const MOST_DIVISIONS: u32 = 6;
 const WIDTH: usize = (1 << MOST_DIVISIONS) + 16;
 
 /// Bounds that do not leave more than this part of the target to the remainder are worth while.
-const REMAINDER: f64 = 0.06;
+const REMAINDER: f64 = 0.5;
 
 /// Numbers by axis and place.
 type Row = [[f64; WIDTH]; 3];
