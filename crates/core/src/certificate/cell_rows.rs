@@ -3,7 +3,8 @@
 //! The bound is that of [`super::quartic_cell`], written for rows of numbers: the height of the quadratic part by each
 //! part's own plane, what is left by one bound for all parts, which shrinks with the cube of their size; tilts against the limit
 //! normals at the corners; drifts and slopes by the second derivatives in the middles of the edges. A part passes, or
-//! fails for sure, or has to be looked at by itself.
+//! fails for sure, or has to be looked at by itself. Places and normals are computed in double precision, all that follows from them in
+//! single ([`part_bounds`]).
 
 mod few_parts;
 mod part_bounds;
@@ -169,13 +170,13 @@ impl<'a> RowBlock<'a> {
         let [a, b, c, d, e] = *jet.fourth();
         let pairs = [a, e, a - 4.0 * b + 6.0 * c - 4.0 * d + e, c, a - 2.0 * b + c, e - 2.0 * d + c];
         let fourth = pairs.iter().map(|pair| pair.length_squared()).fold(0.0, f64::max);
-        let third_of = size / 3.0;
+        let middle = at.map(|from| from + size / 3.0);
         Self {
             piece,
             jet,
             at,
             size,
-            tangents: piece.tangents(at[0] + third_of, at[1] + third_of),
+            tangents: piece.tangents(middle[0], middle[1]),
             height: [CUBIC * third.sqrt() + bubble.sqrt() / 27.0, QUARTIC * fourth.sqrt()],
         }
     }

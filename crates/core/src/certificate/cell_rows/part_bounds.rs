@@ -122,70 +122,127 @@ pub(super) fn measure(
     let facing: f32 = if parts.is_turned { -1.0 } else { 1.0 };
     for i in 0..fours {
         let at = |row: &Fours<'_>| row.map(|axis| f32x4::from(axis[i]));
-        let (a, b) = (at(&e0), at(&e1));
+        let triangle = Triangle::of(at(&e0), at(&e1), facing);
+        let bends = [at(&w0), at(&w1), at(&w2)];
+        let off = 2.0 * triangle.unsure * size * triangle.length;
+        let (least, most) = heights(bends.map(|bend| dot(bend, triangle.normal)));
+        let height = most + 0.3 * triangle.unsure * size + rest.height;
+        let tilt = triangle.tilt([at(&m0), at(&m1), at(&m2)]);
+        let chord = tilt + neighbour;
+        let beside = triangle.beside(&bends, off, rest, share);
+        let is_plain = beside.is_plain
+            & triangle.is_unfolded(&bends, off, rest)
+            & beside.slope.simd_le(f32x4::splat(allowed))
+            & (chord * chord).simd_le(f32x4::splat(SHARPEST));
+        let value = (height * (1.0 + 0.5 * chord * chord) + chord * beside.drift) * A_LITTLE_MORE;
+        bound[i] = is_plain.bitselect(value, f32x4::splat(f32::INFINITY)).to_array();
+        low[i] = (least - rest.height).to_array();
+        tilts[i] = tilt.to_array();
+        slopes[i] = triangle.slope().to_array();
+        drift_slopes[i] = beside.slope.to_array();
+    }
+}
+
+/// Four triangles.
+struct Triangle {
+    /// The edges from the first corner, and from the second to the third.
+    a: [f32x4; 3],
+    b: [f32x4; 3],
+    c: [f32x4; 3],
+    /// 1, or −1 where they run the other way.
+    facing: f32,
+    /// Of the parallelogram.
+    area: f32x4,
+    normal: [f32x4; 3],
+    /// The squares of the edges' lengths, in that order.
+    squares: [f32x4; 3],
+    /// The longest edge's.
+    longest: f32x4,
+    length: f32x4,
+    /// The products of the edges that meet in each corner.
+    products: [f32x4; 3],
+    /// η.
+    unsure: f32x4,
+}
+
+/// What parts of the surface do beside the edges of their triangles.
+struct Beside {
+    /// How far they reach over them.
+    drift: f32x4,
+    /// The greatest slope of that, or of what there is inside.
+    slope: f32x4,
+    /// Whether each curve stays within the angles at its edge.
+    is_plain: f32x4,
+}
+
+impl Triangle {
+    #[inline(always)]
+    fn of(a: [f32x4; 3], b: [f32x4; 3], facing: f32) -> Self {
         let c = minus(b, a);
         let across = cross(a, b);
         let area = dot(across, across).sqrt();
         let normal = scaled(across, 1.0 / area);
-        let (la, lb, lc) = (dot(a, a), dot(b, b), dot(c, c));
-        let longest = larger([la, lb, lc]);
-        let length = longest.sqrt();
-        let unsure = UNSURE * longest / area;
-        let (wa, wc, wb) = (at(&w0), at(&w1), at(&w2));
-        let off = 2.0 * unsure * size * length;
-        // Heights of the quadratic part.
-        let (least, most) = heights([dot(wa, normal), dot(wc, normal), dot(wb, normal)]);
-        let height = most + 0.3 * unsure * size;
-        low[i] = (least - rest.height).to_array();
-        // Tilts.
-        let apart = [m0, m1, m2].map(|m| {
-            let d = minus(at(&m), normal);
+        let squares = [dot(a, a), dot(b, b), dot(c, c)];
+        let longest = larger(squares);
+        let (length, unsure) = (longest.sqrt(), UNSURE * longest / area);
+        let products = [dot(a, b), -dot(a, c), dot(b, c)];
+        Self { a, b, c, facing, area, normal, squares, longest, length, products, unsure }
+    }
+
+    /// The chord between the triangle's normal and those at its corners.
+    #[inline(always)]
+    fn tilt(&self, normals: [[f32x4; 3]; 3]) -> f32x4 {
+        let apart = normals.map(|normal| {
+            let d = minus(normal, self.normal);
             dot(d, d)
         });
-        let tilt = larger(apart).sqrt() + 2.0 * unsure;
-        let chord = tilt + neighbour;
-        // Angles.
-        let [first, second, third] = [dot(a, b), -dot(a, c), dot(b, c)];
-        let slope = area * (1.0 - 4.0 * unsure) / larger([first, second, third]);
-        // Beside the edges: the second derivatives outwards, times the edges' lengths.
-        let out = [-dot(wa, cross(a, normal)), -dot(wc, cross(c, normal)), dot(wb, cross(b, normal))];
-        let out = out.map(|out| facing * out);
-        let steep = rest.steep * length + off;
-        let less = steep + unsure * longest;
-        let ratio = |out: f32x4, bend: [f32x4; 3], edge: [f32x4; 3], square: f32x4| {
-            (0.5 * out.abs() + steep) / (square - 0.5 * dot(bend, edge).abs() - less)
+        larger(apart).sqrt() + 2.0 * self.unsure
+    }
+
+    /// The tangent of its least angle.
+    #[inline(always)]
+    fn slope(&self) -> f32x4 {
+        self.area * (1.0 - 4.0 * self.unsure) / larger(self.products)
+    }
+
+    /// By the second derivatives outwards, times the edges' lengths.
+    #[inline(always)]
+    fn beside(&self, [wa, wc, wb]: &[[f32x4; 3]; 3], off: f32x4, rest: &Remainder, share: f32) -> Beside {
+        let Self { a, b, c, normal, area, squares: [la, lb, lc], .. } = *self;
+        let out = [-dot(*wa, cross(a, normal)), dot(*wb, cross(b, normal)), -dot(*wc, cross(c, normal))];
+        let out = out.map(|out| self.facing * out);
+        let steep = rest.steep * self.length + off;
+        let less = steep + self.unsure * self.longest;
+        let ratio = |out: f32x4, bend: &[f32x4; 3], edge: [f32x4; 3], square: f32x4| {
+            (0.5 * out.abs() + steep) / (square - 0.5 * dot(*bend, edge).abs() - less)
         };
-        let (ra, rc, rb) = (ratio(out[0], wa, a, la), ratio(out[1], wc, c, lc), ratio(out[2], wb, b, lb));
-        let drift_slope = larger([ra, rb, rc]) * A_LITTLE_MORE;
+        let (ra, rb, rc) = (ratio(out[0], wa, a, la), ratio(out[1], wb, b, lb), ratio(out[2], wc, c, lc));
         // Negative where there is no room at all.
         let zero = f32x4::ZERO;
         let is_roomy = ra.simd_ge(zero) & rb.simd_ge(zero) & rc.simd_ge(zero);
         let reach = larger(out).fast_max(zero) + off;
         let drift = 0.125 * reach / la.fast_min(lb).fast_min(lc).sqrt() + rest.curve;
-        // Within the angles at each edge.
-        let (first, second, third) = (first.abs(), second.abs(), third.abs());
-        let most = share * area * (1.0 - 8.0 * unsure);
+        let [first, second, third] = self.products.map(f32x4::abs);
+        let most = share * area * (1.0 - 8.0 * self.unsure);
         let stays = (ra * larger([first, second, area])).simd_le(most)
             & (rc * larger([second, third, area])).simd_le(most)
             & (rb * larger([third, first, area])).simd_le(most);
-        // No two points in one place: see `quartic_cell`. Changes of barycentric coordinates times the area.
-        let (oa, ob) = (cross(a, normal), cross(b, normal));
-        let stretched = [wa, wb, wc].map(|w| {
-            let (x, y) = (dot(w, oa), dot(w, ob));
+        Beside { drift, slope: larger([ra, rb, rc]) * A_LITTLE_MORE, is_plain: is_roomy & stays }
+    }
+
+    /// Whether no two points come to one place (see `quartic_cell`), by changes of barycentric coordinates times the area.
+    #[inline(always)]
+    fn is_unfolded(&self, bends: &[[f32x4; 3]; 3], off: f32x4, rest: &Remainder) -> f32x4 {
+        let across = [self.a, self.b].map(|edge| cross(edge, self.normal));
+        let stretched = bends.map(|bend| {
+            let [x, y] = across.map(|across| dot(bend, across));
             x * x + y * y - x * y
         });
         let most = larger(stretched).sqrt() + 2.0 * off;
+        let [la, lb, lc] = self.squares;
         let stretch = (0.5 * (la + lb + lc)).sqrt();
-        let is_apart = (most + DIRECTIONS as f32 * rest.first * stretch)
-            .simd_lt(NEARLY_ONE as f32 * area * (1.0 - 2.0 * unsure));
-        let is_near = (chord * chord).simd_le(f32x4::splat(SHARPEST));
-        let is_plain = is_roomy & stays & is_apart & drift_slope.simd_le(f32x4::splat(allowed)) & is_near;
-        let value = (height + rest.height) * (1.0 + 0.5 * chord * chord) + chord * drift;
-        let value = is_plain.bitselect(value * A_LITTLE_MORE, f32x4::splat(f32::INFINITY));
-        bound[i] = value.to_array();
-        tilts[i] = tilt.to_array();
-        slopes[i] = slope.to_array();
-        drift_slopes[i] = drift_slope.to_array();
+        let room = NEARLY_ONE as f32 * self.area * (1.0 - 2.0 * self.unsure);
+        (most + DIRECTIONS as f32 * rest.first * stretch).simd_lt(room)
     }
 }
 

@@ -35,7 +35,7 @@ impl Part {
         let across = along.cross(numbers.vector()).normalize();
         let second = first + along;
         let third = first + numbers.next() * along + thin * (0.6 + 0.5 * numbers.next()) * across;
-        let corners = if case % 2 == 0 { [first, second, third] } else { [second, third, first] };
+        let corners = if case.is_multiple_of(2) { [first, second, third] } else { [second, third, first] };
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
         let edges = [0, 1, 2].map(|edge| corners[(edge + 1) % 3] - corners[edge]);
         // By a quadratic form within the plane, one of whose directions may bend next to nothing.
@@ -95,9 +95,9 @@ fn single_precision_is_on_the_safe_side() {
             let height = quadratic_height(bends.map(|bend| bend.dot(frame.normal())));
             let tilt = normals.iter().map(|n| n.distance(frame.normal())).fold(0.0, f64::max);
             let (mut drift, mut drift_slope, mut reach) = (0.0f64, 0.0f64, 0.0f64);
-            for edge in 0..3 {
-                let out = -bends[edge].dot(frame.outward(edge));
-                let along = bends[edge].dot(frame.along(edge)).abs();
+            for (edge, bend) in bends.iter().enumerate() {
+                let out = -bend.dot(frame.outward(edge));
+                let along = bend.dot(frame.along(edge)).abs();
                 let steep = f64::from(rest.steep);
                 let room = frame.length(edge) - 0.5 * along - steep;
                 drift = drift.max(0.125 * out);
