@@ -464,9 +464,11 @@ impl Engine<'_> {
         let corners = self.control.mesh.vertex_count();
         let net = Net { positions, triangles, twins, parents, starts, sharp: &sharp, corners };
         let saved = flat.saved(&net, self.watch)?;
-        // Whoever emits it next need not write it again.
-        plan.emission = Some(emission);
-        plan.is_touched.fill(false);
+        // Whoever emits it next need not write it again, but for those who look at what was changed since the last time.
+        if !self.is_settled_later() {
+            plan.emission = Some(emission);
+            plan.is_touched.fill(false);
+        }
         Ok(count - saved.min(count))
     }
 

@@ -108,6 +108,19 @@ impl Trees {
         }
     }
 
+    /// Whether there is a node at `place`.
+    pub(super) fn has(&self, place: Place) -> bool {
+        let mut at = place.face as usize;
+        for level in 0..place.level {
+            let word = self.words[at];
+            if word & LEAF != 0 {
+                return even_depth(word).is_some_and(|depth| depth >= place.level - level);
+            }
+            at = word as usize + place.digit(level);
+        }
+        true
+    }
+
     /// Splits whatever must be for the node at `place` to exist; `fresh` is told the places that were split. `false` if there
     /// would be too many nodes.
     pub(super) fn ensure(&mut self, place: Place, mut fresh: impl FnMut(Place)) -> bool {

@@ -21,6 +21,13 @@ const BLOCK: usize = 1024;
 /// Rounds of dividing leaves whose conditions do not hold; what still fails after them has to pass without conditions.
 const MOST_ROUNDS: usize = 2;
 
+/// Rounds after which what lies around leaves whose conditions do not hold is divided, too, one level more of it each round: what one
+/// division gives fails in its turn, and a front of such triangles creeps on by one a round.
+const PATIENT_ROUNDS: usize = 4;
+
+/// How many levels more at most.
+const MOST_UP: usize = 3;
+
 impl Engine<'_> {
     /// Divides where conditions do not hold; `false` if there are too many triangles.
     pub(super) fn settle(&self, plan: &mut Plan, most: usize) -> Result<bool, RefineError> {
@@ -56,7 +63,9 @@ impl Engine<'_> {
                 if round > MOST_ROUNDS {
                     plan.decision.trees.make_strict(place);
                 }
-                self.split(&mut plan.decision.trees, place, |place| self.mark(place.face, &mut is_dirty))?;
+                let up = (round.saturating_sub(PATIENT_ROUNDS)).min(MOST_UP);
+                let around = (0..up).fold(place, |around, _| around.parent().unwrap_or(around));
+                self.split_around(plan, (around, place.level), &mut is_dirty)?;
             }
             if !is_split {
                 return Ok(true);
@@ -65,6 +74,22 @@ impl Engine<'_> {
                 return Ok(false);
             }
         }
+    }
+
+    /// Splits what there is of a level below a node.
+    fn split_around(
+        &self,
+        plan: &mut Plan,
+        (around, level): (Place, u32),
+        is_dirty: &mut [bool],
+    ) -> Result<(), RefineError> {
+        if !plan.decision.trees.has(around) {
+            return Ok(());
+        }
+        if around.level == level {
+            return self.split(&mut plan.decision.trees, around, |place| self.mark(place.face, is_dirty));
+        }
+        (0..4).try_for_each(|child| self.split_around(plan, (around.child(child), level), is_dirty))
     }
 
     /// Settles the faces whose conditions hold whatever is beside, by what triangles there came to after all.
