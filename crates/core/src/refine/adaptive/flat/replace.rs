@@ -22,7 +22,8 @@ impl Merged<'_> {
         self.coverings.get(region as usize)?.as_ref().map(|covering| (region, covering))
     }
 
-    /// The mesh with the coverings that there are.
+    /// The mesh with the coverings that there are. Arrays by triangle are changed where they stand: fresh ones as large take longer than all
+    /// that is done here.
     pub(super) fn replaced(
         &self,
         mut whole: Assembled,
@@ -31,43 +32,41 @@ impl Merged<'_> {
         watch: &SharedWatch<'_>,
     ) -> Result<Assembled, Cancelled> {
         self.unfold_normals(&mut whole);
-        let Exchanged { mut triangles, parents, regions, first_new, fresh } =
-            self.exchanged(&whole, starts, watch)?;
-        let new: HashMap<[u32; 2], u32> = fresh.iter().copied().collect();
-        let ends = |h: u32| [0, 1].map(|i| whole.triangles[h as usize / 3][(h as usize + i) % 3]);
-        // What was inside a region is nowhere any more.
-        let moved = |h: u32| match first_new[h as usize / 3] {
-            NONE => new.get(&ends(h)).copied().unwrap_or(NONE),
-            first => 3 * first + h % 3,
-        };
-        let mut twins = vec![NONE; 3 * triangles.len()];
-        watch.each((0u32..).zip(whole.twins.as_chunks::<3>().0), |(triangle, beyond)| {
-            for (h, &twin) in (3 * triangle..).zip(beyond) {
-                let now = moved(h);
-                if now != NONE && twin != NONE {
-                    twins[now as usize] = moved(twin);
-                }
+        let exchange = self.exchange(&whole, starts, watch)?;
+        let new: HashMap<[u32; 2], u32> = exchange.half_edges().collect();
+        let mut twins = core::mem::take(&mut whole.twins);
+        let mut junctions = core::mem::take(&mut whole.junctions);
+        let numbers = Numbers { exchange: &exchange, whole: &whole, starts, new: &new };
+        let rims = self.rims(&numbers, &twins, watch)?;
+        let sides = self.sides(&numbers, watch)?;
+        let renamed = self.renamed(&whole, corners, watch)?;
+        let name = |vertex: u32| renamed[vertex as usize];
+        watch.each(&mut twins, |twin| {
+            if *twin != NONE {
+                *twin = numbers.of(*twin);
             }
         })?;
-        watch.each(fresh, |([from, to], h)| {
+        let borders = core::mem::take(&mut junctions.edges);
+        borders.iter().for_each(|group| junctions.edges.push(group.iter().map(|&h| numbers.of(h))));
+        junctions.vertices.rename(name);
+        let Assembled { mut triangles, mut parents, mut tags, positions, normals, origins, .. } = whole;
+        let fresh = &exchange.fresh;
+        exchange.carry_out(&mut twins, 3, fresh.iter().flat_map(|_| [NONE; 3]));
+        exchange.carry_out(&mut triangles, 1, fresh.iter().map(|fresh| fresh.triangle));
+        exchange.carry_out(&mut parents, 1, fresh.iter().map(|fresh| fresh.face));
+        watch.each(rims, |(h, beyond)| twins[h as usize] = beyond)?;
+        watch.each(exchange.half_edges(), |([from, to], h)| {
             if let Some(&twin) = new.get(&[to, from]) {
                 twins[h as usize] = twin;
             }
         })?;
-        let sides = self.sides(&whole, (&triangles, &regions), &first_new, watch)?;
-        let renamed = self.renamed(&whole, corners, watch)?;
-        let name = |vertex: u32| renamed[vertex as usize];
         watch.each(&mut triangles, |triangle| *triangle = triangle.map(name))?;
-        let (mut tags, mut junctions) = (whole.tags, whole.junctions);
         tags.creases.iter_mut().for_each(|tag| tag.vertices = tag.vertices.map(name));
         tags.corners.iter_mut().for_each(|tag| tag.vertex = name(tag.vertex));
-        junctions.vertices.rename(name);
-        let borders = core::mem::take(&mut junctions.edges);
-        borders.iter().for_each(|group| junctions.edges.push(group.iter().map(|&h| moved(h))));
         Ok(Assembled {
-            positions: kept(whole.positions, &renamed),
-            normals: kept(whole.normals, &renamed),
-            origins: kept(whole.origins, &renamed),
+            positions: kept(positions, &renamed),
+            normals: kept(normals, &renamed),
+            origins: kept(origins, &renamed),
             triangles,
             twins,
             parents,
@@ -78,12 +77,12 @@ impl Merged<'_> {
     }
 
     /// The triangles with those that come in the place of others, by control face and region, in that order.
-    fn exchanged(
+    fn exchange(
         &self,
         whole: &Assembled,
         starts: &[u32],
         watch: &SharedWatch<'_>,
-    ) -> Result<Exchanged, Cancelled> {
+    ) -> Result<Exchange, Cancelled> {
         let mut others: Vec<(u32, u32, [u32; 3])> = Vec::new();
         let mut is_changed = vec![false; starts.len() - 1];
         watch.each((0u32..).zip(self.list.iter().zip(self.coverings)), |(number, (region, covering))| {
@@ -95,28 +94,43 @@ impl Merged<'_> {
         others.sort_by_key(|&(face, region, _)| (face, region));
         others.iter().for_each(|&(face, ..)| is_changed[face as usize] = true);
         let mut others = others.into_iter().peekable();
-        let most = whole.triangles.len();
-        let mut found = Exchanged {
-            triangles: Vec::with_capacity(most),
-            parents: Vec::with_capacity(most),
-            regions: Vec::with_capacity(most),
-            first_new: vec![NONE; most],
-            fresh: Vec::new(),
-        };
+        let mut found = Exchange::default();
         watch.each((0u32..).zip(is_changed), |(face, is_changed)| {
             let before = starts[face as usize]..starts[face as usize + 1];
+            found.starts.push(if is_changed { NONE } else { found.count });
             if !is_changed {
-                found.keep(whole, before);
+                found.keep(before);
                 return;
             }
             for triangle in before.filter(|&triangle| self.covering(triangle).is_none()) {
-                found.keep(whole, triangle..triangle + 1);
+                found.kept.insert(triangle, found.count);
+                found.keep(triangle..triangle + 1);
             }
             while let Some((_, region, triangle)) = others.next_if(|&(parent, ..)| parent == face) {
-                found.add(triangle, face, region);
+                found.add(Fresh { number: found.count, triangle, face, region });
             }
         })?;
         Ok(found)
+    }
+
+    /// What is beyond the new half-edges along rims, where somebody is.
+    fn rims(
+        &self,
+        numbers: &Numbers<'_>,
+        twins: &[u32],
+        watch: &SharedWatch<'_>,
+    ) -> Result<Vec<(u32, u32)>, Cancelled> {
+        let mut rims = Vec::new();
+        let covered = self.list.iter().zip(self.coverings).filter(|(_, covering)| covering.is_some());
+        watch.each(covered, |(region, _)| {
+            for h in region.triangles.iter().flat_map(|&triangle| 3 * triangle..3 * triangle + 3) {
+                let (now, twin) = (numbers.of(h), twins[h as usize]);
+                if now != NONE && twin != NONE {
+                    rims.push((now, numbers.of(twin)));
+                }
+            }
+        })?;
+        Ok(rims)
     }
 
     /// The numbers of the vertices once those that only triangles have that give way are gone; [`NONE`] for these.
@@ -175,35 +189,31 @@ impl Merged<'_> {
     /// The normals of corners at sharp edges: a region has one for each of its vertices that is on one.
     fn sides(
         &self,
-        whole: &Assembled,
-        (triangles, regions): (&[[u32; 3]], &[u32]),
-        first_new: &[u32],
+        numbers: &Numbers<'_>,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<(u32, [f64; 3])>, Cancelled> {
+        let Numbers { whole, exchange, .. } = numbers;
         let was_folded = |region: u32| {
             self.coverings[region as usize].as_ref().is_some_and(|covering| covering.was_folded)
         };
         let (mut sides, mut at_rims) = (Vec::with_capacity(whole.sides.len()), HashMap::new());
-        watch.each(&whole.sides, |&(h, normal)| match first_new[h as usize / 3] {
-            NONE => {
+        watch.each(&whole.sides, |&(h, normal)| match numbers.of_triangle(h / 3) {
+            None => {
                 let vertex = whole.triangles[h as usize / 3][h as usize % 3];
                 at_rims.insert((self.of_triangle[h as usize / 3], vertex), normal);
             }
-            first => sides.push((3 * first + h % 3, normal)),
+            Some(now) => sides.push((3 * now + h % 3, normal)),
         })?;
         if at_rims.is_empty() {
             return Ok(sides);
         }
-        watch.each((0u32..).zip(triangles.iter().zip(regions)), |(triangle, (vertices, &region))| {
-            if region == NONE {
-                return;
-            }
-            for (corner, &vertex) in (0u32..).zip(vertices) {
+        watch.each(&exchange.fresh, |&Fresh { number, triangle, region, .. }| {
+            for (corner, vertex) in (0u32..).zip(triangle) {
                 let normal = at_rims.get(&(region, vertex)).map(|&normal| match was_folded(region) {
                     true => self.list[region as usize].plane.normal.to_array(),
                     false => normal,
                 });
-                sides.extend(normal.map(|normal| (3 * triangle + corner, normal)));
+                sides.extend(normal.map(|normal| (3 * number + corner, normal)));
             }
         })?;
         sides.sort_unstable_by_key(|&(h, _)| h);
@@ -211,36 +221,133 @@ impl Merged<'_> {
     }
 }
 
-/// Triangles some of which have come in the place of others.
-struct Exchanged {
-    triangles: Vec<[u32; 3]>,
-    /// By triangle, its control face, and the region that it is of where it is new.
-    parents: Vec<u32>,
-    regions: Vec<u32>,
-    /// By triangle that there was, its number now; [`NONE`] where it has given way.
-    first_new: Vec<u32>,
-    /// The half-edges of new triangles, by their ends.
-    fresh: Vec<([u32; 2], u32)>,
+/// A triangle that has come in the place of others.
+struct Fresh {
+    number: u32,
+    triangle: [u32; 3],
+    /// Its control face and its region.
+    face: u32,
+    region: u32,
 }
 
-impl Exchanged {
-    /// Adds some triangles that stay.
-    fn keep(&mut self, whole: &Assembled, before: core::ops::Range<u32>) {
-        let now = self.triangles.len() as u32;
-        let all = before.start as usize..before.end as usize;
-        self.triangles.extend_from_slice(&whole.triangles[all.clone()]);
-        self.parents.extend_from_slice(&whole.parents[all.clone()]);
-        self.regions.resize(self.triangles.len(), NONE);
-        self.first_new[all].iter_mut().zip(now..).for_each(|(slot, now)| *slot = now);
+/// What stands in an array in the end.
+enum Step {
+    /// What stood there.
+    Keep(core::ops::Range<u32>),
+    /// So many new ones.
+    Add(u32),
+}
+
+/// Triangles some of which come in the place of others.
+#[derive(Default)]
+struct Exchange {
+    steps: Vec<Step>,
+    /// By control face whose triangles all stay, the first of them; [`NONE`] for others.
+    starts: Vec<u32>,
+    /// By the number that it had, the number of a triangle that stays in another control face.
+    kept: HashMap<u32, u32>,
+    fresh: Vec<Fresh>,
+    /// All triangles.
+    count: u32,
+}
+
+impl Exchange {
+    /// Some triangles stay.
+    fn keep(&mut self, before: core::ops::Range<u32>) {
+        self.count += before.len() as u32;
+        match self.steps.last_mut() {
+            Some(Step::Keep(last)) if last.end == before.start => last.end = before.end,
+            _ => self.steps.push(Step::Keep(before)),
+        }
     }
 
-    /// Adds a triangle of a region.
-    fn add(&mut self, triangle: [u32; 3], face: u32, region: u32) {
-        let first = 3 * self.triangles.len() as u32;
-        self.fresh.extend(edges(triangle).into_iter().zip(first..));
-        self.triangles.push(triangle);
-        self.parents.push(face);
-        self.regions.push(region);
+    /// A new one comes.
+    fn add(&mut self, fresh: Fresh) {
+        self.count += 1;
+        self.fresh.push(fresh);
+        match self.steps.last_mut() {
+            Some(Step::Add(count)) => *count += 1,
+            _ => self.steps.push(Step::Add(1)),
+        }
+    }
+
+    /// The half-edges of the new triangles by their ends.
+    fn half_edges(&self) -> impl Iterator<Item = ([u32; 2], u32)> + '_ {
+        self.fresh.iter().flat_map(|fresh| edges(fresh.triangle).into_iter().zip(3 * fresh.number..))
+    }
+
+    /// Brings an array with so many items by triangle to what it is in the end.
+    fn carry_out<T: Copy + Default>(
+        &self,
+        items: &mut Vec<T>,
+        by_triangle: usize,
+        added: impl Iterator<Item = T>,
+    ) {
+        // How far what is to stay has to make room first, where more comes than goes.
+        let (mut at, mut room) = (0u32, 0);
+        for step in &self.steps {
+            match step {
+                Step::Keep(before) => {
+                    room = room.max(at.saturating_sub(before.start));
+                    at += before.len() as u32;
+                }
+                Step::Add(count) => at += count,
+            }
+        }
+        let [room, count] = [room, self.count].map(|triangles| triangles as usize * by_triangle);
+        let length = items.len();
+        items.resize((length + room).max(count), T::default());
+        items.copy_within(..length, room);
+        let (mut at, mut added) = (0, added);
+        for step in &self.steps {
+            match step {
+                Step::Keep(before) => {
+                    let from = before.start as usize * by_triangle + room;
+                    let length = before.len() * by_triangle;
+                    items.copy_within(from..from + length, at);
+                    at += length;
+                }
+                Step::Add(count) => {
+                    let new = &mut items[at..at + *count as usize * by_triangle];
+                    new.iter_mut().zip(&mut added).for_each(|(item, new)| *item = new);
+                    at += new.len();
+                }
+            }
+        }
+        items.truncate(count);
+    }
+}
+
+/// The numbers that half-edges have in the end.
+struct Numbers<'a> {
+    exchange: &'a Exchange,
+    whole: &'a Assembled,
+    /// By control face, its first triangle before.
+    starts: &'a [u32],
+    /// Of new triangles, by their ends.
+    new: &'a HashMap<[u32; 2], u32>,
+}
+
+impl Numbers<'_> {
+    /// The number of a triangle that stays.
+    #[inline]
+    fn of_triangle(&self, triangle: u32) -> Option<u32> {
+        let face = self.whole.parents[triangle as usize] as usize;
+        match self.exchange.starts[face] {
+            NONE => self.exchange.kept.get(&triangle).copied(),
+            start => Some(start + (triangle - self.starts[face])),
+        }
+    }
+
+    /// The number of a half-edge; [`NONE`] for one that was inside a region.
+    #[inline]
+    fn of(&self, h: u32) -> u32 {
+        if let Some(now) = self.of_triangle(h / 3) {
+            return 3 * now + h % 3;
+        }
+        let triangle = self.whole.triangles[h as usize / 3];
+        let ends = [0, 1].map(|i| triangle[(h as usize + i) % 3]);
+        self.new.get(&ends).copied().unwrap_or(NONE)
     }
 }
 
