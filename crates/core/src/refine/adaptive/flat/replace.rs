@@ -357,3 +357,40 @@ fn kept<T>(mut of_vertices: Vec<T>, renamed: &[u32]) -> Vec<T> {
     of_vertices.retain(|_| is_kept.next().unwrap_or(true));
     of_vertices
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where more comes than goes, too.
+    #[test]
+    fn arrays_become_what_was_kept_and_added() {
+        let mut state = 5u64;
+        let mut below = |most: u32| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 33) as u32 % most
+        };
+        let mut grown = 0;
+        for _ in 0..500 {
+            let before = 1 + below(40);
+            let (mut exchange, mut expected, mut added) = (Exchange::default(), Vec::new(), Vec::new());
+            let mut at = 0;
+            while at < before {
+                let end = (at + below(6)).min(before);
+                exchange.keep(at..end);
+                expected.extend((2 * at..2 * end).map(f64::from));
+                for _ in 0..below(7) {
+                    exchange.add(Fresh { number: exchange.count, triangle: [0; 3], face: 0, region: 0 });
+                    let new = [-1.0 - added.len() as f64, 0.5];
+                    (expected.extend(new), added.extend(new));
+                }
+                at = end + below(4);
+            }
+            let mut items: Vec<f64> = (0..2 * before).map(f64::from).collect();
+            grown += usize::from(expected.len() > items.len());
+            exchange.carry_out(&mut items, 2, added.into_iter());
+            assert_eq!(items, expected);
+        }
+        assert!(grown > 100, "{grown}");
+    }
+}
