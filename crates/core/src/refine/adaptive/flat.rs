@@ -27,7 +27,7 @@ mod replace;
 mod strips;
 mod unfolded;
 
-pub(super) use merge::Assembled;
+pub(super) use replace::Assembled;
 pub(super) use strips::Net;
 use unfolded::is_unfolded;
 

@@ -1,16 +1,15 @@
-//! Puts the triangulations of flat regions in the place of what was emitted there.
+//! What becomes of flat regions: their rims are triangulated anew, and what that gives is checked against what was emitted there. The module `replace`
+//! puts it in the place of that.
 
 use core::sync::atomic::Ordering;
 use std::collections::{HashMap, HashSet};
 
 use super::flattened::Flattened;
-use super::replace::Merged;
+use super::replace::{Assembled, Covering, Merged, edges};
 use super::strips::{Net, Region, Regions};
 use super::{FlatRegions, planar};
-use crate::mesh::{Junctions, Tags};
 use crate::parallel::IsStopped;
 use crate::progress::{Cancelled, SharedWatch};
-use crate::refine::exact_result::Origin;
 
 /// Regions that one call takes together.
 const BLOCK: usize = 1;
@@ -21,28 +20,6 @@ const SAME_AREA: f64 = 1e-9;
 /// How often what regions have in common may be left to one that keeps its triangles, before all keep it.
 const MOST_ROUNDS: usize = 8;
 
-/// What the emitted mesh consists of.
-pub(in super::super) struct Assembled {
-    pub(in super::super) positions: Vec<[f64; 3]>,
-    pub(in super::super) normals: Vec<[f64; 3]>,
-    /// Empty where nobody asks for them.
-    pub(in super::super) origins: Vec<Origin>,
-    pub(in super::super) triangles: Vec<[u32; 3]>,
-    pub(in super::super) twins: Vec<u32>,
-    pub(in super::super) parents: Vec<u32>,
-    pub(in super::super) tags: Tags,
-    /// Normals of corners at sharp edges, by half-edge, ascending.
-    pub(in super::super) sides: Vec<(u32, [f64; 3])>,
-    pub(in super::super) junctions: Junctions,
-}
-
-impl Assembled {
-    fn net<'a>(&'a self, (starts, sharp): (&'a [u32], &'a HashSet<u32>), corners: usize) -> Net<'a> {
-        let Self { positions, triangles, twins, parents, .. } = self;
-        Net { positions, triangles, twins, parents, starts, sharp, corners }
-    }
-}
-
 /// What is done with a region.
 enum Fate {
     /// Its triangles stay.
@@ -51,16 +28,6 @@ enum Fate {
     Covered(Covering),
     /// There are none that could.
     Fails,
-}
-
-/// What a region's rim encloses.
-pub(super) struct Covering {
-    /// Triangles with their control faces, by control face.
-    pub(super) triangles: Vec<([u32; 3], u32)>,
-    /// The edges of its rim that are new: straight lines, in the place of several edges each.
-    lines: Vec<[u32; 2]>,
-    /// Whether some of the triangles in whose place these come are turned over.
-    pub(super) was_folded: bool,
 }
 
 impl Fate {
@@ -244,11 +211,6 @@ impl Outline {
         }
         (edges, lines)
     }
-}
-
-/// The edges of a triangle by their ends.
-pub(super) fn edges(triangle: [u32; 3]) -> [[u32; 2]; 3] {
-    [0, 1, 2].map(|edge| [triangle[edge], triangle[(edge + 1) % 3]])
 }
 
 /// The coverings whose new edges are none that the mesh has elsewhere: two flat sheets may share their rims, and an edge has two

@@ -1,11 +1,47 @@
 //! Puts the triangles that regions come to in the place of those that give way: all that belongs to triangles, half-edges and vertices is
 //! numbered anew.
 
-use super::merge::{Assembled, Covering, edges};
-use super::strips::Region;
-use crate::mesh::NONE;
+use super::strips::{Net, Region};
+use crate::mesh::{Junctions, NONE, Tags};
 use crate::progress::{Cancelled, SharedWatch};
+use crate::refine::exact_result::Origin;
 use std::collections::{HashMap, HashSet};
+
+/// What the emitted mesh consists of.
+pub(in super::super) struct Assembled {
+    pub(in super::super) positions: Vec<[f64; 3]>,
+    pub(in super::super) normals: Vec<[f64; 3]>,
+    /// Empty where nobody asks for them.
+    pub(in super::super) origins: Vec<Origin>,
+    pub(in super::super) triangles: Vec<[u32; 3]>,
+    pub(in super::super) twins: Vec<u32>,
+    pub(in super::super) parents: Vec<u32>,
+    pub(in super::super) tags: Tags,
+    /// Normals of corners at sharp edges, by half-edge, ascending.
+    pub(in super::super) sides: Vec<(u32, [f64; 3])>,
+    pub(in super::super) junctions: Junctions,
+}
+
+impl Assembled {
+    pub(super) fn net<'a>(
+        &'a self,
+        (starts, sharp): (&'a [u32], &'a HashSet<u32>),
+        corners: usize,
+    ) -> Net<'a> {
+        let Self { positions, triangles, twins, parents, .. } = self;
+        Net { positions, triangles, twins, parents, starts, sharp, corners }
+    }
+}
+
+/// What a region's rim encloses.
+pub(super) struct Covering {
+    /// Triangles with their control faces, by control face.
+    pub(super) triangles: Vec<([u32; 3], u32)>,
+    /// The edges of its rim that are new: straight lines, in the place of several edges each.
+    pub(super) lines: Vec<[u32; 2]>,
+    /// Whether some of the triangles in whose place these come are turned over.
+    pub(super) was_folded: bool,
+}
 
 /// Regions with what comes in the place of their triangles.
 pub(super) struct Merged<'a> {
@@ -351,6 +387,11 @@ impl Numbers<'_> {
     }
 }
 
+/// The edges of a triangle by their ends.
+pub(super) fn edges(triangle: [u32; 3]) -> [[u32; 2]; 3] {
+    [0, 1, 2].map(|edge| [triangle[edge], triangle[(edge + 1) % 3]])
+}
+
 /// What belongs to the vertices that are kept.
 fn kept<T>(mut of_vertices: Vec<T>, renamed: &[u32]) -> Vec<T> {
     let mut is_kept = renamed.iter().map(|&name| name != NONE);
@@ -382,7 +423,8 @@ mod tests {
                 for _ in 0..below(7) {
                     exchange.add(Fresh { number: exchange.count, triangle: [0; 3], face: 0, region: 0 });
                     let new = [-1.0 - added.len() as f64, 0.5];
-                    (expected.extend(new), added.extend(new));
+                    expected.extend(new);
+                    added.extend(new);
                 }
                 at = end + below(4);
             }
