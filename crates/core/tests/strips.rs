@@ -270,6 +270,29 @@ fn threads_change_nothing() {
     }
 }
 
+/// Quadrilaterals of a side may be cut this way and that: the creases' vertices are irregular then, and not many more triangles come out.
+#[test]
+fn sides_may_be_cut_either_way() {
+    let even = peg(16);
+    let mut triangles = even.triangles().to_vec();
+    for i in (0..16u32).filter(|i| i % 3 == 1) {
+        let next = (i + 1) % 16;
+        triangles[2 * i as usize] = [i, next, 16 + i];
+        triangles[2 * i as usize + 1] = [next, 16 + next, 16 + i];
+    }
+    let uneven = creased(even.positions().to_vec(), triangles);
+    for tolerance in [0.01, 0.003] {
+        let [regular, irregular, whole] =
+            [(&even, true), (&uneven, true), (&uneven, false)].map(|(mesh, has_flat)| {
+                let result = exact(mesh, &Loop, &within(tolerance).flat_regions(has_flat)).unwrap();
+                assert_eq!(result.stop, ExactStop::Met);
+                result.mesh.face_count()
+            });
+        assert!(irregular <= 3 * regular, "within {tolerance}: {irregular}, not {regular}");
+        assert!(2 * irregular <= whole, "within {tolerance}: {irregular} of {whole}");
+    }
+}
+
 /// Where quadrilaterals lie in planes and the surface is straight nowhere, all is as without the option.
 #[test]
 fn what_is_curved_both_ways_has_no_strips() {

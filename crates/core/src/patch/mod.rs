@@ -33,6 +33,7 @@ use extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use mesh_patch::{MeshPatch, RefinedMeshPatch};
 use pole::{LARGEST_RING, PolePatch, RefinedPole};
 pub(crate) use quartic::{Quartic, reciprocal_power};
+pub(crate) use sector::VertexSector;
 use sector::{Far, RefinedSectors, SectorPatch};
 use semi_sharp::{RefinedSemiSharp, SemiSharpPatch};
 pub(crate) use spot::Spot;

@@ -5,15 +5,16 @@
 //! lines where it is straight: before and after it is the same set of points but for rounding, or for how far the file's coordinates
 //! are off ([`FlatRegions::off_planes`]).
 //!
-//! Only control faces over which the surface goes on in one direction all alike are looked at: regular pieces of which a derivative is the
-//! same everywhere, as over the quadrilaterals of an extruded profile, each two faces in one plane.
+//! Only control faces over which the surface may go on in one direction all alike are looked at: regular pieces of which a derivative is the
+//! same everywhere, as over the quadrilaterals of an extruded profile, each two faces in one plane; and pieces beside creases whose vertices
+//! are irregular, as where the quadrilaterals are cut now this way and now that.
 
 use super::{FlatRegions, Plane};
 use crate::index::HalfEdgeId;
 use crate::mesh::NONE;
-use crate::patch::Patch;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::normal_net::{CUBIC, tangents};
+use crate::patch::{Patch, VertexSector};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::decide::Control;
 use crate::refine::adaptive::quadtree::Edges;
@@ -146,9 +147,14 @@ pub(super) fn straight_faces(
     Ok(found.concat())
 }
 
-/// Whether the surface over a face is a regular piece that has the same derivative everywhere along one of the face's edges.
+/// Whether the surface over a face is a regular piece that has the same derivative everywhere along one of the face's edges, or may be
+/// straight beside creases whose vertices are irregular.
 fn has_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
-    let Patch::Regular(points) = control.patch(face) else { return false };
+    let points = match control.patch(face) {
+        Patch::Regular(points) => points,
+        Patch::Sectors(sectors) => return sectors.0.iter().any(VertexSector::is_open),
+        _ => return false,
+    };
     let [along, across] = tangents(&BezierTriangle::of(&points));
     let between: [DVec3; CUBIC] = core::array::from_fn(|i| across[i] - along[i]);
     let is_one = |net: &[DVec3; CUBIC]| net.iter().all(|own| own.distance(net[0]) <= most);
