@@ -103,21 +103,35 @@ impl Marks {
     }
 }
 
+/// Second derivatives along the edges of a row, in single precision.
+struct Bends {
+    along: NarrowRow,
+    /// What the sums of the sizes of their coordinates are no greater than.
+    size: f32,
+}
+
+/// A row of corners, its limit normals, and its edges.
+struct CornerRow {
+    points: Row,
+    normals: NarrowRow,
+    edges: NarrowRow,
+    bends: Bends,
+}
+
+/// What is between two rows of corners: edges from row to row, and the second derivatives along these and along those of the third kind.
+struct Between {
+    edges: NarrowRow,
+    upward: Bends,
+    across: Bends,
+}
+
 /// Rows of what a level needs, kept from call to call.
 pub(crate) struct CellRows {
-    points: [Row; 2],
+    /// The row at hand and the next, by turns.
+    corners: [CornerRow; 2],
+    between: Between,
+    /// Normals before they are rounded.
     normals: Row,
-    narrow_normals: [NarrowRow; 2],
-    /// Edges along rows, and from row to row.
-    along: [NarrowRow; 2],
-    upward: NarrowRow,
-    /// Second derivatives along these, and along those of the third kind.
-    bends_along: [NarrowRow; 2],
-    bends_upward: NarrowRow,
-    bends_across: NarrowRow,
-    /// What the sums of the sizes of the coordinates of these are no greater than, those along rows by row.
-    sizes_along: [f32; 2],
-    size_between: f32,
     few: Box<FewParts>,
     found: Found,
 }
@@ -125,17 +139,13 @@ pub(crate) struct CellRows {
 impl Default for CellRows {
     fn default() -> Self {
         let (row, narrow) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
+        let bends = || Bends { along: narrow, size: 0.0 };
+        let corners =
+            [0; 2].map(|_| CornerRow { points: row, normals: narrow, edges: narrow, bends: bends() });
         Self {
-            points: [row; 2],
+            corners,
+            between: Between { edges: narrow, upward: bends(), across: bends() },
             normals: row,
-            narrow_normals: [narrow; 2],
-            along: [narrow; 2],
-            upward: narrow,
-            bends_along: [narrow; 2],
-            bends_upward: narrow,
-            bends_across: narrow,
-            sizes_along: [0.0; 2],
-            size_between: 0.0,
             few: Box::default(),
             found: Found::default(),
         }
@@ -275,83 +285,89 @@ impl CellRows {
             return;
         }
         let steps = (block.size / n as f64, scale);
-        self.row(block, steps, 0, n, 0);
+        self.corners[0].fill(block, steps, (0, n), &mut self.normals);
         for j in 0..n {
-            let (count, now) = (n - j, j % 2);
-            self.row(block, steps, j + 1, n, 1 - now);
-            self.between(block, steps, j, count, now);
-            let (lower, upper) = (&self.narrow_normals[now], &self.narrow_normals[1 - now]);
-            let upright = Parts {
-                edges: [at(&self.along[now], 0), at(&self.upward, 0)],
-                is_turned: false,
-                normals: [at(lower, 0), at(lower, 1), at(upper, 0)],
-                bends: [at(&self.bends_along[now], 0), at(&self.bends_across, 0), at(&self.bends_upward, 0)],
-                size: self.size_between.larger(self.sizes_along[now]),
-            };
-            measure(count, &upright, &rest, target, &mut self.found);
-            let (found, own) = (&self.found, &mut marks.upright[j * n..j * n + count]);
-            if let Some(i) = found.mark((count, scale), target, extent, own) {
-                extent.worst = Some((i, j, false, divisions));
-            }
-            if count > 1 {
-                let headlong = Parts {
-                    edges: [at(&self.along[1 - now], 0), at(&self.upward, 1)],
-                    is_turned: true,
-                    normals: [at(upper, 1), at(upper, 0), at(lower, 1)],
-                    bends: [
-                        at(&self.bends_along[1 - now], 0),
-                        at(&self.bends_across, 0),
-                        at(&self.bends_upward, 1),
-                    ],
-                    size: self.size_between.larger(self.sizes_along[1 - now]),
-                };
-                measure(count - 1, &headlong, &rest, target, &mut self.found);
-                let (found, own) = (&self.found, &mut marks.headlong[j * n..j * n + count - 1]);
-                if let Some(i) = found.mark((count - 1, scale), target, extent, own) {
-                    extent.worst = Some((i, j, true, divisions));
+            let count = n - j;
+            let [first, second] = &mut self.corners;
+            let (lower, upper) = if j % 2 == 0 { (first, second) } else { (second, first) };
+            upper.fill(block, steps, (j + 1, n), &mut self.normals);
+            self.between.fill(block, steps, (j, count), [&lower.points, &upper.points]);
+            let rows = [false, true].map(|is_headlong| self.between.parts(lower, upper, is_headlong));
+            let lists = [&mut marks.upright, &mut marks.headlong];
+            for (is_headlong, (parts, list)) in [false, true].into_iter().zip(rows.iter().zip(lists)) {
+                let count = count - usize::from(is_headlong);
+                if count == 0 {
+                    continue;
+                }
+                measure(count, parts, &rest, target, &mut self.found);
+                let own = &mut list[j * n..j * n + count];
+                if let Some(i) = self.found.mark((count, scale), target, extent, own) {
+                    extent.worst = Some((i, j, is_headlong, divisions));
                 }
             }
         }
     }
+}
 
-    /// The corners in row j, its edges, and the second derivatives along them.
-    fn row(&mut self, block: &RowBlock<'_>, (step, scale): (f64, f64), j: usize, n: usize, slot: usize) {
-        let v = block.at[1] + step * j as f64;
-        let count = n - j;
-        let points = &mut self.points[slot];
-        block.piece.by_axis_along(v, block.at[0], step, count + 1, [&mut *points, &mut self.normals]);
-        for axis in 0..3 {
-            let (points, normals) = (&points[axis][..count + 1], &self.normals[axis][..count + 1]);
-            differences(&points[..count], &points[1..], scale, &mut self.along[slot][axis]);
-            let narrow = self.narrow_normals[slot][axis].iter_mut();
-            narrow.zip(normals).for_each(|(narrow, &normal)| *narrow = normal as f32);
-        }
-        let ([uu, ..], factor) = (block.jet.second(), step * step * scale);
-        let bends = &mut self.bends_along[slot];
-        self.sizes_along[slot] = quadratic_row(uu, [block.at[0] + 0.5 * step, v], step, count, factor, bends);
-    }
-
-    /// The edges between row j and the next, and the second derivatives along them.
-    fn between(
+impl CornerRow {
+    /// Row j of a node whose edges are cut into n: its corners, its edges, and the second derivatives along them.
+    fn fill(
         &mut self,
         block: &RowBlock<'_>,
         (step, scale): (f64, f64),
-        j: usize,
-        count: usize,
-        now: usize,
+        (j, n): (usize, usize),
+        wide: &mut Row,
     ) {
-        let [lower, upper] = [&self.points[now], &self.points[1 - now]];
-        for axis in 0..3 {
-            differences(&lower[axis][..count], &upper[axis][..count], scale, &mut self.upward[axis]);
+        let (v, count) = (block.at[1] + step * j as f64, n - j);
+        block.piece.by_axis_along(v, block.at[0], step, count + 1, [&mut self.points, &mut *wide]);
+        for (points, edges) in self.points.iter().zip(&mut self.edges) {
+            differences(&points[..count], &points[1..count + 1], scale, edges);
         }
-        let v = block.at[1] + step * (j as f64 + 0.5);
+        for (rounded, normals) in self.normals.iter_mut().zip(wide) {
+            let normals = rounded.iter_mut().zip(&normals[..count + 1]);
+            normals.for_each(|(rounded, &normal)| *rounded = normal as f32);
+        }
+        let ([uu, ..], factor) = (block.jet.second(), step * step * scale);
+        self.bends.fill(uu, [block.at[0] + 0.5 * step, v], (step, count), factor);
+    }
+}
+
+impl Between {
+    /// What is between row j, with so many edges, and the next, by the corners of both.
+    fn fill(
+        &mut self,
+        block: &RowBlock<'_>,
+        (step, scale): (f64, f64),
+        (j, count): (usize, usize),
+        [lower, upper]: [&Row; 2],
+    ) {
+        for axis in 0..3 {
+            differences(&lower[axis][..count], &upper[axis][..count], scale, &mut self.edges[axis]);
+        }
+        let (u, v) = (block.at[0], block.at[1] + step * (j as f64 + 0.5));
         let [uu, uv, vv] = block.jet.second();
         let across: [DVec3; 6] = from_fn(|i| uu[i] - 2.0 * uv[i] + vv[i]);
         let factor = step * step * scale;
-        let middle = [block.at[0] + 0.5 * step, v];
-        let across = quadratic_row(&across, middle, step, count, factor, &mut self.bends_across);
-        let upward = quadratic_row(vv, [block.at[0], v], step, count + 1, factor, &mut self.bends_upward);
-        self.size_between = across.larger(upward);
+        self.across.fill(&across, [u + 0.5 * step, v], (step, count), factor);
+        self.upward.fill(vv, [u, v], (step, count + 1), factor);
+    }
+
+    /// The parts between two rows that stand upright, or those on their heads.
+    fn parts<'r>(&'r self, lower: &'r CornerRow, upper: &'r CornerRow, is_headlong: bool) -> Parts<'r> {
+        // Those on their heads have their edge along a row in the upper one, and the others turned.
+        let (own, turned) = if is_headlong { (upper, 1) } else { (lower, 0) };
+        let size = self.across.size.larger(self.upward.size).larger(own.bends.size);
+        let normals = match is_headlong {
+            false => [at(&lower.normals, 0), at(&lower.normals, 1), at(&upper.normals, 0)],
+            true => [at(&upper.normals, 1), at(&upper.normals, 0), at(&lower.normals, 1)],
+        };
+        Parts {
+            edges: [at(&own.edges, 0), at(&self.edges, turned)],
+            is_turned: is_headlong,
+            normals,
+            bends: [at(&own.bends.along, 0), at(&self.across.along, 0), at(&self.upward.along, turned)],
+            size,
+        }
     }
 }
 
@@ -363,34 +379,29 @@ fn differences(from: &[f64], to: &[f64], factor: f64, out: &mut [f32]) {
     }
 }
 
-/// A quadratic polynomial along a row, times a factor. Gives what the sums of the sizes of its coordinates are no greater than; values are
-/// off by ten roundings of that at most.
-fn quadratic_row(
-    c: &[DVec3; 6],
-    [u, v]: Domain,
-    step: f64,
-    count: usize,
-    factor: f64,
-    out: &mut NarrowRow,
-) -> f32 {
-    // By the number of the place over that of all.
-    let length = step * count as f64;
-    let (square, linear) = (c[3] * factor, (c[1] + c[4] * v) * factor);
-    let constant = (c[0] + (c[2] + c[5] * v) * v) * factor;
-    let from = (square * u + linear) * u + constant;
-    let (by_one, by_two) = ((2.0 * u * square + linear) * length, square * (length * length));
-    let (mut size, share) = (0.0, 1.0 / count as f32);
-    for axis in 0..3 {
-        let (a, b, c) = (by_two[axis] as f32, by_one[axis] as f32, from[axis] as f32);
-        size += a.abs() + b.abs() + c.abs();
-        let mut number = f32x4::from([0.0, 1.0, 2.0, 3.0]);
-        for four in out[axis].as_chunks_mut::<LANES>().0.iter_mut().take(count.div_ceil(LANES)) {
-            let t = number * share;
-            *four = ((a * t + b) * t + c).to_array();
-            number += LANES as f32;
+impl Bends {
+    /// A quadratic polynomial in `count` places along a row, times a factor. Values are off by ten roundings of the size at most.
+    fn fill(&mut self, c: &[DVec3; 6], [u, v]: Domain, (step, count): (f64, usize), factor: f64) {
+        // By the number of the place over that of all.
+        let length = step * count as f64;
+        let (square, linear) = (c[3] * factor, (c[1] + c[4] * v) * factor);
+        let constant = (c[0] + (c[2] + c[5] * v) * v) * factor;
+        let from = (square * u + linear) * u + constant;
+        let (by_one, by_two) = ((2.0 * u * square + linear) * length, square * (length * length));
+        let share = 1.0 / count as f32;
+        self.size = 0.0;
+        for axis in 0..3 {
+            let (a, b, c) = (by_two[axis] as f32, by_one[axis] as f32, from[axis] as f32);
+            self.size += a.abs() + b.abs() + c.abs();
+            let mut number = f32x4::from([0.0, 1.0, 2.0, 3.0]);
+            let fours = self.along[axis].as_chunks_mut::<LANES>().0.iter_mut();
+            for four in fours.take(count.div_ceil(LANES)) {
+                let t = number * share;
+                *four = ((a * t + b) * t + c).to_array();
+                number += LANES as f32;
+            }
         }
     }
-    size
 }
 
 fn at(row: &NarrowRow, from: usize) -> Slices<'_> {

@@ -287,7 +287,8 @@ impl Found {
         extent: &mut RowExtent,
         marks: &mut [Mark],
     ) -> Option<usize> {
-        let (most, mut worst) = (target.distance * scale, None);
+        // What has no bound, which is infinite, must not pass, however great the target is.
+        let (most, mut worst) = ((target.distance * scale).smaller(f64::from(f32::MAX)), None);
         let mut greatest = extent.bound * scale;
         for (i, mark) in marks.iter_mut().enumerate().take(count) {
             let bound = f64::from(self.bound[i]);

@@ -99,3 +99,28 @@ fn samples_of_parts_that_pass_lie_within_the_target() {
     }
     assert!(passed > 500 && failed > 500 && open > 0, "{passed} {failed} {open}");
 }
+
+/// What is told of their rounding holds against the polynomial in double precision, at sizes from 1e-9 to 1e9.
+#[test]
+fn bends_are_off_by_ten_roundings_of_their_size_at_most() {
+    let mut numbers = Numbers(11);
+    let (mut greatest, ten) = (0.0f64, 10.0 / f64::from(1u32 << 24));
+    for round in 0..400 {
+        let size = 10f64.powi(round % 19 - 9);
+        let c: [DVec3; 6] =
+            from_fn(|_| size * DVec3::new(numbers.next(), numbers.next(), numbers.next()).powf(3.0));
+        let (u, v) = (numbers.next(), numbers.next());
+        let (step, count) = (0.1 * numbers.next(), 1 + round as usize % 65);
+        let mut bends = Bends { along: [[0.0; WIDTH]; 3], size: 0.0 };
+        bends.fill(&c, [u, v], (step, count), 0.3);
+        let most = f64::from(bends.size);
+        for i in 0..count {
+            let expected = 0.3 * quadratic(&c, [u + step * i as f64, v]);
+            let found = DVec3::from_array([0, 1, 2].map(|axis| f64::from(bends.along[axis][i])));
+            assert!(expected.abs().element_sum() <= most * (1.0 + 1e-6), "round {round}");
+            greatest = greatest.max((found - expected).abs().element_sum() / most);
+        }
+    }
+    assert!(greatest <= ten, "{greatest:e}");
+    assert!(greatest > 0.01 * ten, "{greatest:e}");
+}

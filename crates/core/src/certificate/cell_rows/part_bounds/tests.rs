@@ -150,3 +150,16 @@ fn heights_of_nearly_cylindrical_quadratics_are_no_less_than_they_are() {
         assert!(low <= expected * 1.001 && high <= expected * 1.02, "{bends:?} {low} {high} {expected}");
     }
 }
+
+/// Nor is what is no number.
+#[test]
+fn what_has_no_bound_is_within_nothing() {
+    for distance in [1.0, f64::MAX, f64::INFINITY] {
+        let target = RowTarget { distance, tilt: 0.1, slope: f64::INFINITY, drift_share: 0.41 };
+        let mut found = Found::default();
+        (found.bound[0], found.bound[1]) = (f32::INFINITY, f32::NAN);
+        let (mut extent, mut marks) = (RowExtent::NONE, [Mark::Passes; 3]);
+        found.mark((3, 1e30), &target, &mut extent, &mut marks);
+        assert_eq!(marks, [Mark::Open, Mark::Open, Mark::Passes], "{distance}");
+    }
+}

@@ -333,14 +333,18 @@ impl Exchange {
         let [room, count] = [room, self.count].map(|triangles| triangles as usize * by_triangle);
         let length = items.len();
         items.resize((length + room).max(count), T::default());
-        items.copy_within(..length, room);
+        if room > 0 {
+            items.copy_within(..length, room);
+        }
         let (mut at, mut added) = (0, added);
         for step in &self.steps {
             match step {
                 Step::Keep(before) => {
                     let from = before.start as usize * by_triangle + room;
                     let length = before.len() * by_triangle;
-                    items.copy_within(from..from + length, at);
+                    if from != at {
+                        items.copy_within(from..from + length, at);
+                    }
                     at += length;
                 }
                 Step::Add(count) => {
