@@ -15,6 +15,8 @@ mod weights;
 pub use barycentric::{BarycentricError, barycentric};
 pub use derivatives::{Curvature, Derivatives};
 
+use std::borrow::Cow;
+
 use crate::certificate::Sheet;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::{LimitError, SidedNormals};
@@ -262,7 +264,7 @@ impl<'a> LimitSurface<'a> {
             if let Some(points) = refined.points(part) {
                 found.are_on(&points, slices[0]);
             } else if let Some(patch) = refined.extraordinary(part) {
-                self.descend_to_vertex(patch, corners, slices, levels - 1, found);
+                self.descend_to_vertex(&patch, corners, slices, levels - 1, found);
             } else {
                 self.descend(&refined.part(part), corners, slices, levels - 1, found);
             }
@@ -274,7 +276,7 @@ impl<'a> LimitSurface<'a> {
 trait Parts {
     fn middle<L: Limit>(&self, edge: usize) -> L;
     fn points(&self, part: usize) -> Option<patch::Points>;
-    fn extraordinary(&self, part: usize) -> Option<&ExtraordinaryPatch>;
+    fn extraordinary(&self, part: usize) -> Option<Cow<'_, ExtraordinaryPatch>>;
     fn part(&self, part: usize) -> Patch;
 }
 
@@ -287,7 +289,7 @@ impl Parts for RefinedPatch<'_> {
         self.points(part)
     }
 
-    fn extraordinary(&self, part: usize) -> Option<&ExtraordinaryPatch> {
+    fn extraordinary(&self, part: usize) -> Option<Cow<'_, ExtraordinaryPatch>> {
         self.extraordinary(part)
     }
 
@@ -307,8 +309,8 @@ impl Parts for RefinedExtraordinary {
         self.points(part)
     }
 
-    fn extraordinary(&self, part: usize) -> Option<&ExtraordinaryPatch> {
-        (!self.is_regular(part)).then(|| self.own())
+    fn extraordinary(&self, part: usize) -> Option<Cow<'_, ExtraordinaryPatch>> {
+        (!self.is_regular(part)).then(|| Cow::Borrowed(self.own()))
     }
 
     fn part(&self, part: usize) -> Patch {

@@ -55,14 +55,18 @@
 
 mod irregular;
 
-use super::deviation::{Borders, Deviation, DeviationBound, INSIDE};
+use super::borders::{ALL, Borders, INSIDE};
+use super::deviation::Deviation;
 use super::exceeds;
+use super::hull_points::{DeviationBound, HullPoint};
 use super::sampled::Samples;
 use super::sub_triangle::SubTriangle;
 use super::triangle_frame::TriangleFrame;
+use super::trilinear::{Trilinear, TrilinearFrame};
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{Patch, RefinedPatch, Rules};
-use crate::vector::DVec3;
+use crate::patch::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
+use crate::patch::{Patch, Points, RefinedPatch, Rules};
+use crate::vector::{Blend, DVec3};
 
 /// Pieces that reach this many times as far as the target will not pass; bounds of others stay tight, so that they are
 /// told apart even if they may not be split.
@@ -70,9 +74,6 @@ const HOPELESS: f64 = 1.5;
 
 /// Halvings of a net for the bound of a curve: each takes little of the net along.
 const RIM_HALVINGS: usize = 6;
-
-/// The whole piece stands for the triangle.
-const ALL: Borders = [0, 1, 2];
 
 /// When a bound is good enough, and how much may be done to get there.
 #[derive(Clone, Copy, Debug)]
@@ -110,6 +111,18 @@ impl Effort {
             gives_up: false,
             least_chord: None,
         }
+    }
+}
+
+impl Effort {
+    fn bound<'f, P: HullPoint>(&self, frame: &'f P::Frame) -> DeviationBound<'f, P> {
+        DeviationBound { frame, open: self.open, rim_alone: self.rim_alone }
+    }
+
+    /// The triangle's own frame, if points can be looked at from there.
+    fn seen_from(&self, frame: &TriangleFrame) -> Option<TrilinearFrame> {
+        let has_neighbours = !self.rim_alone && self.open == [false; 3];
+        TrilinearFrame::of(frame).filter(|_| has_neighbours)
     }
 }
 
@@ -174,21 +187,37 @@ impl<'a> Pieces<'a> {
         if !frame.is_finite() {
             return Deviation::alone(f64::INFINITY);
         }
-        let bound = DeviationBound { frame, open: effort.open, rim_alone: effort.rim_alone };
-        let mut search = Search { bound, rules, effort, found: Deviation::default() };
+        if let Patch::Mesh(local) = self.patch {
+            let samples = self.samples.get_or_insert_with(|| Samples::of(local, SAMPLED_LEVELS, rules));
+            return samples.deviation(part, &effort.bound::<DVec3>(frame));
+        }
+        match effort.seen_from(frame) {
+            Some(frame) => self.searched::<Trilinear>(part, &frame, rules, effort),
+            None => self.searched::<DVec3>(part, frame, rules, effort),
+        }
+    }
+
+    fn searched<P: HullPoint>(
+        &mut self,
+        part: SubTriangle,
+        frame: &P::Frame,
+        rules: &'a Rules<'a>,
+        effort: Effort,
+    ) -> Deviation {
+        let mut search = Search::<P>::of(effort.bound(frame), rules, effort);
         match (self.patch, part) {
-            (Patch::Mesh(local), _) => {
-                let samples = self.samples.get_or_insert_with(|| Samples::of(local, SAMPLED_LEVELS, rules));
-                return samples.deviation(part, &bound);
-            }
             (_, SubTriangle::Child(child)) => {
                 search.refined(self.refined(rules), child, SubTriangle::Whole, ALL, 1);
             }
             (Patch::Regular(points), _) => {
                 let net = self.net.get_or_insert_with(|| BezierTriangle::of(points));
-                search.net_part(net, part, ALL);
+                search.own_net(&NetPart::own(net, part));
             }
-            (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::Pole(_) | Patch::SemiSharp(_), _) => {
+            (Patch::Extraordinary(piece), _) => {
+                let piece = search.seen(piece);
+                search.extraordinary(&piece, part, ALL, 0);
+            }
+            (Patch::Sectors(_) | Patch::Pole(_) | Patch::SemiSharp(_) | Patch::Mesh(_), _) => {
                 if !search.is_settled(self.patch, part, ALL, 0) {
                     search.divided(self.refined(rules), part, ALL, 0);
                 }
@@ -199,14 +228,14 @@ impl<'a> Pieces<'a> {
 }
 
 /// The net of a part of a regular piece.
-pub(crate) struct NetPart {
-    net: BezierTriangle,
+pub(crate) struct NetPart<V = DVec3> {
+    net: BezierTriangle<V>,
     borders: Borders,
 }
 
-impl NetPart {
+impl<V: Blend> NetPart<V> {
     /// A part of a piece with its net; one of a refinement is that part's own net.
-    fn of(net: &BezierTriangle, part: SubTriangle, borders: Borders) -> Self {
+    fn of(net: &BezierTriangle<V>, part: SubTriangle, borders: Borders) -> Self {
         match part {
             SubTriangle::Whole | SubTriangle::Child(_) => Self { net: *net, borders },
             SubTriangle::Half { edge, second } => Self { net: net.half(edge, second), borders },
@@ -216,7 +245,9 @@ impl NetPart {
             }
         }
     }
+}
 
+impl NetPart {
     /// The part of a triangle's own piece.
     pub(crate) fn own(net: &BezierTriangle, part: SubTriangle) -> Self {
         Self::of(net, part, ALL)
@@ -229,38 +260,139 @@ impl NetPart {
 
     /// The deviation that the points of the net tell, without halving it, and a height that the piece attains.
     pub(crate) fn at_a_glance(&self, frame: &TriangleFrame, open: [bool; 3]) -> (Deviation, f64) {
-        DeviationBound { frame, open, rim_alone: false }.net(&self.net, self.borders)
+        fn glance<P: HullPoint>(part: &NetPart, frame: &P::Frame, open: [bool; 3]) -> (Deviation, f64) {
+            let bound = DeviationBound::<P> { frame, open, rim_alone: false };
+            bound.net(&part.seen::<P>(frame), part.borders)
+        }
+        match TrilinearFrame::of(frame).filter(|_| open == [false; 3]) {
+            Some(frame) => glance::<Trilinear>(self, &frame, open),
+            None => glance::<DVec3>(self, frame, open),
+        }
     }
 
     /// The deviation where the net is halved as often as it helps.
     pub(crate) fn deviation(&self, frame: &TriangleFrame, rules: &Rules<'_>, effort: Effort) -> Deviation {
+        fn halved<P: HullPoint>(
+            part: &NetPart,
+            frame: &P::Frame,
+            rules: &Rules<'_>,
+            effort: Effort,
+        ) -> Deviation {
+            let mut search = Search::<P>::of(effort.bound(frame), rules, effort);
+            search.own_net(part);
+            search.found
+        }
         if !frame.is_finite() {
             return Deviation::alone(f64::INFINITY);
         }
-        let bound = DeviationBound { frame, open: effort.open, rim_alone: effort.rim_alone };
-        let mut search = Search { bound, rules, effort, found: Deviation::default() };
-        search.net(&self.net, self.borders, effort.halvings);
-        search.found
+        match effort.seen_from(frame) {
+            Some(frame) => halved::<Trilinear>(self, &frame, rules, effort),
+            None => halved::<DVec3>(self, frame, rules, effort),
+        }
+    }
+
+    /// The net as the points of a bound.
+    fn seen<P: HullPoint>(&self, frame: &P::Frame) -> BezierTriangle<P> {
+        BezierTriangle(self.net.0.map(|point| P::of(frame, point)))
+    }
+}
+
+/// A refined piece, whose parts a bound looks at as they are at hand.
+trait Parts<P: HullPoint> {
+    fn is_regular(&self, part: usize) -> bool;
+
+    /// Looks at a part, or a part of that.
+    fn look(
+        &self,
+        search: &mut Search<'_, P>,
+        part: usize,
+        of_part: SubTriangle,
+        borders: Borders,
+        depth: usize,
+    );
+}
+
+impl<P: HullPoint> Parts<P> for RefinedPatch<'_> {
+    fn is_regular(&self, part: usize) -> bool {
+        self.is_regular(part)
+    }
+
+    fn look(
+        &self,
+        search: &mut Search<'_, P>,
+        part: usize,
+        of_part: SubTriangle,
+        borders: Borders,
+        depth: usize,
+    ) {
+        if let Some(points) = self.points(part) {
+            search.regular_in_space(&points, of_part, borders);
+        } else if let Some(piece) = self.extraordinary(part) {
+            let piece = search.seen(&piece);
+            search.extraordinary(&piece, of_part, borders, depth);
+        } else {
+            search.part(&self.part(part), of_part, borders, depth);
+        }
+    }
+}
+
+impl<P: HullPoint> Parts<P> for RefinedExtraordinary<P> {
+    fn is_regular(&self, part: usize) -> bool {
+        self.is_regular(part)
+    }
+
+    fn look(
+        &self,
+        search: &mut Search<'_, P>,
+        part: usize,
+        of_part: SubTriangle,
+        borders: Borders,
+        depth: usize,
+    ) {
+        match self.points(part) {
+            Some(points) => search.regular(&points, of_part, borders),
+            None => search.extraordinary(self.own(), of_part, borders, depth),
+        }
     }
 }
 
 /// The bound of one triangle as it grows, piece by piece.
-struct Search<'a> {
-    bound: DeviationBound<'a>,
+struct Search<'a, P: HullPoint> {
+    bound: DeviationBound<'a, P>,
     rules: &'a Rules<'a>,
     effort: Effort,
     found: Deviation,
 }
 
-impl Search<'_> {
+impl<'a, P: HullPoint> Search<'a, P> {
+    fn of(bound: DeviationBound<'a, P>, rules: &'a Rules<'a>, effort: Effort) -> Self {
+        Self { bound, rules, effort, found: Deviation::default() }
+    }
+
+    /// A piece as it is seen.
+    fn seen(&self, piece: &ExtraordinaryPatch) -> ExtraordinaryPatch<P> {
+        piece.map(|point| P::of(self.bound.frame, point))
+    }
+
+    /// The net of a piece, or of a part of one.
+    fn own_net(&mut self, part: &NetPart) {
+        self.net(&part.seen(self.bound.frame), part.borders, self.effort.halvings);
+    }
+
     fn part(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) {
         match (patch, part) {
             (_, SubTriangle::Child(child)) => {
                 self.refined(&patch.refined(self.rules), child, SubTriangle::Whole, borders, depth + 1);
             }
-            (Patch::Regular(points), _) => self.net_part(&BezierTriangle::of(points), part, borders),
-            (Patch::Sectors(_) | Patch::Extraordinary(_) | Patch::Pole(_) | Patch::SemiSharp(_), _) => {
-                self.irregular(patch, part, borders, depth);
+            (Patch::Regular(points), _) => self.regular_in_space(points, part, borders),
+            (Patch::Extraordinary(piece), _) => {
+                let piece = self.seen(piece);
+                self.extraordinary(&piece, part, borders, depth);
+            }
+            (Patch::Sectors(_) | Patch::Pole(_) | Patch::SemiSharp(_), _) => {
+                if !self.is_settled(patch, part, borders, depth) {
+                    self.divided(&patch.refined(self.rules), part, borders, depth);
+                }
             }
             // Their points' hull holds nothing.
             (Patch::Mesh(_), _) => self.add(Deviation::alone(f64::INFINITY)),
@@ -270,7 +402,7 @@ impl Search<'_> {
     /// A part of a refinement, or a part of that: as it is at hand.
     fn refined(
         &mut self,
-        refined: &RefinedPatch<'_>,
+        refined: &impl Parts<P>,
         child: usize,
         part: SubTriangle,
         borders: Borders,
@@ -279,24 +411,22 @@ impl Search<'_> {
         if !self.counts(borders) {
             return;
         }
-        if let Some(points) = refined.points(child) {
-            self.net_part(&BezierTriangle::of(&points), part, borders);
-        } else if let Some(piece) = refined.extraordinary(child) {
-            if !self.is_settled_at(piece, part, borders, depth) {
-                let refined = RefinedPatch::Extraordinary(piece.refined(self.rules.beta(piece.ring.len())));
-                self.divided(&refined, part, borders, depth);
-            }
-        } else {
-            self.part(&refined.part(child), part, borders, depth);
-        }
+        refined.look(self, child, part, borders, depth);
     }
 
-    fn net_part(&mut self, net: &BezierTriangle, part: SubTriangle, borders: Borders) {
+    fn regular_in_space(&mut self, points: &Points, part: SubTriangle, borders: Borders) {
+        let mut seen = [P::default(); 12];
+        seen.iter_mut().zip(points).for_each(|(seen, &point)| *seen = P::of(self.bound.frame, point));
+        self.regular(&seen, part, borders);
+    }
+
+    fn regular(&mut self, points: &[P; 12], part: SubTriangle, borders: Borders) {
+        let net = BezierTriangle::of(points);
         let halvings = self.effort.halvings;
         match part {
-            SubTriangle::Whole | SubTriangle::Child(_) => self.net(net, borders, halvings),
+            SubTriangle::Whole | SubTriangle::Child(_) => self.net(&net, borders, halvings),
             _ => {
-                let part = NetPart::of(net, part, borders);
+                let part = NetPart::of(&net, part, borders);
                 self.net(&part.net, part.borders, halvings);
             }
         }
@@ -329,7 +459,7 @@ impl Search<'_> {
         !self.effort.rim_alone || borders.into_iter().any(is_rim)
     }
 
-    fn net(&mut self, net: &BezierTriangle, borders: Borders, halvings: usize) {
+    fn net(&mut self, net: &BezierTriangle<P>, borders: Borders, halvings: usize) {
         if self.found.own == f64::INFINITY || !self.counts(borders) {
             return;
         }
@@ -346,7 +476,7 @@ impl Search<'_> {
         }
         // The longest edge, so that the pieces stay as round as they can be.
         let [a, b, c] = net.corners();
-        let lengths = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
+        let lengths = [b - a, c - b, a - c].map(|side| side.length_squared(self.bound.frame));
         let edge =
             (1..3).fold(0, |longest, edge| if lengths[edge] > lengths[longest] { edge } else { longest });
         let halves = net.halves(edge);
@@ -358,7 +488,7 @@ impl Search<'_> {
     }
 
     /// A refined piece.
-    fn divided(&mut self, refined: &RefinedPatch<'_>, part: SubTriangle, borders: Borders, depth: usize) {
+    fn divided(&mut self, refined: &impl Parts<P>, part: SubTriangle, borders: Borders, depth: usize) {
         match part {
             SubTriangle::Whole => {
                 let inner = |part: usize| {
@@ -379,14 +509,7 @@ impl Search<'_> {
     }
 
     /// The pieces that make up a half; see [`SubTriangle::Half`].
-    fn half(
-        &mut self,
-        refined: &RefinedPatch<'_>,
-        edge: usize,
-        second: bool,
-        borders: Borders,
-        depth: usize,
-    ) {
+    fn half(&mut self, refined: &impl Parts<P>, edge: usize, second: bool, borders: Borders, depth: usize) {
         let (next, last) = ((edge + 1) % 3, (edge + 2) % 3);
         let half = SubTriangle::Half { edge, second };
         let other = SubTriangle::Half { edge, second: !second };
@@ -412,7 +535,7 @@ impl Search<'_> {
     /// The pieces that make up a quarter; see [`SubTriangle::Quarter`].
     fn quarter(
         &mut self,
-        refined: &RefinedPatch<'_>,
+        refined: &impl Parts<P>,
         edge: usize,
         at_end: bool,
         borders: Borders,
@@ -436,7 +559,7 @@ impl Search<'_> {
     /// Pieces of the parts of a refinement: the regular ones first, so that little is left to do for the others.
     fn pieces<const N: usize>(
         &mut self,
-        refined: &RefinedPatch<'_>,
+        refined: &impl Parts<P>,
         pieces: [(usize, SubTriangle, Borders); N],
         depth: usize,
     ) {
@@ -451,7 +574,12 @@ impl Search<'_> {
 }
 
 /// The net of a quarter, and its borders in the order of the net's edges.
-fn quarter(net: &BezierTriangle, edge: usize, at_end: bool, borders: Borders) -> (BezierTriangle, Borders) {
+fn quarter<V: Blend>(
+    net: &BezierTriangle<V>,
+    edge: usize,
+    at_end: bool,
+    borders: Borders,
+) -> (BezierTriangle<V>, Borders) {
     let (end, tip) = ((edge + 1) % 3, (edge + 2) % 3);
     // Away from the other end first, then away from the corner opposite.
     let (quarter, order) = if at_end {

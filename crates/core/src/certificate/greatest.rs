@@ -1,83 +1,28 @@
-//! The greatest of what points come to over a triangle that has a plane and neighbours all round, several points at once.
+//! The greatest of what points come to over a triangle that has a plane and neighbours all round, by their heights and trilinear
+//! coordinates.
 //!
-//! Heights and distances from the lines of the edges are products with a few directions, taken for all points in rows. Most points
-//! stand inside most edges: only where a row's greatest does not is one looked at after the other.
+//! Most points of the surface stand inside the lines of all edges: only where the greatest coordinates do not are they looked at one after the
+//! other. Points of curves over edges are taken four at a time.
 
+use core::array::from_fn;
+
+use super::borders::{Borders, Corner, INSIDE, corner, inner_points};
 use super::deviation::Deviation;
 use super::exceeds;
-use super::triangle_frame::TriangleFrame;
-use crate::vector::DVec3;
+use super::trilinear::{Trilinear, TrilinearFrame};
+use crate::patch::bezier_triangle::{BezierTriangle, EDGES, INNER};
 use crate::vector::Extremes;
+use wide::f64x4;
 
-/// Points that are seen together: those of a net, rounded up to whole registers.
-pub(super) const SEEN: usize = 16;
-
-/// Points of a curve that are seen together: the five of a net, and one again for whole registers.
-pub(super) const CURVE: usize = 6;
-
-/// Numbers that are compared together.
-const LANES: usize = 4;
-
-/// Points as a triangle sees them from its first corner, by axis and point. Where there are fewer than [`SEEN`] the others stand in
-/// that corner.
-pub(super) struct SeenPoints {
-    offsets: [[f64; SEEN]; 3],
-    pub(super) heights: [f64; SEEN],
-    /// How far outside the lines of the edges.
-    outside: [[f64; SEEN]; 3],
-    /// Whether all of them are.
-    pub(super) is_finite: bool,
-}
-
-impl SeenPoints {
-    /// No points.
-    pub(super) const NONE: Self =
-        Self { offsets: [[0.0; SEEN]; 3], heights: [0.0; SEEN], outside: [[0.0; SEEN]; 3], is_finite: true };
-
-    /// Looks at some points, as many of them as there is room for.
-    #[inline]
-    pub(super) fn look(&mut self, frame: &TriangleFrame, points: impl Iterator<Item = DVec3>) {
-        let [x, y, z] = &mut self.offsets;
-        for (((x, y), z), point) in x.iter_mut().zip(y).zip(z).zip(points) {
-            let offset = frame.seen_from_first(point);
-            (*x, *y, *z) = (offset.x, offset.y, offset.z);
-        }
-        self.follow(frame);
-    }
-
-    /// What follows from the offsets. (In line with what fills them it is mixed up with that, and twice as long.)
-    #[inline(never)]
-    fn follow(&mut self, frame: &TriangleFrame) {
-        let Self { offsets: [x, y, z], heights, outside: [first, second, third], is_finite } = self;
-        let (up, [a, b, c]) = (frame.normal(), [0, 1, 2].map(|edge| frame.outward(edge)));
-        let [from_a, from_b, from_c] = [0, 1, 2].map(|edge| frame.offset(edge));
-        for at in 0..SEEN {
-            heights[at] = up.x * x[at] + up.y * y[at] + up.z * z[at];
-            first[at] = a.x * x[at] + a.y * y[at] + a.z * z[at] - from_a;
-            second[at] = b.x * x[at] + b.y * y[at] + b.z * z[at] - from_b;
-            third[at] = c.x * x[at] + c.y * y[at] + c.z * z[at] - from_c;
-        }
-        let mut sums = [0.0; LANES];
-        for row in [x, y, z] {
-            for chunk in row.as_chunks::<LANES>().0 {
-                (0..LANES).for_each(|l| sums[l] += chunk[l]);
-            }
-        }
-        *is_finite = sums.iter().sum::<f64>().is_finite();
-    }
-
-    #[inline]
-    fn offset(&self, at: usize) -> DVec3 {
-        let ([x, y, z], at) = (&self.offsets, at % SEEN);
-        DVec3::new(x[at], y[at], z[at])
-    }
-}
+/// Points of curves that are taken together.
+const TOGETHER: usize = 4;
 
 /// The greatest of what was met. All points are finite.
-#[derive(Default)]
-pub(super) struct Greatest {
-    height: f64,
-    /// Squared distance from the triangle, or for points of curves from the edge.
+struct Greatest<'a> {
+    frame: &'a TrilinearFrame,
+    /// The greatest size of a height, and the greatest distances outside the lines of the edges.
+    most: f64x4,
+    /// Squared distance from the triangle, or for points of curves from the edge; that by heights alone left out.
     squared: f64,
     /// The part of that distance within the plane.
     side: f64,
@@ -89,124 +34,185 @@ pub(super) struct Greatest {
     beyond: bool,
 }
 
-impl Greatest {
+/// All bits of trilinear coordinates, and those of a height but its sign.
+const UNSIGNED_HEIGHT: [u64; 4] = [u64::MAX >> 1, u64::MAX, u64::MAX, u64::MAX];
+
+/// The same with heights as sizes.
+#[inline(always)]
+fn with_size(Trilinear(point): Trilinear) -> f64x4 {
+    point & f64x4::new(UNSIGNED_HEIGHT.map(f64::from_bits))
+}
+
+/// What a net comes to, `None` if its points have to be looked at one by one, and a height that the piece itself attains.
+pub(super) fn of_net(
+    frame: &TrilinearFrame,
+    net: &BezierTriangle<Trilinear>,
+    borders: Borders,
+) -> (Option<Deviation>, f64) {
+    let points = &net.0;
+    let (attained, is_finite) = attained(net);
+    if !is_finite {
+        return (Some(Deviation::alone(f64::INFINITY)), 0.0);
+    }
+    let mut greatest = Greatest::over(frame);
+    let corners = [0, 1, 2].map(|edge| corner(borders, edge));
+    for edge in 0..3 {
+        let [start, second, middle, fourth, end] = EDGES[edge];
+        greatest.most([second, middle, fourth].map(|at| points[at]));
+        // The triangle's own corners are on the surface, but for rounding.
+        if !matches!(corners[edge], Corner::Own) {
+            greatest.most([points[start]]);
+        }
+        if borders[edge] != INSIDE {
+            let over = usize::from(borders[edge]);
+            let first = if matches!(corners[edge], Corner::On(_)) { start } else { middle };
+            greatest.curve(over, [first, second, middle, fourth].map(|at| &points[at]));
+            if matches!(corners[(edge + 1) % 3], Corner::On(_)) {
+                greatest.curve(over, [&points[end]; TOGETHER]);
+            }
+        }
+    }
+    greatest.most(INNER.map(|at| points[at]));
+    if greatest.is_beside() {
+        let mut bits = inner_points(borders);
+        while bits != 0 {
+            greatest.beside(points[bits.trailing_zeros() as usize]);
+            bits &= bits - 1;
+        }
+    }
+    (greatest.deviation(), attained)
+}
+
+/// What points of the surface, and of curves over edges, come to; `None` if they have to be looked at one by one.
+pub(super) fn of_points(
+    frame: &TrilinearFrame,
+    inner: &[Trilinear],
+    curves: &[(usize, Trilinear)],
+) -> Option<Deviation> {
+    let all = inner.iter().chain(curves.iter().map(|(_, point)| point));
+    let sum = all.fold(f64x4::ZERO, |sum, point| sum + point.0);
+    if !sum.to_array().iter().all(|sum| sum.is_finite()) {
+        return None;
+    }
+    let mut greatest = Greatest::over(frame);
+    inner.iter().for_each(|&point| greatest.most([point]));
+    if greatest.is_beside() {
+        inner.iter().for_each(|&point| greatest.beside(point));
+    }
+    for (edge, own) in curves.chunk_by(|a, b| a.0 == b.0).map(|own| (own[0].0, own)) {
+        for some in own.chunks(TOGETHER) {
+            let four = from_fn(|at| &some[at.min(some.len() - 1)].1);
+            greatest.most(four.map(|&point| point));
+            greatest.curve(edge, four);
+        }
+    }
+    greatest.deviation()
+}
+
+/// The greatest height in the middle of a piece and of its edges, and whether all points are finite.
+#[inline]
+fn attained(net: &BezierTriangle<Trilinear>) -> (f64, bool) {
+    let (mut on_edges, mut middle) = (f64x4::ZERO, f64x4::ZERO);
+    for edge in EDGES {
+        let [a, b, c, d, e] = edge.map(|at| net.0[at].0);
+        let most = (b + d) * 4.0 + c * 6.0;
+        on_edges = on_edges.fast_max((a + e + most).abs());
+        middle += a + most;
+    }
+    middle += INNER.iter().fold(f64x4::ZERO, |sum, &at| sum + net.0[at].0) * 12.0;
+    let (on_edges, middle) = (on_edges.to_array(), middle.to_array());
+    // Weights are positive: a number that is none, or infinite, is left in the sum.
+    let is_finite = middle.iter().all(|sum| sum.is_finite());
+    ((on_edges[0] / 16.0).larger(middle[0].abs() / 81.0), is_finite)
+}
+
+impl<'a> Greatest<'a> {
+    fn over(frame: &'a TrilinearFrame) -> Self {
+        Self {
+            frame,
+            most: f64x4::ZERO,
+            squared: 0.0,
+            side: 0.0,
+            drift: 0.0,
+            slopes: [0.0; 3],
+            swings: [0.0; 3],
+            beyond: false,
+        }
+    }
+
+    /// Heights of points, and where those of the surface stand to the edges.
+    #[inline(always)]
+    fn most<const N: usize>(&mut self, points: [Trilinear; N]) {
+        self.most = points.into_iter().fold(self.most, |most, point| most.fast_max(with_size(point)));
+    }
+
+    /// Whether one of these may stand outside an edge.
     #[inline]
-    fn stands(&mut self, height: f64, side: f64) {
-        self.side = self.side.larger(side.abs());
+    fn is_beside(&self) -> bool {
+        let (_, outside) = Trilinear(self.most).split();
+        outside.iter().any(|&outside| outside > self.frame.on_edge)
+    }
+
+    /// A point of the surface that may stand outside an edge.
+    #[inline]
+    fn beside(&mut self, point: Trilinear) {
+        let on_edge = self.frame.on_edge;
+        if !point.0.simd_gt(f64x4::new([f64::INFINITY, on_edge, on_edge, on_edge])).any() {
+            return;
+        }
+        let (height, outside) = point.split();
+        let mut side = 0.0f64;
+        for (edge, outside) in outside.into_iter().enumerate().filter(|&(_, outside)| outside > on_edge) {
+            let along = point.beside(self.frame, edge).along;
+            let room = along.min(self.frame.lengths[edge] - along);
+            side = side.larger(outside);
+            self.slopes[edge] = self.slopes[edge].larger(outside / room);
+            self.beyond |= exceeds(0.0, room);
+        }
+        self.drift = self.drift.larger(side);
+        self.side = self.side.larger(side);
         self.squared = self.squared.larger(height * height + side * side);
     }
 
-    /// Points of the surface, one bit each; the heights of all points that are seen count.
+    /// Points of the curve over an edge, some perhaps more than once; their heights are not taken.
     #[inline]
-    pub(super) fn inner(&mut self, frame: &TriangleFrame, seen: &SeenPoints, points: u16) {
-        let mut sides = [0.0; SEEN];
-        let mut beside = 0u16;
-        for edge in 0..3 {
-            if !exceeds(most(&seen.outside[edge]), frame.on_edge()) {
-                continue;
-            }
-            for at in each(points) {
-                let outside = seen.outside[edge][at];
-                if exceeds(outside, frame.on_edge()) {
-                    let room = frame.room_from_first(edge, seen.offset(at));
-                    sides[at] = outside.larger(sides[at]);
-                    beside |= 1 << at;
-                    self.drift = self.drift.larger(outside);
-                    self.slopes[edge] = self.slopes[edge].larger(outside / room);
-                    self.beyond |= exceeds(0.0, room);
-                }
-            }
-        }
-        each(beside).for_each(|at| self.stands(seen.heights[at], sides[at]));
-        self.heights(seen);
-    }
-
-    /// The heights of all points that are seen.
-    #[inline]
-    pub(super) fn heights(&mut self, seen: &SeenPoints) {
-        let mut heights = seen.heights;
-        heights.iter_mut().for_each(|height| *height = height.abs());
-        let height = most(&heights);
-        self.height = self.height.larger(height);
-        self.squared = self.squared.larger(height * height);
-    }
-
-    /// Points of the curve over an edge, by their numbers, some perhaps more than once; their heights are not taken.
-    #[inline(never)]
-    pub(super) fn curve(
-        &mut self,
-        frame: &TriangleFrame,
-        edge: usize,
-        seen: &SeenPoints,
-        points: [u8; CURVE],
-    ) {
-        let [mut x, mut y, mut z, mut heights, mut outside] = [[0.0; CURVE]; 5];
-        let row = &seen.outside[edge];
-        for (l, at) in points.into_iter().enumerate() {
-            let at = usize::from(at) % SEEN;
-            (x[l], y[l], z[l]) = (seen.offsets[0][at], seen.offsets[1][at], seen.offsets[2][at]);
-            (heights[l], outside[l]) = (seen.heights[at], row[at]);
-        }
-        let (along, start, length) = (frame.along(edge), frame.start(edge), frame.length(edge));
-        let on_edge = frame.on_edge();
-        let [mut squares, mut sides, mut swings, mut slopes, mut drifts, mut rooms] = [[0.0; CURVE]; 6];
-        for l in 0..CURVE {
-            let at = along.x * x[l] + along.y * y[l] + along.z * z[l] - start;
-            let (rest, out) = (length - at, outside[l]);
-            let room = if at < rest { at } else { rest };
-            let side = out.abs();
-            squares[l] = heights[l] * heights[l] + out * out;
-            sides[l] = side;
-            let swing = side / room;
-            swings[l] = if side > on_edge { swing } else { 0.0 };
-            slopes[l] = if out > on_edge { swing } else { 0.0 };
-            drifts[l] = if out > on_edge { out } else { 0.0 };
-            rooms[l] = if side > on_edge { room } else { room + on_edge };
-        }
-        self.squared = greatest(squares, self.squared);
-        self.side = greatest(sides, self.side);
-        self.swings[edge] = greatest(swings, self.swings[edge]);
-        self.slopes[edge] = greatest(slopes, self.slopes[edge]);
-        self.drift = greatest(drifts, self.drift);
-        self.beyond |= exceeds(greatest(rooms.map(|room| -room), -f64::INFINITY), 0.0);
+    fn curve(&mut self, edge: usize, points: [&Trilinear; TOGETHER]) {
+        let row = |at: usize| f64x4::new(points.map(|point| point.0.as_array()[at % 4]));
+        let (heights, out, before) = (row(0), row(1 + edge), row(1 + (edge + 2) % 3));
+        let [by_before, by_own] = self.frame.shares_along(edge);
+        let along = before * by_before + out * by_own;
+        let room = along.fast_min(f64x4::splat(self.frame.lengths[edge]) - along);
+        let on_edge = f64x4::splat(self.frame.on_edge);
+        let side = out.abs();
+        let is_off = side.simd_gt(on_edge);
+        let swings = is_off & (side / room);
+        let outside = out.simd_gt(on_edge);
+        self.squared = self.squared.larger(greatest(heights * heights + out * out));
+        self.side = self.side.larger(greatest(side));
+        self.swings[edge] = self.swings[edge].larger(greatest(swings));
+        self.slopes[edge] = self.slopes[edge].larger(greatest(outside & swings));
+        self.drift = self.drift.larger(greatest(outside & out));
+        let rooms = is_off.bitselect(room, room + on_edge);
+        self.beyond |= rooms.simd_lt(f64x4::ZERO).any();
     }
 
     /// What that comes to; `None` if the points have to be looked at one by one.
     #[inline]
-    pub(super) fn deviation(self, frame: &TriangleFrame) -> Option<Deviation> {
-        let Self { height, squared, side, drift, slopes, .. } = self;
+    fn deviation(self) -> Option<Deviation> {
+        let Self { frame, most, squared, side, drift, slopes, .. } = self;
+        let (height, _) = Trilinear(most).split();
+        let squared = squared.larger(height * height);
         // Squares of tiny lengths vanish.
         let own = if squared > 1e-280 { squared.sqrt() } else { height.hypot(side) };
         // A curve that swings less than the angles at its edge open crosses no other edge.
-        let stays = (0..3).all(|edge| self.swings[edge] <= frame.slope_at(edge));
+        let stays = (0..3).all(|edge| self.swings[edge] <= frame.slopes[edge]);
         (stays && !self.beyond).then_some(Deviation { own, height, drift, slopes, across: 0.0 })
     }
 }
 
-/// The numbers of the bits that are set.
-#[inline]
-fn each(mut bits: u16) -> impl Iterator<Item = usize> {
-    core::iter::from_fn(move || {
-        let at = bits.trailing_zeros() as usize;
-        bits &= bits.wrapping_sub(1);
-        (at < SEEN).then_some(at)
-    })
-}
-
-/// The greatest of a row, or 0.
-#[inline]
-fn most(row: &[f64; SEEN]) -> f64 {
-    let mut most = [0.0; LANES];
-    for chunk in row.as_chunks::<LANES>().0 {
-        for l in 0..LANES {
-            most[l] = if chunk[l] > most[l] { chunk[l] } else { most[l] };
-        }
-    }
-    greatest(most, 0.0)
-}
-
-/// The greatest of some numbers.
-#[inline]
-fn greatest<const N: usize>(numbers: [f64; N], known: f64) -> f64 {
-    numbers.into_iter().fold(known, |most, x| if x > most { x } else { most })
+/// The greatest of four numbers, or 0.
+#[inline(always)]
+fn greatest(numbers: f64x4) -> f64 {
+    let [a, b, c, d] = numbers.to_array();
+    a.larger(b).larger(c.larger(d)).larger(0.0)
 }

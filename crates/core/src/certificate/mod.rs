@@ -5,17 +5,20 @@
 //!
 //! What is not a number fails: wherever something is compared with a limit, it must be known to be below it.
 
+mod borders;
 mod bounds;
 mod cell_rows;
 mod deviation;
 mod dihedral;
 mod greatest;
+mod hull_points;
 mod interpolation;
 mod parametric;
 mod quartic_cell;
 mod sampled;
 mod sub_triangle;
 mod triangle_frame;
+mod trilinear;
 
 pub(crate) use bounds::{Effort, NetPart, Pieces};
 pub(crate) use cell_rows::{CellRows, MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, RowTarget};

@@ -3,7 +3,8 @@
 //! The piece is refined a few times, and the limits of its vertices are taken. They stand on a lattice of barycentric
 //! coordinates, so that those over each part of the piece are known exactly.
 
-use super::deviation::{Deviation, DeviationBound};
+use super::deviation::Deviation;
+use super::hull_points::DeviationBound;
 use super::sub_triangle::SubTriangle;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::Mesh;

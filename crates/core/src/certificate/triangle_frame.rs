@@ -10,7 +10,7 @@ use crate::vector::{DVec3, unit_or_zero};
 const FLAT: f64 = 1e-7;
 
 /// Triangles with a smaller sine are slivers, whose plane is straightened.
-const SLIVER: f64 = 1e-2;
+pub(super) const SLIVER: f64 = 1e-2;
 
 /// Squared lengths between these neither overflow nor vanish in what is computed from them.
 const SAFE: core::ops::Range<f64> = 1e-140..1e140;
@@ -30,8 +30,6 @@ pub(crate) struct TriangleFrame {
     on_edge: f64,
     /// Where the edges' lines stand outwards of the first corner.
     offsets: [f64; 3],
-    /// Where the edges start along their directions, from the first corner.
-    starts: [f64; 3],
     /// By corner, the tangent of its angle, or of what an obtuse one leaves of π.
     tangents: [f64; 3],
     least_slope: f64,
@@ -97,7 +95,6 @@ impl TriangleFrame {
                 * edges.iter().chain(&corners).map(|v| v.abs().max_element()).fold(0.0, f64::max),
             outward,
             offsets: [0, 1, 2].map(|edge| outward[edge].dot(from_first[edge])),
-            starts: [0, 1, 2].map(|edge| along[edge].dot(from_first[edge])),
             // What is not a number allows nothing.
             tangents: cosines.map(|cosine| (area / cosine.abs()).max(0.0)),
             least_slope: area / cosines[0].larger(cosines[1]).larger(cosines[2]),
@@ -217,28 +214,13 @@ impl TriangleFrame {
         self.on_edge
     }
 
-    /// Where an edge starts along its direction, from the first corner.
-    #[inline]
-    pub(crate) fn start(&self, edge: usize) -> f64 {
-        self.starts[edge]
-    }
-
-    /// A point as seen from the first corner.
-    #[inline]
-    pub(crate) fn seen_from_first(&self, point: DVec3) -> DVec3 {
-        point - self.corners[0]
+    /// The first corner.
+    pub(crate) fn first(&self) -> DVec3 {
+        self.corners[0]
     }
 
     /// Where an edge's line stands outwards of the first corner.
     pub(crate) fn offset(&self, edge: usize) -> f64 {
         self.offsets[edge]
-    }
-
-    /// [`Beside::along`] of a point as seen from the first corner, or what is left of the edge from there if that is
-    /// less.
-    #[inline]
-    pub(crate) fn room_from_first(&self, edge: usize, offset: DVec3) -> f64 {
-        let along = self.along[edge].dot(offset) - self.starts[edge];
-        along.min(self.lengths[edge] - along)
     }
 }

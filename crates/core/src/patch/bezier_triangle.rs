@@ -60,11 +60,13 @@ impl BezierTriangle {
             .zip(places)
             .map(move |(point, (j, k))| point - 0.25 * ((4.0 - j - k) * a + j * b + k * c))
     }
+}
 
+impl<V: Blend> BezierTriangle<V> {
     /// The two halves that the line from the middle of the edge from corner `edge` to the corner opposite cuts: the first
     /// with the edge's start, the second with its end. Corners keep their places; the middle takes the other end's.
     pub(crate) fn halves(&self, edge: usize) -> [Self; 2] {
-        let mut halves = [[DVec3::ZERO; 15]; 2];
+        let mut halves = [[V::default(); 15]; 2];
         let [first, second] = &mut halves;
         self.halved(edge, |at, point| first[at] = point, |at, point| second[at] = point);
         halves.map(Self)
@@ -72,7 +74,7 @@ impl BezierTriangle {
 
     /// One of the [`Self::halves`].
     pub(crate) fn half(&self, edge: usize, second: bool) -> Self {
-        let mut half = [DVec3::ZERO; 15];
+        let mut half = [V::default(); 15];
         if second {
             self.halved(edge, |_, _| (), |at, point| half[at] = point);
         } else {
@@ -82,10 +84,10 @@ impl BezierTriangle {
     }
 
     #[inline]
-    fn halved(&self, edge: usize, mut first: impl FnMut(usize, DVec3), mut second: impl FnMut(usize, DVec3)) {
+    fn halved(&self, edge: usize, mut first: impl FnMut(usize, V), mut second: impl FnMut(usize, V)) {
         let turned = &TURNED[edge];
         for &(start, degree) in &ROWS {
-            let mut row = [DVec3::ZERO; 5];
+            let mut row = [V::default(); 5];
             for j in 0..=degree {
                 row[j] = self.0[turned[start + j]];
             }
@@ -93,22 +95,22 @@ impl BezierTriangle {
                 first(turned[start + step], row[0]);
                 second(turned[start + degree - step], row[degree - step]);
                 for j in 0..degree - step {
-                    row[j] = 0.5 * (row[j] + row[j + 1]);
+                    row[j] = (row[j] + row[j + 1]) * 0.5;
                 }
             }
         }
     }
 
     /// The points of the piece in the middles of its edges.
-    pub(crate) fn middles(&self) -> [DVec3; 3] {
+    pub(crate) fn middles(&self) -> [V; 3] {
         EDGES.map(|[a, b, c, d, e]| {
             let [a, b, c, d, e] = [self.0[a], self.0[b], self.0[c], self.0[d], self.0[e]];
-            ((a + e) + 4.0 * (b + d) + 6.0 * c) / 16.0
+            ((a + e) + (b + d) * 4.0 + c * 6.0) / 16.0
         })
     }
 
     /// The corners.
-    pub(crate) fn corners(&self) -> [DVec3; 3] {
+    pub(crate) fn corners(&self) -> [V; 3] {
         [self.0[0], self.0[4], self.0[14]]
     }
 }

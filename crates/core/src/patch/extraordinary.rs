@@ -4,74 +4,67 @@
 //! The points are the vertex v, its ring r₀, r₁, … (the face is v r₀ r₁) and the five beyond the ring that complete the
 //! rings of r₀ and r₁. One refinement gives the same again, smaller, and three regular pieces.
 
-use super::box_spline::Points;
 use super::{Neighbours, Patch};
-use crate::vector::DVec3;
+use crate::vector::{Blend, DVec3};
 
-/// The points around a face with one irregular corner. What is said of corners and edges counts from that one.
+/// The points around a face with one irregular corner, or what is blended the same way. What is said of corners and edges counts from that one.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct ExtraordinaryPatch {
+pub(crate) struct ExtraordinaryPatch<V = DVec3> {
     /// Which of the face's corners is the irregular one.
     pub(crate) corner: usize,
     /// The irregular vertex.
-    pub(crate) at: DVec3,
+    pub(crate) at: V,
     /// Its neighbours, counter-clockwise from the face's next corner.
-    pub(crate) ring: Neighbours,
+    pub(crate) ring: Neighbours<V>,
     /// What completes the rings of the other corners: opposite to the vertex beyond the edge r₋₁r₀, beyond r₀, beyond
     /// r₀r₁, beyond r₁, beyond r₁r₂.
-    pub(crate) outer: [DVec3; 5],
+    pub(crate) outer: [V; 5],
 }
 
 /// The points around the four parts of an [`ExtraordinaryPatch`].
-pub(crate) struct RefinedExtraordinary {
-    own: ExtraordinaryPatch,
+pub(crate) struct RefinedExtraordinary<V = DVec3> {
+    own: ExtraordinaryPatch<V>,
     /// Those near the face, by their numbers in [`near`].
-    near: [DVec3; 16],
+    near: [V; 16],
 }
 
-impl ExtraordinaryPatch {
+impl<V: Blend> ExtraordinaryPatch<V> {
     /// All points.
-    pub(crate) fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
+    pub(crate) fn points(&self) -> impl Iterator<Item = V> + '_ {
         core::iter::once(self.at).chain(self.ring.iter().copied()).chain(self.outer)
     }
 
-    /// The point of a corner of the face.
-    pub(super) fn control_point(&self, corner: usize) -> DVec3 {
-        match (corner + 3 - self.corner) % 3 {
-            0 => self.at,
-            local => self.ring[local - 1],
+    /// What becomes of the points by itself.
+    pub(crate) fn map<W: Blend>(&self, each: impl Fn(V) -> W) -> ExtraordinaryPatch<W> {
+        ExtraordinaryPatch {
+            corner: self.corner,
+            at: each(self.at),
+            ring: self.ring.iter().map(|&point| each(point)).collect(),
+            outer: self.outer.map(&each),
         }
     }
 
-    /// Moves all so that the irregular vertex is at the origin, and gives where it was.
-    pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
-        let from = core::mem::take(&mut self.at);
-        self.ring.iter_mut().chain(&mut self.outer).for_each(|point| *point -= from);
-        from
-    }
-
     /// The points after one refinement; `beta` is the weight of each neighbour of the irregular vertex.
-    pub(crate) fn refined(&self, beta: f64) -> RefinedExtraordinary {
-        let valence = self.ring.len();
-        self.refined_to((1.0 - valence as f64 * beta) * self.at + beta * self.ring.iter().sum::<DVec3>())
+    pub(crate) fn refined(&self, beta: f64) -> RefinedExtraordinary<V> {
+        let sum = self.ring.iter().fold(V::default(), |sum, &point| sum + point);
+        self.refined_to(self.at * (1.0 - self.ring.len() as f64 * beta) + sum * beta)
     }
 
     /// The points after one refinement that takes the irregular vertex to `moved`.
-    pub(super) fn refined_to(&self, moved: DVec3) -> RefinedExtraordinary {
-        let edge = |a: DVec3, b: DVec3, c: DVec3, d: DVec3| 0.375 * (a + b) + 0.125 * (c + d);
+    pub(super) fn refined_to(&self, moved: V) -> RefinedExtraordinary<V> {
+        let edge = |a: V, b: V, c: V, d: V| (a + b) * 0.375 + (c + d) * 0.125;
         let Self { corner, at, ref ring, outer: [before, past_first, between, past_second, after] } = *self;
         let valence = ring.len();
         let (last, first, second, third) = (ring[valence - 1], ring[0], ring[1], ring[2 % valence]);
-        let mut edges = Neighbours::from_elem(DVec3::ZERO, valence);
+        let mut edges = Neighbours::from_elem(V::default(), valence);
         let mut previous = last;
         for slot in 0..valence {
             let next = ring[if slot + 1 == valence { 0 } else { slot + 1 }];
             edges[slot] = edge(at, ring[slot], previous, next);
             previous = ring[slot];
         }
-        let vertex = |at: DVec3, [a, b, c, d, e, f]: [DVec3; 6]| {
-            0.625 * at + 0.0625 * (DVec3::ZERO + a + b + c + d + e + f)
-        };
+        let vertex =
+            |at: V, [a, b, c, d, e, f]: [V; 6]| at * 0.625 + (V::default() + a + b + c + d + e + f) * 0.0625;
         let outer = [
             edge(last, first, at, before),
             vertex(first, [at, last, before, past_first, between, second]),
@@ -101,6 +94,23 @@ impl ExtraordinaryPatch {
     }
 }
 
+impl ExtraordinaryPatch {
+    /// The point of a corner of the face.
+    pub(super) fn control_point(&self, corner: usize) -> DVec3 {
+        match (corner + 3 - self.corner) % 3 {
+            0 => self.at,
+            local => self.ring[local - 1],
+        }
+    }
+
+    /// Moves all so that the irregular vertex is at the origin, and gives where it was.
+    pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
+        let from = core::mem::take(&mut self.at);
+        self.ring.iter_mut().chain(&mut self.outer).for_each(|point| *point -= from);
+        from
+    }
+}
+
 impl RefinedExtraordinary {
     /// One of the four parts, numbered like the face's corners; 3 is the middle one.
     pub(crate) fn part(&self, part: usize) -> Patch {
@@ -109,14 +119,16 @@ impl RefinedExtraordinary {
             local => Patch::Regular(self.regular(local)),
         }
     }
+}
 
+impl<V: Blend> RefinedExtraordinary<V> {
     /// Whether a part is regular: all but that at the irregular corner.
     pub(crate) fn is_regular(&self, part: usize) -> bool {
         self.local(part) != 0
     }
 
     /// The piece at the irregular corner.
-    pub(crate) fn own(&self) -> &ExtraordinaryPatch {
+    pub(crate) fn own(&self) -> &ExtraordinaryPatch<V> {
         &self.own
     }
 
@@ -128,24 +140,24 @@ impl RefinedExtraordinary {
 
     /// The points of one of the parts, if it is regular.
     #[inline]
-    pub(crate) fn points(&self, part: usize) -> Option<Points> {
+    pub(crate) fn points(&self, part: usize) -> Option<[V; 12]> {
         let local = self.local(part);
         (local != 0).then(|| self.regular(local))
     }
 
     /// The points of a regular part, numbered from the irregular corner, as it stands in the face.
     #[inline]
-    pub(crate) fn regular(&self, local: usize) -> Points {
-        let mut points = [DVec3::ZERO; 12];
+    pub(crate) fn regular(&self, local: usize) -> [V; 12] {
+        let mut points = [V::default(); 12];
         let list = &near::PARTS[self.own.corner % 3][(local - 1) % 3];
         points.iter_mut().zip(list).for_each(|(point, &at)| *point = self.near[usize::from(at) % 16]);
         points
     }
 
     /// The new vertex on the edge from corner `edge` of the face, with its ring.
-    pub(crate) fn middle(&self, edge: usize) -> (DVec3, [DVec3; 6]) {
+    pub(crate) fn middle(&self, edge: usize) -> (V, [V; 6]) {
         let (at, ring) = &near::MIDDLES[(edge + 3 - self.own.corner) % 3];
-        let mut around = [DVec3::ZERO; 6];
+        let mut around = [V::default(); 6];
         around.iter_mut().zip(ring).for_each(|(point, &at)| *point = self.near[usize::from(at) % 16]);
         (self.near[usize::from(*at) % 16], around)
     }

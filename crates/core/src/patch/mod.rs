@@ -27,6 +27,8 @@ pub(crate) use from_mesh::root_patch;
 pub(crate) use rules::Rules;
 pub(crate) use support::Support;
 
+use std::borrow::Cow;
+
 use crate::vector::{DVec3, unit_or_zero};
 pub(crate) use box_spline::{Points, Refined};
 use extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
@@ -39,7 +41,7 @@ use semi_sharp::{RefinedSemiSharp, SemiSharpPatch};
 pub(crate) use spot::Spot;
 
 /// The neighbours of a vertex: nearly all have at most eight.
-pub(crate) type Neighbours = smallvec::SmallVec<[DVec3; 8]>;
+pub(crate) type Neighbours<V = DVec3> = smallvec::SmallVec<[V; 8]>;
 
 /// The limit surface over one face.
 // Almost all are regular: boxing them would cost an allocation for each face.
@@ -261,11 +263,15 @@ impl RefinedPatch<'_> {
         }
     }
 
-    /// A part that is at hand and need not be made.
+    /// A part that is an [`ExtraordinaryPatch`] with all of its ring.
     #[inline]
-    pub(crate) fn extraordinary(&self, part: usize) -> Option<&ExtraordinaryPatch> {
+    pub(crate) fn extraordinary(&self, part: usize) -> Option<Cow<'_, ExtraordinaryPatch>> {
         match self {
-            Self::Extraordinary(refined) if !refined.is_regular(part) => Some(refined.own()),
+            Self::Extraordinary(refined) if !refined.is_regular(part) => Some(Cow::Borrowed(refined.own())),
+            Self::Sectors(refined) => {
+                let is_small = |piece: &ExtraordinaryPatch| piece.ring.len() <= LARGEST_RING;
+                refined.extraordinary(part).filter(is_small).map(Cow::Owned)
+            }
             _ => None,
         }
     }

@@ -301,19 +301,24 @@ impl RefinedSectors<'_> {
         if let Some(points) = self.points(part) {
             return Patch::Regular(points);
         }
-        let old = &self.sectors.0[part];
-        if old.far != Far::Kept {
-            return Patch::of(self.part(part));
+        match self.extraordinary(part) {
+            Some(piece) => Patch::of_extraordinary(piece),
+            None if self.sectors.0[part].far == Far::Kept => Patch::Sectors(Box::new(self.part(part))),
+            None => Patch::of(self.part(part)),
         }
-        let own = &self.edge_points[part];
-        if old.centre != (Centre::Smooth { sharp: None }) || own.len() < 3 {
-            return Patch::Sectors(Box::new(self.part(part)));
+    }
+
+    /// A part that is not regular but has all of its vertex' ring, which is closed and smooth.
+    pub(crate) fn extraordinary(&self, part: usize) -> Option<ExtraordinaryPatch> {
+        let (old, own) = (self.sectors.0.get(part)?, &self.edge_points[part]);
+        if old.far != Far::Kept || old.centre != (Centre::Smooth { sharp: None }) || own.len() < 3 {
+            return None;
         }
         let [on_next, on_last] = [&self.rings[part], &self.rings[(part + 2) % 3]];
         let mut ring = Neighbours::from_slice(&own[old.slot..]);
         ring.extend_from_slice(&own[..old.slot]);
         let outer = [on_next[5], on_next[0], on_next[1], on_last[3], on_last[4]];
-        Patch::of_extraordinary(ExtraordinaryPatch { corner: part, at: self.moved[part], ring, outer })
+        Some(ExtraordinaryPatch { corner: part, at: self.moved[part], ring, outer })
     }
 
     /// The points of a part, if it is regular.

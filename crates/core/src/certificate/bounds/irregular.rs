@@ -1,12 +1,14 @@
 //! Pieces at irregular vertices as they are: by an affine image of the characteristic map, by the hull of their control points, or by
 //! what stands for them while tags fade (see [`super`]).
 
+use super::super::hull_points::HullPoint;
 use super::super::{exceeds, greater};
 use super::{Borders, Deviation, Effort, INSIDE, Search, SubTriangle};
 use crate::patch::Patch;
 use crate::patch::characteristic::{Characteristic, MapSector};
 use crate::patch::extraordinary::ExtraordinaryPatch;
 use crate::vector::DVec3;
+use smallvec::SmallVec;
 
 /// Levels that a piece at an irregular vertex is split at most: it has shrunk by 2⁻⁴⁰ then, below rounding.
 const DEEPEST: usize = 40;
@@ -15,10 +17,10 @@ const DEEPEST: usize = 40;
 /// taken to be too far as well.
 const CERTAIN: f64 = 3.0;
 
-/// Squares that are so many times too great are too great, whatever rounding does.
+/// Lengths and squares that are so many times too great are too great, whatever rounding does.
 const CLEARLY: f64 = 1.0 + 1e-9;
 
-impl Search<'_> {
+impl<P: HullPoint> Search<'_, P> {
     /// Takes the lasting twin of a semi-sharp piece in its place if that is enough, or if it is clear that nothing will be; says
     /// whether it did.
     fn by_twin(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) -> bool {
@@ -43,14 +45,8 @@ impl Search<'_> {
         false
     }
 
-    /// A piece at an irregular vertex: as it is if that is enough, else refined.
-    pub(super) fn irregular(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) {
-        if !self.is_settled(patch, part, borders, depth) {
-            self.divided(&patch.refined(self.rules), part, borders, depth);
-        }
-    }
-
-    /// Takes a piece at an irregular vertex as it is if that is enough, or if nothing will be; says whether it did.
+    /// Takes a piece at an irregular vertex that is none of [`Self::extraordinary`] as it is if that is enough, or if nothing will be; says
+    /// whether it did.
     pub(super) fn is_settled(
         &mut self,
         patch: &Patch,
@@ -58,20 +54,33 @@ impl Search<'_> {
         borders: Borders,
         depth: usize,
     ) -> bool {
-        if let Patch::Extraordinary(piece) = patch {
-            return self.is_settled_at(piece, part, borders, depth);
-        }
         if self.found.own == f64::INFINITY || self.by_twin(patch, part, borders, depth) {
             return true;
         }
-        let held = self.hull(|visit| patch.for_each_hull_point(visit), borders, depth);
+        let frame = self.bound.frame;
+        let each_point =
+            |visit: &mut dyn FnMut(P)| patch.for_each_hull_point(|point| visit(P::of(frame, point)));
+        let held = self.hull(each_point, borders, depth);
         self.is_enough(held, depth)
     }
 
-    /// The same for one at an irregular vertex inside the surface.
-    pub(super) fn is_settled_at(
+    /// A piece at an irregular vertex inside the surface, all of whose ring is there: as it is if that is enough, else refined.
+    pub(super) fn extraordinary(
         &mut self,
-        piece: &ExtraordinaryPatch,
+        piece: &ExtraordinaryPatch<P>,
+        part: SubTriangle,
+        borders: Borders,
+        depth: usize,
+    ) {
+        if !self.is_settled_at(piece, part, borders, depth) {
+            self.divided(&piece.refined(self.rules.beta(piece.ring.len())), part, borders, depth);
+        }
+    }
+
+    /// Takes such a piece as it is if that is enough, or if nothing will be; says whether it did.
+    fn is_settled_at(
+        &mut self,
+        piece: &ExtraordinaryPatch<P>,
         part: SubTriangle,
         borders: Borders,
         depth: usize,
@@ -104,63 +113,61 @@ impl Search<'_> {
     /// The bound by an affine image of the characteristic map's sector, if what the piece differs from it is little.
     fn affine(
         &self,
-        piece: &ExtraordinaryPatch,
+        piece: &ExtraordinaryPatch<P>,
         map: &Characteristic,
         sector: &MapSector,
         borders: Borders,
     ) -> Option<Deviation> {
         let valence = piece.ring.len();
-        let sums = piece.ring.iter().zip(&map.control.ring).fold([DVec3::ZERO; 3], |sums, (&point, at)| {
-            [sums[0] + point, sums[1] + at.x * point, sums[2] + at.y * point]
+        let sums = piece.ring.iter().zip(&map.control.ring).fold([P::default(); 3], |sums, (&point, at)| {
+            [sums[0] + point, sums[1] + point * at.x, sums[2] + point * at.y]
         });
         let weight = 0.375 / self.rules.beta(valence);
-        let limit = (weight * piece.at + sums[0]) / (weight + valence as f64);
+        let limit = (piece.at * weight + sums[0]) / (weight + valence as f64);
         let tangents = [1, 2].map(|i| sums[i] * (2.0 / valence as f64));
-        let image = |at: DVec3| limit + at.x * tangents[0] + at.y * tangents[1];
+        let image = |at: DVec3| limit + tangents[0] * at.x + tangents[1] * at.y;
         let aim = self.aim();
         let (mut rest, enough) = (0.0, CLEARLY * aim * aim);
         // Those beyond the ring first: they are farthest away, and most pieces are refined because of them.
         let outer = piece.outer.iter().zip(&map.control.outer);
         let near = piece.ring.iter().zip(&map.control.ring).chain([(&piece.at, &map.control.at)]);
-        for (point, &at) in outer.chain(near) {
-            rest = greater(rest, point.distance_squared(image(at)));
+        for (&point, &at) in outer.chain(near) {
+            rest = greater(rest, (point - image(at)).length_squared(self.bound.frame));
             if exceeds(rest, enough) {
                 return None;
             }
         }
-        let rest = rest.sqrt();
+        let rest = CLEARLY * rest.sqrt();
         if exceeds(rest, aim) {
             return None;
         }
-        let mut curves = [(0, DVec3::ZERO); 13];
-        let mut count = 0;
+        let mut curves = SmallVec::<[(usize, P); 13]>::new();
         let mut curve = |border: u8, at: DVec3| {
             if border != INSIDE {
-                curves[count] = (border as usize, image(at));
-                count += 1;
+                curves.push((border as usize, image(at)));
             }
         };
         let [starts, rim, ends] = [0, 1, 2].map(|edge| borders[(piece.corner + edge) % 3]);
         curve(starts, sector.start);
         curve(ends, sector.end);
-        sector.rim.iter().for_each(|&at| curve(rim, at));
         // Where only one of the edges at the vertex is the triangle's, the vertex lies on that edge.
         match (starts, ends) {
             (INSIDE, on) | (on, INSIDE) => curve(on, DVec3::ZERO),
             (first, second) if first == second => curve(first, DVec3::ZERO),
             _ => {}
         }
+        sector.rim.iter().for_each(|&at| curve(rim, at));
         let is_inside = starts == INSIDE && ends == INSIDE;
         let vertex = is_inside.then_some(DVec3::ZERO);
-        let inner = sector.hull.iter().copied().chain(vertex).map(image);
-        Some(self.bound.points(inner, &curves[..count]).grown(rest))
+        let inner: SmallVec<[P; 16]> = sector.hull.iter().copied().chain(vertex).map(image).collect();
+        Some(self.bound.points(&inner, &curves).grown(rest))
     }
 
     /// The greatest distance of the control points from the triangle, and from the edges in `borders`; `None` as soon as
     /// one is farther away than helps.
     fn hull(
         &self,
-        each_point: impl FnOnce(&mut dyn FnMut(DVec3)),
+        each_point: impl FnOnce(&mut dyn FnMut(P)),
         borders: Borders,
         depth: usize,
     ) -> Option<Deviation> {
@@ -172,12 +179,12 @@ impl Search<'_> {
                 return;
             }
             if !self.effort.rim_alone {
-                greatest = greater(greatest, frame.squared(point));
+                greatest = greater(greatest, point.squared(frame));
             }
             let open = self.effort.open;
             let counts = |&border: &u8| border != INSIDE && (!self.effort.rim_alone || open[border as usize]);
             for border in borders.into_iter().filter(counts) {
-                greatest = greater(greatest, frame.squared_to_edge(border as usize, point));
+                greatest = greater(greatest, point.squared_to_edge(frame, border as usize));
             }
         });
         (!exceeds(greatest, limit)).then(|| Deviation::alone(greatest.sqrt()))

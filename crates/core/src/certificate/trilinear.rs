@@ -1,0 +1,222 @@
+//! Points as a triangle sees them: the height over its plane, and the trilinear coordinates, the distances of the point's foot from the
+//! lines of the edges, positive outside.
+//!
+//! All four are affine functions of the point. So whatever is made of points with weights whose sum is 1 (refinements, nets, halves)
+//! can be made of these four numbers in their place, in registers of their own, and what a bound asks of a point is there at once. What
+//! it asks besides follows from the trilinear coordinates o₀, o₁, o₂, edge e running along tₑ from the triangle's angle αₑ to the next:
+//!
+//! * how far along edge e the foot stands from its start: (oₑ cos αₑ − oₑ₋₁)/sin αₑ up to signs, for oₑ₋₁ is linear in that and in oₑ, and
+//!   vanishes at the start;
+//! * the squared length of a vector: h² + Σ wₑoₑ² with wₑ = cos γₑ/(sin αₑ sin αₑ₊₁), γₑ being the angle opposite to the edge. For vectors along two
+//!   edges j ≠ k the sum's bilinear form is wᵢ oᵢ(tⱼ) oᵢ(tₖ), as the other two terms vanish, and has to be tⱼ · tₖ.
+//!
+//! Both lose digits with the sine of the least angle, so slivers are left to points in space.
+
+use super::triangle_frame::{Beside, SLIVER, TriangleFrame};
+use crate::vector::{Blend, DVec3};
+use core::ops::{Add, Div, Mul, Sub, SubAssign};
+use wide::f64x4;
+
+/// A point's height and trilinear coordinates, or the differences of two points'.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Trilinear(pub(super) f64x4);
+
+/// A triangle without small angles, prepared for points that are seen from it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TrilinearFrame {
+    /// The first corner.
+    origin: DVec3,
+    pub(super) lengths: [f64; 3],
+    /// As [`TriangleFrame::on_edge`] and [`TriangleFrame::slope_at`] have it.
+    pub(super) on_edge: f64,
+    pub(super) slopes: [f64; 3],
+    /// What a point's coordinates count, by axis, and what is taken away.
+    axes: [f64x4; 3],
+    offsets: f64x4,
+    /// Of the squares in a squared length.
+    squares: f64x4,
+    /// By edge, what the trilinear coordinates of the edge before and of its own count for the place along it.
+    along: [[f64; 2]; 3],
+}
+
+impl TrilinearFrame {
+    /// The frame of a triangle; `None` if it is a sliver, or not of numbers.
+    pub(super) fn of(triangle: &TriangleFrame) -> Option<Self> {
+        let (up, outward) = (triangle.normal(), [0, 1, 2].map(|edge| triangle.outward(edge)));
+        let along = [0, 1, 2].map(|edge| triangle.along(edge));
+        // By corner, of the edges that meet there.
+        let sines = [0, 1, 2].map(|corner| -outward[(corner + 2) % 3].dot(along[corner]));
+        if !sines.iter().all(|&sine| sine > SLIVER) || triangle.is_flat() {
+            return None;
+        }
+        let cosines = [0, 1, 2].map(|corner| -along[(corner + 2) % 3].dot(along[corner]));
+        let lanes = |of: fn(DVec3) -> f64| {
+            let [a, b, c] = outward.map(of);
+            f64x4::new([of(up), a, b, c])
+        };
+        let [a, b, c] = [0, 1, 2].map(|edge| triangle.offset(edge));
+        let [u, v, w] = [0, 1, 2].map(|edge| cosines[(edge + 2) % 3] / (sines[edge] * sines[(edge + 1) % 3]));
+        Some(Self {
+            origin: triangle.first(),
+            lengths: [0, 1, 2].map(|edge| triangle.length(edge)),
+            on_edge: triangle.on_edge(),
+            slopes: [0, 1, 2].map(|edge| triangle.slope_at(edge)),
+            axes: [lanes(|v| v.x), lanes(|v| v.y), lanes(|v| v.z)],
+            offsets: f64x4::new([0.0, a, b, c]),
+            squares: f64x4::new([1.0, u, v, w]),
+            along: [0, 1, 2].map(|edge| {
+                let share = -1.0 / sines[edge];
+                [share, share * cosines[edge]]
+            }),
+        })
+    }
+
+    /// A point.
+    #[inline(always)]
+    pub(super) fn see(&self, point: DVec3) -> Trilinear {
+        let offset = point - self.origin;
+        let [x, y, z] = self.axes;
+        Trilinear(x * offset.x + y * offset.y + z * offset.z - self.offsets)
+    }
+
+    /// The squared length of a difference.
+    #[inline]
+    pub(super) fn length_squared(&self, Trilinear(difference): Trilinear) -> f64 {
+        (difference * difference * self.squares).reduce_add()
+    }
+
+    /// What the distances from the lines of the edge before and of an edge itself count for the place along that.
+    #[inline]
+    pub(super) fn shares_along(&self, edge: usize) -> [f64; 2] {
+        self.along[edge]
+    }
+}
+
+impl Trilinear {
+    /// The height, and the distances from the lines of the edges.
+    #[inline]
+    pub(super) fn split(self) -> (f64, [f64; 3]) {
+        let [height, a, b, c] = self.0.to_array();
+        (height, [a, b, c])
+    }
+
+    /// Where the foot stands to an edge.
+    pub(super) fn beside(self, frame: &TrilinearFrame, edge: usize) -> Beside {
+        let (_, outside) = self.split();
+        let own = outside[edge];
+        let [by_before, by_own] = frame.shares_along(edge);
+        let along = by_before * outside[(edge + 2) % 3] + by_own * own;
+        Beside { outside: if own > frame.on_edge { own } else { 0.0 }, along }
+    }
+
+    /// The squared distance to an edge.
+    pub(super) fn squared_to_edge(self, frame: &TrilinearFrame, edge: usize) -> f64 {
+        let (height, outside) = self.split();
+        let along = self.beside(frame, edge).along;
+        let beyond = (-along).max(along - frame.lengths[edge]).max(0.0);
+        height * height + outside[edge] * outside[edge] + beyond * beyond
+    }
+
+    /// The squared distance to the triangle.
+    pub(super) fn squared(self, frame: &TrilinearFrame) -> f64 {
+        let (height, outside) = self.split();
+        if outside.iter().all(|&outside| outside <= 0.0) {
+            return height * height;
+        }
+        [0, 1, 2].map(|edge| self.squared_to_edge(frame, edge)).into_iter().fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl Blend for Trilinear {}
+
+impl Add for Trilinear {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl Sub for Trilinear {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0)
+    }
+}
+
+impl SubAssign for Trilinear {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        self.0 -= other.0;
+    }
+}
+
+impl Mul<f64> for Trilinear {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0 * factor)
+    }
+}
+
+impl Div<f64> for Trilinear {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, divisor: f64) -> Self {
+        // Divisors are constants, and quotients take ten times as long as products.
+        Self(self.0 * (1.0 / divisor))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As the triangle in space says, whatever its shape.
+    #[test]
+    fn what_is_asked_of_a_point_is_what_it_is_in_space() {
+        let mut count = 0.0;
+        let mut vector = || {
+            let mut number = || {
+                count += 1.0;
+                let t: f64 = count;
+                (t * t * 0.37 + t * 1.9).sin()
+            };
+            DVec3::new(number(), number(), number())
+        };
+        let (mut seen, mut slivers) = (0, 0);
+        for case in 0..3000 {
+            let size = 10f64.powi(case % 7 - 3);
+            let (a, b) = (size * vector(), size * vector());
+            // Now and then a thin one.
+            let thin = if case % 3 == 0 { 0.3f64.powi(case % 8) } else { 1.0 };
+            let triangle = TriangleFrame::new([a, a + b, a + 0.4 * b + thin * size * vector()]);
+            let Some(frame) = TrilinearFrame::of(&triangle) else {
+                slivers += 1;
+                continue;
+            };
+            seen += 1;
+            let near = |a: f64, b: f64, size: f64| {
+                assert!((a - b).abs() <= 1e-10 * size.max(b.abs()), "{case}: {a} {b} {triangle:?}");
+            };
+            let (point, other) = (a + 2.0 * size * vector(), a + 2.0 * size * vector());
+            let (own, second) = (frame.see(point), frame.see(other));
+            near(own.split().0, triangle.height(point), size);
+            for edge in 0..3 {
+                let (found, expected) = (own.beside(&frame, edge), triangle.beside(edge, point));
+                near(found.outside, expected.outside, size);
+                near(found.along, expected.along, size);
+                let squared = triangle.squared_to_edge(edge, point);
+                near(own.squared_to_edge(&frame, edge), squared, size * size);
+            }
+            near(own.squared(&frame), triangle.squared(point), size * size);
+            near(frame.length_squared(own - second), point.distance_squared(other), size * size);
+        }
+        assert!(seen > 2000 && slivers > 50, "{seen}, {slivers}");
+    }
+}
