@@ -60,6 +60,13 @@ impl Place {
         (path(self), self.level) < (path(other), other.level)
     }
 
+    /// Whether another is this node or one below it.
+    pub(crate) fn holds(self, other: Self) -> bool {
+        other.face == self.face
+            && other.level >= self.level
+            && other.path >> (2 * (other.level - self.level)) == self.path
+    }
+
     /// The child taken on the way from `level` to the next one.
     pub(crate) fn digit(self, level: u32) -> usize {
         (self.path >> (2 * (self.level - 1 - level)) & 3) as usize

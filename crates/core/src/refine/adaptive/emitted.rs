@@ -1,5 +1,7 @@
 //! The emitted triangles, each with its vertices and the part of the surface that it stands for.
 
+use core::ops::Range;
+
 use super::chains::Chains;
 use super::close::{Closed, lies_along};
 use super::decide::Control;
@@ -51,6 +53,11 @@ impl Over<'_, '_> {
 
 /// Who looks at the triangles.
 pub(super) trait Beholder {
+    /// Whether triangles with these numbers, those of the leaves below a node, are to be shown.
+    fn wants(&self, _node: Place, _triangles: Range<u32>) -> bool {
+        true
+    }
+
     /// Looks at one.
     fn triangle<'p>(&mut self, emitted: &Emitted, over: Over<'_, 'p>, rules: &'p Rules<'p>);
 }
@@ -105,8 +112,14 @@ impl<B: Beholder> Visitor for Leaves<'_, B> {
     fn chain(&mut self, _: &[Knot], _: usize, _: Spot, _: Surface<'_>) {}
 
     fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
-        self.rim.set(node, knots);
         let n = 1usize << node.depth;
+        let end = self.next + node.triangles() as u32;
+        if !self.beholder.wants(node.place, self.next..end) {
+            self.diagonals = self.diagonals.get(self.rim.diagonals(node, knots)..).unwrap_or_default();
+            self.next = end;
+            return;
+        }
+        self.rim.set(node, knots);
         for j in 0..n {
             for i in 0..n - j {
                 self.upright(node, (i, j));

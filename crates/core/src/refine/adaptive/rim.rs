@@ -13,6 +13,17 @@ pub(super) struct Rim {
 }
 
 impl Rim {
+    /// How many leaves of a node have two split edges, and so a diagonal each.
+    pub(super) fn diagonals(&mut self, node: &Node<'_>, knots: &[Knot]) -> usize {
+        if node.is_plain() {
+            return 0;
+        }
+        self.set(node, knots);
+        let n = 1usize << node.depth;
+        let split = Self::leaves(n).map(|(i, j)| bits(&self.split(n, i, j)));
+        split.filter(|bits| bits.count_ones() == 2).count()
+    }
+
     /// Takes the sides of a node.
     pub(super) fn set(&mut self, node: &Node<'_>, knots: &[Knot]) {
         for (edge, side) in node.sides.iter().enumerate() {

@@ -77,11 +77,7 @@ impl Merged<'_> {
         let sides = self.sides(&numbers, watch)?;
         let renamed = self.renamed(&whole, corners, watch)?;
         let name = |vertex: u32| renamed[vertex as usize];
-        watch.each(&mut twins, |twin| {
-            if *twin != NONE {
-                *twin = numbers.of(*twin);
-            }
-        })?;
+        numbers.renumber(&mut twins, watch)?;
         let borders = core::mem::take(&mut junctions.edges);
         borders.iter().for_each(|group| junctions.edges.push(group.iter().map(|&h| numbers.of(h))));
         junctions.vertices.rename(name);
@@ -377,6 +373,21 @@ impl Numbers<'_> {
             NONE => self.exchange.kept.get(&triangle).copied(),
             start => Some(start + (triangle - self.starts[face])),
         }
+    }
+
+    /// Gives the half-edges in a list by half-edge their numbers. Most are of the same control face as where they stand.
+    fn renumber(&self, twins: &mut [u32], watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
+        let ranges = self.starts.windows(2).zip(&self.exchange.starts);
+        for (range, &now) in ranges {
+            let (from, to) = (3 * range[0], 3 * range[1]);
+            let moved = (now != NONE).then(|| (3 * now).wrapping_sub(from));
+            watch.each(&mut twins[from as usize..to as usize], |twin| match moved {
+                Some(by) if (from..to).contains(twin) => *twin = twin.wrapping_add(by),
+                _ if *twin != NONE => *twin = self.of(*twin),
+                _ => {}
+            })?;
+        }
+        Ok(())
     }
 
     /// The number of a half-edge; [`NONE`] for one that was inside a region.

@@ -3,6 +3,8 @@
 //! What was said of leaves is of no use here: neighbours may have had them split since, so that vertices of the mesh lie where the
 //! surface stood highest over them.
 
+use core::ops::Range;
+
 use super::super::close::lies_along;
 use super::super::decide::child_open;
 use super::super::emit::Emission;
@@ -12,13 +14,17 @@ use super::super::surface::Surface;
 use super::super::{Engine, Plan};
 use crate::certificate::TriangleFrame;
 use crate::geometry::closest_to_origin;
+use crate::parallel::IsStopped;
 use crate::patch::Rules;
 use crate::patch::child_corners;
 use crate::progress::Cancelled;
-use crate::vector::{DVec3, vector};
+use crate::vector::{DVec3, Extremes, vector};
 
 /// Levels below a leaf whose vertices are sampled: the greatest distance is met within some per cent.
 pub(super) const SAMPLED_LEVELS: usize = 3;
+
+/// Triangles that are looked at between two questions whether that is still of use.
+const LOOKED_AT: usize = 1 << 14;
 
 /// The point of the surface over a leaf that is farthest from its triangles; over the one that bends most of a control face's where
 /// none is given. Where vertices were moved, those that stand highest and lowest, and the corners.
@@ -35,12 +41,16 @@ pub(super) fn farthest(
         _ => {
             let sources = engine.sources(plan, emission);
             let found = engine.watch.long_pieces(1, 1, |_, is_stopped| {
-                let mut found =
-                    Finder { emission, leaf, bend: -1.0, place: Place::root(face), triangles: Vec::new() };
+                let wanted = match leaf {
+                    Some(place) => Wanted::Leaf(place),
+                    None => Wanted::LeafOf(most_bent(emission, face, is_stopped)),
+                };
+                let place = Place::root(face);
+                let mut found = Finder { wanted, is_found: false, place, triangles: Vec::new() };
                 sources.show(face, is_stopped, &mut found);
-                (found.place, found.triangles)
+                found.is_found.then_some((found.place, found.triangles))
             })?;
-            found.into_iter().next().unwrap_or((Place::root(face), Vec::new()))
+            found.into_iter().flatten().next().unwrap_or((Place::root(face), Vec::new()))
         }
     };
     let control = engine.control;
@@ -95,45 +105,127 @@ fn sample_rim(surface: Surface<'_>, open: [bool; 3], levels: usize, points: &mut
     (0..4).for_each(|child| sample_rim(surface.child(child), child_open(open, child), levels - 1, points));
 }
 
-/// Finds the triangles of a leaf, or of the one with the triangle over which the surface bends most.
-struct Finder<'a> {
-    emission: &'a Emission,
-    leaf: Option<Place>,
-    /// About the surface's greatest height over a triangle.
-    bend: f64,
-    place: Place,
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Beholder for Finder<'_> {
-    fn triangle<'p>(&mut self, emitted: &Emitted, _: Over<'_, 'p>, _: &'p Rules<'p>) {
-        let is_wanted = match self.leaf {
-            Some(leaf) => emitted.place == leaf,
-            None => self.bends_more(emitted) || emitted.place == self.place && !self.triangles.is_empty(),
-        };
-        if is_wanted {
-            if emitted.place != self.place {
-                (self.place, self.triangles) = (emitted.place, Vec::new());
-            }
-            self.triangles.push(emitted.vertices);
+/// The triangle of a control face over which the surface bends most, as far as the normals at its corners tell.
+fn most_bent(emission: &Emission, face: u32, is_stopped: &IsStopped<'_>) -> u32 {
+    let Emission { positions, normals, triangles, .. } = emission;
+    let (mut number, mut greatest) = (0, -1.0);
+    for triangle in emission.triangles_of(face) {
+        if triangle % LOOKED_AT == LOOKED_AT - 1 && is_stopped() {
+            break;
         }
-    }
-}
-
-impl Finder<'_> {
-    /// Whether the surface bends more over a triangle than over those before, as far as the normals at its corners tell.
-    fn bends_more(&mut self, emitted: &Emitted) -> bool {
-        let at = |list: &[[f64; 3]], corner: usize| vector(list[emitted.vertices[corner % 3] as usize]);
-        let Emission { positions, normals, .. } = self.emission;
+        let at = |list: &[[f64; 3]], corner: usize| vector(list[triangles[triangle][corner % 3] as usize]);
         let bend = |edge: usize| {
             let along = at(positions, edge + 1) - at(positions, edge);
             (at(normals, edge + 1) - at(normals, edge)).dot(along).abs()
         };
-        let bend = 0.125 * bend(0).max(bend(1)).max(bend(2));
-        let is_more = bend > self.bend;
-        if is_more {
-            self.bend = bend;
+        let bend = bend(0).larger(bend(1)).larger(bend(2));
+        if bend > greatest {
+            (number, greatest) = (triangle as u32, bend);
         }
-        is_more
+    }
+    number
+}
+
+/// Which leaf is looked for.
+#[derive(Clone, Copy)]
+enum Wanted {
+    Leaf(Place),
+    /// That of a triangle.
+    LeafOf(u32),
+}
+
+/// Finds the triangles of a leaf.
+struct Finder {
+    wanted: Wanted,
+    is_found: bool,
+    /// The leaf at hand, or that one.
+    place: Place,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Beholder for Finder {
+    fn wants(&self, node: Place, triangles: Range<u32>) -> bool {
+        match self.wanted {
+            Wanted::Leaf(leaf) => node.holds(leaf),
+            Wanted::LeafOf(triangle) => triangles.contains(&triangle),
+        }
+    }
+
+    fn triangle<'p>(&mut self, emitted: &Emitted, _: Over<'_, 'p>, _: &'p Rules<'p>) {
+        // Those of a leaf follow each other.
+        if emitted.place != self.place {
+            if self.is_found {
+                return;
+            }
+            (self.place, self.triangles) = (emitted.place, Vec::new());
+        }
+        self.triangles.push(emitted.vertices);
+        self.is_found |= match self.wanted {
+            Wanted::Leaf(leaf) => emitted.place == leaf,
+            Wanted::LeafOf(triangle) => emitted.number == triangle,
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::demands::Demands;
+    use super::super::super::judge::Goal;
+    use super::super::super::with_engine;
+    use super::*;
+    use crate::models::stirred;
+    use crate::progress::unobserved;
+    use crate::refine::ExactOptions;
+    use crate::scheme::Loop;
+
+    /// All triangles with their leaves.
+    struct Listing(Vec<(u32, Place)>);
+
+    impl Beholder for Listing {
+        fn triangle<'p>(&mut self, emitted: &Emitted, _: Over<'_, 'p>, _: &'p Rules<'p>) {
+            self.0.push((emitted.number, emitted.place));
+        }
+    }
+
+    /// Nodes that are passed over take nothing with them: what is found is what a list of all tells.
+    #[test]
+    fn the_leaf_of_a_triangle_is_found_with_all_of_its_triangles() {
+        let mut found_in_parts = 0;
+        for (name, seed) in [("icosphere", 3), ("torus", 6), ("spike", 2), ("head", 1), ("cup", 5)] {
+            let mesh = stirred(name, seed);
+            let tolerance = 3e-4 * mesh.diagonal();
+            let options = ExactOptions::default().tolerance(tolerance);
+            with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
+                let mut plan = engine.plan(Goal::Within(tolerance), usize::MAX)?.unwrap();
+                let emission = engine.emit_all(&mut plan)?;
+                let sources = engine.sources(&plan, &emission);
+                for face in (0..mesh.face_count() as u32).step_by(3) {
+                    let mut all = Listing(Vec::new());
+                    sources.show(face, &|| false, &mut all);
+                    for &(number, leaf) in all.0.iter().step_by(7) {
+                        let expected = all.0.iter().filter(|&&(_, place)| place == leaf);
+                        let mut expected: Vec<[u32; 3]> =
+                            expected.map(|&(number, _)| emission.triangles[number as usize]).collect();
+                        for wanted in [Wanted::Leaf(leaf), Wanted::LeafOf(number)] {
+                            let place = Place::root(face);
+                            let mut found = Finder { wanted, is_found: false, place, triangles: Vec::new() };
+                            sources.show(face, &|| false, &mut found);
+                            assert!(found.is_found && found.place == leaf, "{name}, {leaf:?}");
+                            // They may begin at other corners.
+                            let mut triangles = found.triangles;
+                            let sorted = |triangle: &mut [u32; 3]| triangle.sort_unstable();
+                            expected.iter_mut().chain(&mut triangles).for_each(sorted);
+                            expected.sort_unstable();
+                            triangles.sort_unstable();
+                            assert_eq!(triangles, expected, "{name}, {leaf:?}");
+                            found_in_parts += usize::from(triangles.len() > 1);
+                        }
+                    }
+                }
+                Ok(())
+            })
+            .unwrap();
+        }
+        assert!(found_in_parts > 100, "{found_in_parts}");
     }
 }
