@@ -8,6 +8,7 @@
 mod kept;
 mod leaf_writer;
 
+use super::area::Areas;
 use super::chains::{Chains, first_of};
 use super::close::Closed;
 use super::decide::{Control, Decision};
@@ -133,16 +134,28 @@ pub(super) enum Extend {
     All,
 }
 
-/// Emits all leaves, or those of some control faces only. `closed` is what the walks over the faces found, `before` what was
-/// emitted last and the control faces that were walked over since: others are taken over as they are.
-///
-/// With some faces only, other faces have no triangles and no vertices inside; `has_origins` if origins are asked for.
+/// What is emitted of a plan. Half-edges beyond which nothing was have the twin [`UNKNOWN`].
+#[derive(Clone, Copy)]
+pub(super) enum Scope<'a> {
+    All,
+    /// The control faces of some areas: others have no triangles and no vertices inside.
+    Faces(&'a Areas),
+    /// No more of them than the areas. What is around these has room in the arrays that nobody touches.
+    Areas(&'a Areas),
+}
+
+/// What arrays are made of that nobody has touched; the half-edge of that number has another one as its twin.
+const UNKNOWN: u32 = 0;
+
+/// Emits leaves. `closed` is what the walks over the faces found, `before` what was
+/// emitted last and the control faces that were walked over since: others are taken over as they are. `has_origins` if origins are
+/// asked for.
 pub(super) fn emit(
     (control, watch): (&Control<'_>, &SharedWatch<'_>),
     edges: &Edges<'_>,
     (decision, chains): (&Decision, &Chains),
     closed: &[Closed],
-    (only, has_origins): (Option<&[Extend]>, bool),
+    (scope, has_origins): (Scope<'_>, bool),
     before: Option<(&Emission, &[bool])>,
 ) -> Result<Emission, RefineError> {
     let faces = control.mesh.face_count();
@@ -154,11 +167,19 @@ pub(super) fn emit(
         };
         before.is_some_and(is_here)
     };
-    let extend = |face: u32| match only.map_or(Extend::All, |only| only[face as usize]) {
-        Extend::All if is_kept(face) => Extend::Kept,
-        extend => extend,
+    let mut extend = match scope {
+        Scope::Faces(areas) | Scope::Areas(areas) => extends(edges, areas, faces),
+        Scope::All => vec![Extend::All; faces],
     };
-    let extend: Vec<Extend> = (0..faces as u32).map(extend).collect();
+    watch.each((0..).zip(&mut extend), |(face, extend)| {
+        if *extend == Extend::All && is_kept(face) {
+            *extend = Extend::Kept;
+        }
+    })?;
+    let only = match scope {
+        Scope::Areas(areas) => Some(areas),
+        Scope::All | Scope::Faces(_) => None,
+    };
     let counts = Counts { closed, extend: &extend };
     let total: usize = counts.triangles().map(|count| count as usize).sum();
     let inside: usize = counts.vertices().map(|count| count as usize).sum();
@@ -195,13 +216,24 @@ pub(super) fn emit(
     let jobs = jobs(control, edges, chains, &counts, &mut emission, watch)?;
     let kept = before.map(|(before, _)| Kept { before, mesh: control.mesh, edges, chains });
     let conditions = parallel::each_long_polled(jobs, &mut |_| watch.poll(), |job, is_stopped| {
-        write(control, edges, (decision, chains), (closed, kept.as_ref()), job, is_stopped)
+        write(control, edges, (decision, chains), (closed, kept.as_ref(), only), job, is_stopped)
     });
     emission.conditions = conditions?.concat();
     emission.is_whole = extend.into_iter().map(|extend| extend >= Extend::Kept).collect();
-    join(edges, &mut emission, watch)?;
+    join(edges, &mut emission, !matches!(scope, Scope::All), watch)?;
     sharp_edges((control, watch), edges, chains, &mut emission)?;
     Ok(emission)
+}
+
+/// How much of each face some areas take: theirs, and the edges of the faces around them.
+fn extends(edges: &Edges<'_>, areas: &Areas, faces: usize) -> Vec<Extend> {
+    let mut extend = vec![Extend::Nothing; faces];
+    for h in areas.0.keys().flat_map(|&face| 3 * face..3 * face + 3) {
+        let owner = first_of(edges, h) as usize / 3;
+        extend[owner] = extend[owner].max(Extend::Edges);
+    }
+    areas.0.keys().for_each(|&face| extend[face as usize] = Extend::All);
+    extend
 }
 
 /// Origins of vertices that are not known yet: written piece by piece, since they are no zeros, which cost nothing.
@@ -341,7 +373,7 @@ fn write(
     control: &Control<'_>,
     edges: &Edges<'_>,
     (decision, chains): (&Decision, &Chains),
-    (closed, kept): (&[Closed], Option<&Kept<'_>>),
+    (closed, kept, only): (&[Closed], Option<&Kept<'_>>, Option<&Areas>),
     mut job: Job<'_>,
     is_stopped: &IsStopped<'_>,
 ) -> Vec<(Condition, u32, u32)> {
@@ -358,10 +390,13 @@ fn write(
             return Vec::new();
         }
     }
-    job.twins.fill(NONE);
+    if only.is_none() {
+        job.twins.fill(NONE);
+    }
     let mut walk = Walk::new(trees, Vec::new(), job.inside.first, is_stopped);
     let mut writer = Writer {
         face: 0,
+        area: None,
         diagonals: &[],
         conditions: [&[], &[]],
         found: Vec::new(),
@@ -379,6 +414,7 @@ fn write(
         walk.knots.clear();
         let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
         (writer.face, writer.diagonals) = (face, &closed[face as usize].diagonals);
+        writer.area = only.and_then(|areas| areas.0.get(&face));
         writer.conditions = [decision.conditions(face), &closed[face as usize].conditions];
         let before = writer.next_triangle - job.first_triangle;
         let at = (Place::root(face), Spot::WHOLE);
@@ -398,7 +434,9 @@ fn write(
         }
         writer.end();
         let after = writer.next_triangle - job.first_triangle;
-        job.parents[before as usize..after as usize].fill(face);
+        if only.is_none() {
+            job.parents[before as usize..after as usize].fill(face);
+        }
         for side in sides {
             let own = split_off(&mut job.borders, side.segments());
             for (i, border) in own.iter_mut().enumerate() {
@@ -447,18 +485,34 @@ fn fraction(at: u32) -> f64 {
     f64::from(at) / f64::from(FULL)
 }
 
-/// Makes the half-edges on both sides of control edges twins.
-fn join(edges: &Edges<'_>, emission: &mut Emission, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
+/// Makes the half-edges on both sides of control edges twins; `has_gaps` if some of them may be missing.
+fn join(
+    edges: &Edges<'_>,
+    emission: &mut Emission,
+    has_gaps: bool,
+    watch: &SharedWatch<'_>,
+) -> Result<(), Cancelled> {
     let Emission { borders, twins, is_whole, .. } = emission;
     let is_whole = |h: u32| is_whole[h as usize / 3];
-    watch.each(0..borders.starts.len() as u32 - 1, |h| {
-        let twin = edges.twin(h).filter(|&twin| h < twin && is_whole(h) && is_whole(twin));
-        if let Some(twin) = twin {
+    watch.each(0..borders.starts.len() as u32 - 1, |h| match edges.twin(h) {
+        Some(twin) if h < twin && is_whole(h) && is_whole(twin) => {
             for (&a, &b) in borders.along(h).iter().zip(borders.along(twin).iter().rev()) {
-                twins[a as usize] = b;
-                twins[b as usize] = a;
+                if !has_gaps || a != NONE && b != NONE {
+                    twins[a as usize] = b;
+                    twins[b as usize] = a;
+                }
             }
         }
+        Some(twin) if has_gaps && is_whole(h) && !is_whole(twin) => {
+            let along = borders.along(h).iter().filter(|&&a| a != NONE);
+            along.for_each(|&a| twins[a as usize] = UNKNOWN);
+        }
+        // Elsewhere it is so already.
+        None if has_gaps && is_whole(h) => {
+            let along = borders.along(h).iter().filter(|&&a| a != NONE);
+            along.for_each(|&a| twins[a as usize] = NONE);
+        }
+        _ => {}
     })
 }
 

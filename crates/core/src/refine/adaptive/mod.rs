@@ -20,6 +20,7 @@
 //! 11. `flat`: regions whose surface lies in a plane, triangulated from their rims.
 
 mod among;
+mod area;
 mod backs;
 mod balance;
 mod budget;
@@ -69,7 +70,7 @@ use chains::{Chains, first_of};
 use close::close;
 use decide::{Control, decide};
 use demands::{Demands, Functions, surfaces_of};
-use emit::{Emission, Extend};
+use emit::{Emission, Scope};
 use flat::{FlatRegions, Net};
 pub(super) use frames::frames;
 use judge::Goal;
@@ -428,11 +429,12 @@ impl Engine<'_> {
         }
     }
 
-    /// Emits all of a plan, or some control faces, but for what was emitted before and is the same.
-    fn emit_some(&self, plan: &Plan, only: Option<&[Extend]>) -> Result<Emission, RefineError> {
+    /// Emits a plan, or so much of it, but for what was emitted before and is the same.
+    fn emit_some(&self, plan: &Plan, scope: Scope<'_>) -> Result<Emission, RefineError> {
         let before = plan.emission.as_ref().map(|emission| (emission, &plan.is_touched[..]));
         let chains = (&plan.decision, &plan.chains);
-        let extend = (only, self.has_origins);
+        let has_origins = self.has_origins && !matches!(scope, Scope::Areas(_));
+        let extend = (scope, has_origins);
         emit::emit((self.control, self.watch), &self.edges, chains, &plan.closed, extend, before)
     }
 
@@ -441,7 +443,7 @@ impl Engine<'_> {
         self.watch.stage(Stage::Assembling, None)?;
         let mut emission = match plan.emission.take_if(|emission| emission.is_complete(&plan.is_touched)) {
             Some(emission) => emission,
-            None => self.emit_some(plan, None)?,
+            None => self.emit_some(plan, Scope::All)?,
         };
         plan.emission = None;
         plan.is_touched.fill(false);
@@ -458,7 +460,7 @@ impl Engine<'_> {
         if !flat.has_strips() {
             return Ok(count);
         }
-        let emission = self.emit_some(plan, None)?;
+        let emission = self.emit_some(plan, Scope::All)?;
         let sharp = settle::sharp_edges(&emission, self.watch)?;
         let Emission { positions, triangles, twins, parents, starts, .. } = &emission;
         let corners = self.control.mesh.vertex_count();

@@ -5,7 +5,8 @@
 
 use std::collections::HashSet;
 
-use super::emit::{Emission, Extend};
+use super::area::Areas;
+use super::emit::{Emission, Scope};
 use super::judge::{Condition, Goal};
 use super::quadtree::Place;
 use super::{Engine, Plan};
@@ -25,6 +26,9 @@ const MOST_ROUNDS: usize = 2;
 /// division gives fails in its turn, and a front of such triangles creeps on by one a round.
 const PATIENT_ROUNDS: usize = 4;
 
+/// Where a greater part of the triangles than this would be looked at, all are emitted, and kept.
+const MOST_LOOKED_AT: f64 = 0.25;
+
 /// How many levels more at most.
 const MOST_UP: usize = 3;
 
@@ -35,17 +39,11 @@ impl Engine<'_> {
         loop {
             round += 1;
             self.settle_by_allowances(plan)?;
-            let only = self.conditional(plan)?;
-            if only.as_ref().is_some_and(|only| only.iter().all(|&extend| extend == Extend::Nothing)) {
+            let areas = self.conditional(plan)?;
+            if areas.0.is_empty() {
                 return Ok(true);
             }
-            let emission = self.emit_some(plan, only.as_deref())?;
-            let found = failing(&emission, &plan.goal, &mut plan.settled, self.watch)?;
-            // What is emitted again for a look at few faces is not worth what it took before.
-            if only.is_none() || plan.emission.is_none() {
-                plan.emission = Some(emission);
-                plan.is_touched.fill(false);
-            }
+            let found = self.failing(plan, &areas)?;
             let mut is_dirty = vec![false; plan.closed.len()];
             let mut is_split = false;
             for (place, bound) in found {
@@ -112,48 +110,70 @@ impl Engine<'_> {
         })
     }
 
-    /// What must be emitted to look at the conditions that nobody has looked at: their faces and those around, and the
-    /// edges of the faces around these. `None` if that is most of all.
-    fn conditional(&self, plan: &Plan) -> Result<Option<Vec<Extend>>, Cancelled> {
-        let faces = plan.closed.len();
-        let has = |face: usize| {
-            let conditions = [plan.decision.conditions(face as u32), &plan.closed[face].conditions];
-            plan.settled[face].is_none() && conditions.iter().any(|list| !list.is_empty())
+    /// What must be looked at: the leaves with conditions that nobody has looked at, and what is beside them.
+    fn conditional(&self, plan: &Plan) -> Result<Areas, Cancelled> {
+        let mut areas = Areas::default();
+        let faces = (0..plan.closed.len() as u32).filter(|&face| plan.settled[face as usize].is_none());
+        self.watch.each(faces, |face| {
+            let open = self.control.open(face);
+            let lists = [plan.decision.conditions(face), &plan.closed[face as usize].conditions];
+            for condition in lists.into_iter().flatten() {
+                areas.add(&self.edges, condition.place, open);
+            }
+        })?;
+        Ok(areas)
+    }
+
+    /// The leaves in these areas whose conditions do not hold.
+    fn failing(&self, plan: &mut Plan, areas: &Areas) -> Result<Vec<(Place, f64)>, RefineError> {
+        let count = |face: u32| plan.closed[face as usize].triangles as usize;
+        let in_faces: usize = areas.0.keys().map(|&face| count(face)).sum();
+        let in_areas: f64 = areas.0.iter().map(|(&face, area)| area.share() * count(face) as f64).sum();
+        // What is emitted first is taken over in the end; later looks are not worth that.
+        let scope = match plan.emission {
+            None if 2 * in_faces < plan.triangles => Scope::Faces(areas),
+            Some(_) if in_areas < MOST_LOOKED_AT * plan.triangles as f64 => Scope::Areas(areas),
+            _ => Scope::All,
         };
-        let wider = |is_marked: &dyn Fn(usize) -> bool| {
-            let mut wider = vec![false; faces];
-            let mark = |face| {
-                if is_marked(face) {
-                    self.mark(face as u32, &mut wider);
-                }
-            };
-            self.watch.each(0..faces, mark)?;
-            Ok(wider)
-        };
-        let whole = wider(&has)?;
-        let triangles = plan.closed.iter().zip(&whole).filter(|&(_, &is_whole)| is_whole);
-        let triangles: usize = triangles.map(|(face, _)| face.triangles as usize).sum();
-        if 2 * triangles >= plan.triangles {
-            return Ok(None);
+        let found = self.failing_in(plan, scope)?;
+        if found.is_none() && !matches!(scope, Scope::All) {
+            return Ok(self.failing_in(plan, Scope::All)?.unwrap_or_default());
         }
-        let edges = wider(&|face| whole[face])?;
-        let extend = |(is_whole, is_edge): (bool, bool)| match (is_whole, is_edge) {
-            (true, _) => Extend::All,
-            (false, true) => Extend::Edges,
-            (false, false) => Extend::Nothing,
-        };
-        Ok(Some(whole.into_iter().zip(edges).map(extend).collect()))
+        Ok(found.unwrap_or_default())
+    }
+
+    /// The same by so much of the plan; `None` if that does not tell. Keeps what was emitted but areas.
+    fn failing_in(
+        &self,
+        plan: &mut Plan,
+        scope: Scope<'_>,
+    ) -> Result<Option<Vec<(Place, f64)>>, RefineError> {
+        let emission = self.emit_some(plan, scope)?;
+        let mut found = failing(&emission, &plan.goal, &mut plan.settled, self.watch)?;
+        match scope {
+            Scope::Areas(_) => return Ok(found),
+            Scope::Faces(_) => {}
+            // What nobody can tell must not pass.
+            Scope::All => {
+                let all =
+                    || emission.conditions.iter().map(|(condition, ..)| (condition.place, f64::INFINITY));
+                found = found.or_else(|| Some(all().collect()));
+            }
+        }
+        plan.emission = Some(emission);
+        plan.is_touched.fill(false);
+        Ok(found)
     }
 }
 
 /// The leaves whose conditions do not hold, and what they come to. Where all of a control face do, `settled` gets the greatest bound of one, and the
-/// leaf; faces that have it already are passed over.
+/// leaf; faces that have it already are passed over. `None`, and nothing settled, if something beside them was not emitted.
 fn failing(
     emission: &Emission,
     goal: &Goal,
     settled: &mut [Option<(f64, Place)>],
     watch: &SharedWatch<'_>,
-) -> Result<Vec<(Place, f64)>, Cancelled> {
+) -> Result<Option<Vec<(Place, f64)>>, Cancelled> {
     let sharp = sharp_edges(emission, watch)?;
     let conditions =
         emission.conditions.iter().filter(|(condition, ..)| settled[condition.place.face as usize].is_none());
@@ -162,15 +182,19 @@ fn failing(
         let bounds = conditions[block].iter().map(|(condition, first, last)| {
             let (mut squared, mut slopes) = (0.0f64, [STEEP; 3]);
             for triangle in *first..*last {
+                if !has_neighbours(emission, &sharp, triangle) {
+                    return None;
+                }
                 let (turn, room) = beside(emission, &sharp, triangle);
                 squared = squared.max(turn);
                 (0..3).for_each(|edge| slopes[edge] = slopes[edge].min(room[edge]));
             }
             let bound = condition.deviation.bound(squared.sqrt(), slopes);
-            (bound, bound <= goal.allowed(condition.place.face), condition.place)
+            Some((bound, bound <= goal.allowed(condition.place.face), condition.place))
         });
-        bounds.collect::<Vec<_>>()
+        bounds.collect::<Option<Vec<_>>>()
     })?;
+    let Some(found) = found.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
     let (mut failing, mut failed) = (Vec::new(), HashSet::new());
     watch.each(found.into_iter().flatten(), |(bound, holds, place)| {
         let known = &mut settled[place.face as usize];
@@ -189,7 +213,13 @@ fn failing(
             *known = Some((0.0, Place::root(face)));
         }
     })?;
-    Ok(failing)
+    Ok(Some(failing))
+}
+
+/// Whether a triangle was emitted, and all that is beyond its edges.
+fn has_neighbours(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -> bool {
+    (3 * triangle..3 * triangle + 3)
+        .all(|h| beyond(emission, sharp, h).is_none_or(|twin| emission.twins[twin as usize] == h))
 }
 
 /// The half-edges along sharp edges.
@@ -274,11 +304,58 @@ mod tests {
     type Settled = Vec<Option<(f64, Place)>>;
 
     /// What fails, and what is found of each face, where nothing is known.
-    fn looked_at(engine: &Engine<'_>, plan: &mut Plan) -> (Vec<(Place, f64)>, Settled) {
+    fn looked_at_all(engine: &Engine<'_>, plan: &mut Plan) -> (Vec<(Place, f64)>, Settled) {
         plan.emission = None;
         let mut settled = vec![None; plan.settled.len()];
         let emission = engine.emit_all(plan).unwrap();
-        (failing(&emission, &plan.goal, &mut settled, engine.watch).unwrap(), settled)
+        (failing(&emission, &plan.goal, &mut settled, engine.watch).unwrap().unwrap(), settled)
+    }
+
+    /// What is looked at alone comes to what it comes to among all triangles, in plans that do not hold, too.
+    #[test]
+    fn areas_tell_what_all_triangles_tell() {
+        let names = ["icosphere", "torus", "sheet", "bumpy", "spike", "head", "cup", "shoe"];
+        let models: Vec<(&str, u64)> =
+            (0..names.len() as u64 * 8).map(|seed| (names[seed as usize % names.len()], 7 * seed)).collect();
+        let (mut plans, mut failed, mut looked_at, mut all) = (0, 0, 0, 0);
+        for &(name, seed) in &models {
+            let mesh = stirred(name, seed);
+            let tolerance = 10f64.powf(-2.0 - 0.13 * (seed % 20) as f64) * mesh.diagonal();
+            let options = ExactOptions::default().tolerance(tolerance);
+            with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
+                let goal = Goal::Within(tolerance);
+                let control = (engine.control, engine.watch);
+                let decision = super::super::decide::decide(
+                    control,
+                    &goal,
+                    &engine.edges,
+                    engine.max_levels,
+                    usize::MAX,
+                )?;
+                let faces = mesh.face_count();
+                let mut plan = Plan::of(goal, decision.unwrap(), faces);
+                engine.carry_out(&mut plan, vec![true; faces], usize::MAX)?;
+                plan.settled.fill(None);
+                let areas = engine.conditional(&plan)?;
+                let look = |scope| {
+                    let part = engine.emit_some(&plan, scope)?;
+                    let mut settled = vec![None; faces];
+                    let found = failing(&part, &plan.goal, &mut settled, engine.watch)?;
+                    Ok::<_, RefineError>((part, (found.unwrap(), settled)))
+                };
+                let (part, found) = look(Scope::Areas(&areas))?;
+                let (_, in_faces) = look(Scope::Faces(&areas))?;
+                let expected = looked_at_all(engine, &mut plan);
+                plans += usize::from(!areas.0.is_empty());
+                failed += expected.0.len();
+                assert_eq!((&found, &in_faces), (&expected, &expected), "{name}, seed {seed}");
+                looked_at += part.triangles.iter().filter(|&&triangle| triangle != [0; 3]).count();
+                all += plan.triangles;
+                Ok(())
+            })
+            .unwrap();
+        }
+        assert!(plans > 30 && failed > 100 && looked_at < all, "{plans}, {failed}, {looked_at} of {all}");
     }
 
     /// What is known of conditions is what they come to in the end: divisions change the triangles beside closing ones too,
@@ -298,7 +375,7 @@ mod tests {
         ];
         let mut counted = 0;
         with_plans(&models, |engine, mut plan, name| {
-            let (failing, found) = looked_at(engine, &mut plan);
+            let (failing, found) = looked_at_all(engine, &mut plan);
             assert!(failing.is_empty(), "{name}: {failing:?}");
             for (found, known) in found.into_iter().zip(&plan.settled) {
                 let [found, known] = [found, *known].map(|known| known.map_or(0.0, |(bound, _)| bound));
@@ -311,7 +388,7 @@ mod tests {
 
     /// What the triangles of a plan count on of those beside them, and whether what passes on conditions does so.
     fn assert_holds(engine: &Engine<'_>, plan: &mut Plan, name: &str) {
-        let (failing, _) = looked_at(engine, plan);
+        let (failing, _) = looked_at_all(engine, plan);
         assert!(failing.is_empty(), "{name}: {failing:?}");
         let emission = engine.emit_all(plan).unwrap();
         let sharp = sharp_edges(&emission, engine.watch).unwrap();
@@ -425,7 +502,7 @@ mod tests {
                     lost.push(face);
                     counted += 1;
                 }
-                let (failing, found) = looked_at(engine, &mut plan);
+                let (failing, found) = looked_at_all(engine, &mut plan);
                 for face in lost {
                     assert_eq!(found[face], None, "{name}");
                     let is_told =

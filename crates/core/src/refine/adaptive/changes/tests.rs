@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::f64::consts::TAU;
 
 use super::super::demands::Demands;
+use super::super::emit::Scope;
 use super::super::emitted::{Beholder, Emitted, Over, Sources};
 use super::super::judge::Goal;
 use super::super::measure::{Measured, measure};
@@ -135,7 +136,7 @@ fn rounds(name: &str, mesh: &Mesh, (share, seed): (f64, u64), counts: &mut [usiz
             let name = format!("{name}, round {round}");
             let touched = plan.is_touched.clone();
             let kept = plan.emission.take();
-            let anew = engine.emit_some(&plan, None)?;
+            let anew = engine.emit_some(&plan, Scope::All)?;
             plan.emission = kept;
             let mut emission = engine.emit_all(&mut plan)?;
             assert_eq!((&emission.triangles, &emission.twins), (&anew.triangles, &anew.twins), "{name}");

@@ -96,7 +96,8 @@ impl Kept<'_> {
             let (from, at) = (from..from + count, at..at + count);
             to.positions[at.clone()].copy_from_slice(&positions[from.clone()]);
             to.normals[at.clone()].copy_from_slice(&normals[from.clone()]);
-            if !origins.is_empty() {
+            // Looks do without.
+            if !origins.is_empty() && !to.origins.is_empty() {
                 to.origins[at].copy_from_slice(&origins[from]);
             }
         }

@@ -1,6 +1,7 @@
 //! Writes the leaves of control faces: the vertices inside and along chains, the triangles row by row, and which half-edges are
 //! twins.
 
+use super::super::area::Area;
 use super::super::judge::Condition;
 use super::super::quadtree::Place;
 use super::super::rim::{Rim, bits};
@@ -15,6 +16,9 @@ use crate::refine::exact_result::Origin;
 
 /// Rows that are written between two questions whether that is still of use.
 const ROWS: usize = 64;
+
+/// Rows of vertices along the sides of a node that its leaves there and those beside them have.
+const BESIDE: usize = 2;
 
 /// A run of vertices to be written: the first's number, then positions, normals, and origins where they are asked for.
 pub(super) struct Vertices<'a> {
@@ -59,6 +63,8 @@ const CLOSING: usize = 1;
 /// Writes the leaves of control faces.
 pub(super) struct Writer<'a> {
     pub(super) face: u32,
+    /// What is written of the face; all if there is none.
+    pub(super) area: Option<&'a Area>,
     /// Those of the face that have not come yet.
     pub(super) diagonals: &'a [bool],
     /// Conditions of the face that have not come yet, in the order of the walk: those of its division, some of whose leaves were divided
@@ -80,7 +86,8 @@ pub(super) struct Writer<'a> {
 impl Visitor for Writer<'_> {
     fn chain(&mut self, knots: &[Knot], edge: usize, spot: Spot, middle: Surface<'_>) {
         let last = knots.len() - 1;
-        if last < 2 {
+        let is_wanted = |area: &Area| area.meets([0.0, 1.0].map(|t| spot.along(edge, t)));
+        if last < 2 || !self.area.is_none_or(is_wanted) {
             return;
         }
         let mut places = core::mem::take(&mut self.places);
@@ -95,6 +102,9 @@ impl Visitor for Writer<'_> {
     }
 
     fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+        if !self.area.is_none_or(|area| area.meets(node.spot.corners())) {
+            return self.pass_over(node, knots);
+        }
         self.interior(node);
         self.rim.set(node, knots);
         self.cover(node, knots);
@@ -106,6 +116,15 @@ impl Writer<'_> {
         Origin { face: self.face, barycentric: [1.0 - u - v, u, v] }
     }
 
+    /// Leaves the room of a node empty.
+    fn pass_over(&mut self, node: &Node<'_>, knots: &[Knot]) {
+        self.diagonals = self.diagonals.get(self.rim.diagonals(node, knots)..).unwrap_or_default();
+        if node.is_conditional {
+            self.found.push((Condition::unknown(node.place), self.next_triangle, self.next_triangle));
+        }
+        self.next_triangle += node.triangles() as u32;
+    }
+
     /// The vertices inside a node, row by row.
     fn interior(&mut self, node: &Node<'_>) {
         let n = 1usize << node.depth;
@@ -114,14 +133,21 @@ impl Writer<'_> {
         let (step, own) = (spot.size / n as f64, node.spot);
         for j in 1..n.max(2) - 1 {
             let count = n - 1 - j;
-            let row = at..at + count;
-            piece.ground().piece.points_and_normals_along(
-                spot.v + step * j as f64,
-                spot.u + step,
-                step,
-                &mut self.inside.positions[row.clone()],
-                &mut self.inside.normals[row],
-            );
+            // Leaves of a node that pass on conditions are on its sides: what shares an edge with them ends a row or two from there.
+            let ends = match self.area {
+                Some(_) if j > BESIDE && count > 2 * BESIDE => [0..BESIDE, count - BESIDE..count],
+                _ => [0..count, 0..0],
+            };
+            for columns in ends.into_iter().filter(|columns| !columns.is_empty()) {
+                let row = at + columns.start..at + columns.end;
+                piece.ground().piece.points_and_normals_along(
+                    spot.v + step * j as f64,
+                    spot.u + step * (1 + columns.start) as f64,
+                    step,
+                    &mut self.inside.positions[row.clone()],
+                    &mut self.inside.normals[row],
+                );
+            }
             if !self.inside.origins.is_empty() {
                 for i in 1..=count {
                     let leaf = own.leaf(node.depth, i, j);
