@@ -5,8 +5,8 @@
 //! the piece is refined, and what is left at the vertex is bounded by its control points: two convex hulls are nowhere farther
 //! from each other than two of their points.
 
-use super::bounds::NetPart;
 use super::greater;
+use super::net_part::NetPart;
 use super::sub_triangle::SubTriangle;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{Patch, Rules, child_corners};

@@ -1,6 +1,7 @@
 //! The bounds against dense samples of the pieces, both ways.
 
 use super::*;
+use crate::certificate::exceeds;
 use crate::patch::characteristic::Characteristic;
 use crate::patch::extraordinary::ExtraordinaryPatch;
 use crate::scheme::Loop;

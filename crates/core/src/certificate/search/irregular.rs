@@ -1,5 +1,5 @@
 //! Pieces at irregular vertices as they are: by an affine image of the characteristic map, by the hull of their control points, or by
-//! what stands for them while tags fade (see [`super`]).
+//! what stands for them while tags fade (see [`super::super::bounds`]).
 
 use super::super::hull_points::HullPoint;
 use super::super::{exceeds, greater};
@@ -47,7 +47,7 @@ impl<P: HullPoint> Search<'_, P> {
 
     /// Takes a piece at an irregular vertex that is none of [`Self::extraordinary`] as it is if that is enough, or if nothing will be; says
     /// whether it did.
-    pub(super) fn is_settled(
+    pub(in super::super) fn is_settled(
         &mut self,
         patch: &Patch,
         part: SubTriangle,
@@ -65,7 +65,7 @@ impl<P: HullPoint> Search<'_, P> {
     }
 
     /// A piece at an irregular vertex inside the surface, all of whose ring is there: as it is if that is enough, else refined.
-    pub(super) fn extraordinary(
+    pub(in super::super) fn extraordinary(
         &mut self,
         piece: &ExtraordinaryPatch<P>,
         part: SubTriangle,
