@@ -5,8 +5,8 @@
 //! can be made of these four numbers in their place, in registers of their own, and what a bound asks of a point is there at once. What
 //! it asks besides follows from the trilinear coordinates o₀, o₁, o₂, edge e running along tₑ from the triangle's angle αₑ to the next:
 //!
-//! * how far along edge e the foot stands from its start: (oₑ cos αₑ − oₑ₋₁)/sin αₑ up to signs, for oₑ₋₁ is linear in that and in oₑ, and
-//!   vanishes at the start;
+//! * how far along edge e the foot stands from its start: −(oₑ₋₁ + oₑ cos αₑ)/sin αₑ, for oₑ₋₁ falls by sin αₑ for each unit along the
+//!   edge and by cos αₑ for each unit outwards, and vanishes at the start;
 //! * the squared length of a vector: h² + Σ wₑoₑ² with wₑ = cos γₑ/(sin αₑ sin αₑ₊₁), γₑ being the angle opposite to the edge. For vectors along two
 //!   edges j ≠ k the sum's bilinear form is wᵢ oᵢ(tⱼ) oᵢ(tₖ), as the other two terms vanish, and has to be tⱼ · tₖ.
 //!
