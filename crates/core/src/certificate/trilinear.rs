@@ -10,18 +10,23 @@
 //! * the squared length of a vector: h² + Σ wₑoₑ² with wₑ = cos γₑ/(sin αₑ sin αₑ₊₁), γₑ being the angle opposite to the edge. For vectors along two
 //!   edges j ≠ k the sum's bilinear form is wᵢ oᵢ(tⱼ) oᵢ(tₖ), as the other two terms vanish, and has to be tⱼ · tₖ.
 //!
-//! Both lose digits with the sine of the least angle, so slivers are left to points in space.
+//! Both lose digits as angles get small, so triangles that lose more than rounding is given are left to points in space.
 
+use super::exceeds;
 use super::triangle_frame::{Beside, SLIVER, TriangleFrame};
 use crate::vector::{Blend, DVec3};
 use core::ops::{Add, Div, Mul, Sub, SubAssign};
 use wide::f64x4;
 
+/// The squares of trilinear coordinates count so many times in a squared length at most: what cancels leaves less than
+/// [`TriangleFrame::ROUNDING`].
+const MOST_LOST: f64 = 128.0;
+
 /// A point's height and trilinear coordinates, or the differences of two points'.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Trilinear(pub(super) f64x4);
 
-/// A triangle without small angles, prepared for points that are seen from it.
+/// A triangle without too small angles, prepared for points that are seen from it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TrilinearFrame {
     /// The first corner.
@@ -40,7 +45,7 @@ pub(super) struct TrilinearFrame {
 }
 
 impl TrilinearFrame {
-    /// The frame of a triangle; `None` if it is a sliver, or not of numbers.
+    /// The frame of a triangle; `None` if too many digits would be lost, or it is not of numbers.
     pub(super) fn of(triangle: &TriangleFrame) -> Option<Self> {
         let (up, outward) = (triangle.normal(), [0, 1, 2].map(|edge| triangle.outward(edge)));
         let along = [0, 1, 2].map(|edge| triangle.along(edge));
@@ -55,7 +60,11 @@ impl TrilinearFrame {
             f64x4::new([of(up), a, b, c])
         };
         let [a, b, c] = [0, 1, 2].map(|edge| triangle.offset(edge));
-        let [u, v, w] = [0, 1, 2].map(|edge| cosines[(edge + 2) % 3] / (sines[edge] * sines[(edge + 1) % 3]));
+        let weights = [0, 1, 2].map(|edge| cosines[(edge + 2) % 3] / (sines[edge] * sines[(edge + 1) % 3]));
+        if !weights.iter().all(|weight| weight.abs() <= MOST_LOST) {
+            return None;
+        }
+        let [u, v, w] = weights;
         Some(Self {
             origin: triangle.first(),
             lengths: [0, 1, 2].map(|edge| triangle.length(edge)),
@@ -106,19 +115,29 @@ impl Trilinear {
         let own = outside[edge];
         let [by_before, by_own] = frame.shares_along(edge);
         let along = by_before * outside[(edge + 2) % 3] + by_own * own;
-        Beside { outside: if own > frame.on_edge { own } else { 0.0 }, along }
+        Beside { outside: if exceeds(own, frame.on_edge) { own } else { 0.0 }, along }
     }
 
-    /// The squared distance to an edge.
+    fn is_finite(self) -> bool {
+        self.0.to_array().iter().all(|number| number.is_finite())
+    }
+
+    /// The squared distance to an edge; infinite for what is not a point.
     pub(super) fn squared_to_edge(self, frame: &TrilinearFrame, edge: usize) -> f64 {
+        if !self.is_finite() {
+            return f64::INFINITY;
+        }
         let (height, outside) = self.split();
         let along = self.beside(frame, edge).along;
         let beyond = (-along).max(along - frame.lengths[edge]).max(0.0);
         height * height + outside[edge] * outside[edge] + beyond * beyond
     }
 
-    /// The squared distance to the triangle.
+    /// The squared distance to the triangle; infinite for what is not a point.
     pub(super) fn squared(self, frame: &TrilinearFrame) -> f64 {
+        if !self.is_finite() {
+            return f64::INFINITY;
+        }
         let (height, outside) = self.split();
         if outside.iter().all(|&outside| outside <= 0.0) {
             return height * height;
@@ -202,7 +221,7 @@ mod tests {
             };
             seen += 1;
             let near = |a: f64, b: f64, size: f64| {
-                assert!((a - b).abs() <= 1e-10 * size.max(b.abs()), "{case}: {a} {b} {triangle:?}");
+                assert!((a - b).abs() <= 1e-12 * size.max(b.abs()), "{case}: {a} {b} {triangle:?}");
             };
             let (point, other) = (a + 2.0 * size * vector(), a + 2.0 * size * vector());
             let (own, second) = (frame.see(point), frame.see(other));
@@ -218,5 +237,34 @@ mod tests {
             near(frame.length_squared(own - second), point.distance_squared(other), size * size);
         }
         assert!(seen > 2000 && slivers > 50, "{seen}, {slivers}");
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_near_nothing() {
+        let corners = [DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.3, 0.8, 0.0)];
+        let frame = TrilinearFrame::of(&TriangleFrame::new(corners)).unwrap();
+        for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for axis in 0..3 {
+                let mut point = DVec3::new(0.3, 0.2, 0.1);
+                point[axis] = number;
+                let seen = frame.see(point);
+                assert_eq!(seen.squared(&frame), f64::INFINITY, "{point}");
+                for edge in 0..3 {
+                    assert_eq!(seen.squared_to_edge(&frame, edge), f64::INFINITY, "{point}");
+                }
+                // Nothing that fails closed takes any of these to be within something.
+                let distances = [0, 1, 2].map(|edge| seen.beside(&frame, edge).outside);
+                let height = seen.split().0.abs();
+                let is_near = |&distance: &f64| distance <= f64::MAX;
+                assert!(
+                    !is_near(&height) || !distances.iter().all(is_near),
+                    "{point}: {height} {distances:?}"
+                );
+                let length = frame.length_squared(seen - Trilinear::default());
+                assert!(!is_near(&length), "{point}: {length}");
+            }
+        }
+        let nothing = TriangleFrame::new(corners.map(|corner| corner * f64::NAN));
+        assert!(TrilinearFrame::of(&nothing).is_none());
     }
 }
