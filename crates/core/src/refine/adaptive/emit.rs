@@ -81,6 +81,11 @@ impl Emission {
         self.numbers.inside[face as usize] as usize..self.numbers.inside[face as usize + 1] as usize
     }
 
+    /// Whether what is beyond a half-edge is known to be its twin.
+    pub(super) fn is_known(&self, h: u32, twin: u32) -> bool {
+        twin != h && self.twins[twin as usize] == h
+    }
+
     /// Whether everything is here, and no control face has changed since.
     pub(super) fn is_complete(&self, is_changed: &[bool]) -> bool {
         self.is_whole.iter().zip(is_changed).all(|(&is_whole, &is_changed)| is_whole && !is_changed)
@@ -220,7 +225,7 @@ pub(super) fn emit(
     });
     emission.conditions = conditions?.concat();
     emission.is_whole = extend.into_iter().map(|extend| extend >= Extend::Kept).collect();
-    join(edges, &mut emission, !matches!(scope, Scope::All), watch)?;
+    join(edges, &mut emission, watch)?;
     sharp_edges((control, watch), edges, chains, &mut emission)?;
     Ok(emission)
 }
@@ -485,33 +490,27 @@ fn fraction(at: u32) -> f64 {
     f64::from(at) / f64::from(FULL)
 }
 
-/// Makes the half-edges on both sides of control edges twins; `has_gaps` if some of them may be missing.
-fn join(
-    edges: &Edges<'_>,
-    emission: &mut Emission,
-    has_gaps: bool,
-    watch: &SharedWatch<'_>,
-) -> Result<(), Cancelled> {
+/// Makes the half-edges on both sides of control edges twins; what is beyond those that are here alone is not known.
+fn join(edges: &Edges<'_>, emission: &mut Emission, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
     let Emission { borders, twins, is_whole, .. } = emission;
     let is_whole = |h: u32| is_whole[h as usize / 3];
+    // Half-edges of areas that were passed over have no number.
+    let mut meet = |[a, b]: [u32; 2], beyond: u32| {
+        if a != NONE {
+            twins[a as usize] = if b == NONE { beyond } else { b };
+        }
+    };
     watch.each(0..borders.starts.len() as u32 - 1, |h| match edges.twin(h) {
         Some(twin) if h < twin && is_whole(h) && is_whole(twin) => {
             for (&a, &b) in borders.along(h).iter().zip(borders.along(twin).iter().rev()) {
-                if !has_gaps || a != NONE && b != NONE {
-                    twins[a as usize] = b;
-                    twins[b as usize] = a;
-                }
+                meet([a, b], UNKNOWN);
+                meet([b, a], UNKNOWN);
             }
         }
-        Some(twin) if has_gaps && is_whole(h) && !is_whole(twin) => {
-            let along = borders.along(h).iter().filter(|&&a| a != NONE);
-            along.for_each(|&a| twins[a as usize] = UNKNOWN);
+        Some(twin) if is_whole(h) && !is_whole(twin) => {
+            borders.along(h).iter().for_each(|&a| meet([a, NONE], UNKNOWN));
         }
-        // Elsewhere it is so already.
-        None if has_gaps && is_whole(h) => {
-            let along = borders.along(h).iter().filter(|&&a| a != NONE);
-            along.for_each(|&a| twins[a as usize] = NONE);
-        }
+        None if is_whole(h) => borders.along(h).iter().for_each(|&a| meet([a, NONE], NONE)),
         _ => {}
     })
 }
