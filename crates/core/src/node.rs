@@ -72,6 +72,14 @@ impl Place {
         (self.path >> (2 * (self.level - 1 - level)) & 3) as usize
     }
 
+    /// Whether an edge of the node lies along an edge of its control face.
+    pub(crate) fn lies_along(self, edge: usize) -> bool {
+        (0..self.level).all(|level| {
+            let child = self.digit(level);
+            child == edge || child == (edge + 1) % 3
+        })
+    }
+
     /// The node of level `down` below this one, at number `index` along edge `edge` from its start.
     pub(crate) fn along(self, edge: usize, down: u32, index: u32) -> Self {
         let digits = (0..down).rev().map(|bit| along_edge(edge, index >> bit & 1 == 1));

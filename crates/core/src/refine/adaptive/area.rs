@@ -23,32 +23,29 @@ pub(super) struct Area {
 #[derive(Default)]
 pub(super) struct Areas(pub(super) BTreeMap<u32, Area>);
 
-/// Least and greatest u and v of some points.
-fn bounds<const N: usize>(points: [[f64; 2]; N]) -> [[f64; 2]; 2] {
-    [0, 1].map(|axis| {
+/// The cells that hold what is no farther from some points, along u and along v, than given: the rows, and the bits in each.
+fn cells<const N: usize>(points: [[f64; 2]; N], around: f64) -> (core::ops::RangeInclusive<usize>, u32) {
+    let cell = |at: f64| ((at * f64::from(CELLS)).max(0.0) as u32).min(CELLS - 1);
+    let [u, v] = [0, 1].map(|axis| {
         let along = points.map(|point| point[axis]);
-        [along.into_iter().fold(f64::INFINITY, f64::min), along.into_iter().fold(0.0, f64::max)]
-    })
-}
-
-/// The cells that hold what is between two places.
-fn cells([from, to]: [f64; 2]) -> [u32; 2] {
-    [from, to].map(|at| ((at * f64::from(CELLS)).max(0.0) as u32).min(CELLS - 1))
+        let (least, most) =
+            (along.into_iter().fold(f64::INFINITY, f64::min), along.into_iter().fold(0.0, f64::max));
+        [cell(least - around), cell(most + around)]
+    });
+    (v[0] as usize..=v[1] as usize, (u32::MAX << u[0]) & (u32::MAX >> (CELLS - 1 - u[1])))
 }
 
 impl Area {
     /// Adds what is no farther from some points, along u and along v, than given.
     fn add<const N: usize>(&mut self, points: [[f64; 2]; N], around: f64) {
-        let [u, v] = bounds(points).map(|[from, to]| cells([from - around, to + around]));
-        let bits = (u32::MAX << u[0]) & (u32::MAX >> (CELLS - 1 - u[1]));
-        self.rows[v[0] as usize..=v[1] as usize].iter_mut().for_each(|row| *row |= bits);
+        let (rows, bits) = cells(points, around);
+        self.rows[rows].iter_mut().for_each(|row| *row |= bits);
     }
 
     /// Whether the rectangle around some points may meet it.
     pub(super) fn meets<const N: usize>(&self, points: [[f64; 2]; N]) -> bool {
-        let [u, v] = bounds(points).map(cells);
-        let bits = (u32::MAX << u[0]) & (u32::MAX >> (CELLS - 1 - u[1]));
-        self.rows[v[0] as usize..=v[1] as usize].iter().any(|row| row & bits != 0)
+        let (rows, bits) = cells(points, 0.0);
+        self.rows[rows].iter().any(|row| row & bits != 0)
     }
 
     /// How much of the face that is at most.
@@ -64,17 +61,15 @@ impl Areas {
         let spot = (0..place.level).fold(Spot::WHOLE, |spot, level| spot.child(place.digit(level)));
         let (corners, around) = (spot.corners(), 2.0 * spot.size.abs());
         self.0.entry(place.face).or_default().add(corners, around);
-        // Along each control edge, from its start.
-        let along = corners.map(|[u, v]| [u, v, 1.0 - v]);
-        let off = corners.map(|[u, v]| [v, 1.0 - u - v, u]);
-        for edge in (0..3).filter(|&edge| !open[edge]) {
-            let on_edge = (0..3).filter(|&corner| off[corner][edge] <= 0.0).map(|corner| along[corner][edge]);
+        for edge in (0..3).filter(|&edge| !open[edge] && place.lies_along(edge)) {
             let Some(beyond) = edges.twin(3 * place.face + edge as u32) else { continue };
             // The edge runs the other way there.
-            let ends = on_edge.map(|at| Spot::WHOLE.along(beyond as usize % 3, 1.0 - at));
-            for end in ends {
-                self.0.entry(beyond / 3).or_default().add([end], 1.5 * around);
-            }
+            let [from, to] = [edge, (edge + 1) % 3].map(|corner| {
+                let [u, v] = corners[corner];
+                1.0 - [u, v, 1.0 - v][edge]
+            });
+            let ends = [from, to].map(|at| Spot::WHOLE.along(beyond as usize % 3, at));
+            self.0.entry(beyond / 3).or_default().add(ends, around);
         }
     }
 }

@@ -91,18 +91,10 @@ impl Lister {
         let n = 1 << node.depth;
         let place = node.place.leaf(node.depth, (i, j), false);
         let on_side = [j == 0, i + j + 1 == n, i == 0];
-        let open = [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && lies_along(node.place, edge));
+        let open = [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && node.place.lies_along(edge));
         let split = split.map(|middle| middle.is_some());
         self.leaves.push(Judged { place, split, open, is_strict: node.is_strict, verdict: None });
     }
-}
-
-/// Whether an edge of a node lies along an edge of its control face.
-pub(super) fn lies_along(place: Place, edge: usize) -> bool {
-    (0..place.level).all(|level| {
-        let child = place.digit(level);
-        child == edge || child == (edge + 1) % 3
-    })
 }
 
 /// Walks over a face; `known` is what was said on the last walk.

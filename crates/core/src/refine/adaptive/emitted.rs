@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::chains::Chains;
-use super::close::{Closed, lies_along};
+use super::close::Closed;
 use super::decide::Control;
 use super::emit::Emission;
 use super::leaf::leaf_triangles;
@@ -139,7 +139,7 @@ impl<B: Beholder> Leaves<'_, B> {
         let n = 1usize << node.depth;
         let place = node.place.leaf(node.depth, (i, j), false);
         let on_side = [j == 0, i + j + 1 == n, i == 0];
-        let open = [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && lies_along(node.place, edge));
+        let open = [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && node.place.lies_along(edge));
         let split = if on_side == [false; 3] { [None; 3] } else { self.rim.split(n, i, j) };
         let bits = bits(&split);
         let mut from_end = false;

@@ -5,7 +5,6 @@
 
 use core::ops::Range;
 
-use super::super::close::lies_along;
 use super::super::decide::child_open;
 use super::super::emit::Emission;
 use super::super::emitted::{Beholder, Emitted, Over};
@@ -64,7 +63,7 @@ pub(super) fn farthest(
     let mut points = Vec::new();
     if control.flat.is_its_rim(face) {
         let open = control.open(face);
-        let open = [0, 1, 2].map(|edge| open[edge] && lies_along(place, edge));
+        let open = [0, 1, 2].map(|edge| open[edge] && place.lies_along(edge));
         sample_rim(surface, open, SAMPLED_LEVELS, &mut points);
     } else {
         sample(surface, SAMPLED_LEVELS, &mut points);
