@@ -148,17 +148,14 @@ impl<'a> Pieces<'a> {
         let mut search = Search::<P>::of(effort.bound(frame), rules, effort);
         match (self.patch, part) {
             (_, SubTriangle::Child(child)) => {
-                search.refined(self.refined(rules), child, SubTriangle::Whole, ALL, 1);
+                search.refined(self.refined(rules), (child, SubTriangle::Whole, ALL), 1);
             }
             (Patch::Regular(points), _) => {
                 let net = self.net.get_or_insert_with(|| BezierTriangle::of(points));
                 search.own_net(&NetPart::own(net, part));
             }
-            (Patch::Extraordinary(piece), _) => {
-                let piece = search.seen(piece);
-                search.extraordinary(&piece, part, ALL, 0);
-            }
-            (Patch::Sectors(_) | Patch::Pole(_) | Patch::SemiSharp(_) | Patch::Mesh(_), _) => {
+            (Patch::Extraordinary(_) | Patch::Mesh(_), _) => search.part(self.patch, part, ALL, 0),
+            (Patch::Sectors(_) | Patch::Pole(_) | Patch::SemiSharp(_), _) => {
                 if !search.is_settled(self.patch, part, ALL, 0) {
                     search.divided(self.refined(rules), part, ALL, 0);
                 }
@@ -175,7 +172,8 @@ impl NetPart {
             let bound = DeviationBound::<P> { frame, open, rim_alone: false };
             bound.net(&part.seen::<P>(frame), part.borders)
         }
-        match TrilinearFrame::of(frame).filter(|_| open == [false; 3]) {
+        let has_neighbours = open == [false; 3];
+        match has_neighbours.then(|| TrilinearFrame::of(frame)).flatten() {
             Some(frame) => glance::<Trilinear>(self, &frame, open),
             None => glance::<DVec3>(self, frame, open),
         }

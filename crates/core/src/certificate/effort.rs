@@ -1,4 +1,4 @@
-//! When a bound is good enough, and how much may be done to get there.
+//! What a bound is asked for: the distance that is good enough, what is expected of the neighbours, and how often pieces may be halved.
 
 use super::hull_points::{DeviationBound, HullPoint};
 use super::triangle_frame::TriangleFrame;
@@ -44,9 +44,8 @@ impl Effort {
             least_chord: None,
         }
     }
-}
 
-impl Effort {
+    /// The bound of a triangle that looks as far as this says.
     pub(super) fn bound<'f, P: HullPoint>(&self, frame: &'f P::Frame) -> DeviationBound<'f, P> {
         DeviationBound { frame, open: self.open, rim_alone: self.rim_alone }
     }
@@ -54,6 +53,6 @@ impl Effort {
     /// The triangle's own frame, if points can be looked at from there.
     pub(super) fn seen_from(&self, frame: &TriangleFrame) -> Option<TrilinearFrame> {
         let has_neighbours = !self.rim_alone && self.open == [false; 3];
-        TrilinearFrame::of(frame).filter(|_| has_neighbours)
+        has_neighbours.then(|| TrilinearFrame::of(frame)).flatten()
     }
 }

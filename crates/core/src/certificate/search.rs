@@ -18,19 +18,15 @@ use crate::patch::{Patch, Points, RefinedPatch, Rules};
 /// told apart even if they may not be split.
 const HOPELESS: f64 = 1.5;
 
+/// A part of a refinement by its number, which part of that, and what its edges are.
+type PartOf = (usize, SubTriangle, Borders);
+
 /// A refined piece, whose parts a bound looks at as they are at hand.
 pub(super) trait Parts<P: HullPoint> {
     fn is_regular(&self, part: usize) -> bool;
 
-    /// Looks at a part, or a part of that.
-    fn look(
-        &self,
-        search: &mut Search<'_, P>,
-        part: usize,
-        of_part: SubTriangle,
-        borders: Borders,
-        depth: usize,
-    );
+    /// Looks at a part.
+    fn look(&self, search: &mut Search<'_, P>, part: PartOf, depth: usize);
 }
 
 impl<P: HullPoint> Parts<P> for RefinedPatch<'_> {
@@ -38,14 +34,7 @@ impl<P: HullPoint> Parts<P> for RefinedPatch<'_> {
         self.is_regular(part)
     }
 
-    fn look(
-        &self,
-        search: &mut Search<'_, P>,
-        part: usize,
-        of_part: SubTriangle,
-        borders: Borders,
-        depth: usize,
-    ) {
+    fn look(&self, search: &mut Search<'_, P>, (part, of_part, borders): PartOf, depth: usize) {
         if let Some(points) = self.points(part) {
             search.regular_in_space(&points, of_part, borders);
         } else if let Some(piece) = self.extraordinary(part) {
@@ -62,14 +51,7 @@ impl<P: HullPoint> Parts<P> for RefinedExtraordinary<P> {
         self.is_regular(part)
     }
 
-    fn look(
-        &self,
-        search: &mut Search<'_, P>,
-        part: usize,
-        of_part: SubTriangle,
-        borders: Borders,
-        depth: usize,
-    ) {
+    fn look(&self, search: &mut Search<'_, P>, (part, of_part, borders): PartOf, depth: usize) {
         match self.points(part) {
             Some(points) => search.regular(&points, of_part, borders),
             None => search.extraordinary(self.own(), of_part, borders, depth),
@@ -100,10 +82,11 @@ impl<'a, P: HullPoint> Search<'a, P> {
         self.net(&part.seen(self.bound.frame), part.borders, self.effort.halvings);
     }
 
-    fn part(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) {
+    /// A part of a piece that nothing is derived from yet.
+    pub(super) fn part(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) {
         match (patch, part) {
             (_, SubTriangle::Child(child)) => {
-                self.refined(&patch.refined(self.rules), child, SubTriangle::Whole, borders, depth + 1);
+                self.refined(&patch.refined(self.rules), (child, SubTriangle::Whole, borders), depth + 1);
             }
             (Patch::Regular(points), _) => self.regular_in_space(points, part, borders),
             (Patch::Extraordinary(piece), _) => {
@@ -120,19 +103,11 @@ impl<'a, P: HullPoint> Search<'a, P> {
         }
     }
 
-    /// A part of a refinement, or a part of that: as it is at hand.
-    pub(super) fn refined(
-        &mut self,
-        refined: &impl Parts<P>,
-        child: usize,
-        part: SubTriangle,
-        borders: Borders,
-        depth: usize,
-    ) {
-        if !self.counts(borders) {
-            return;
+    /// A part of a refinement, as it is at hand.
+    pub(super) fn refined(&mut self, refined: &impl Parts<P>, part: PartOf, depth: usize) {
+        if self.counts(part.2) {
+            refined.look(self, part, depth);
         }
-        refined.look(self, child, part, borders, depth);
     }
 
     fn regular_in_space(&mut self, points: &Points, part: SubTriangle, borders: Borders) {
@@ -284,17 +259,10 @@ impl<'a, P: HullPoint> Search<'a, P> {
     }
 
     /// Pieces of the parts of a refinement: the regular ones first, so that little is left to do for the others.
-    fn pieces<const N: usize>(
-        &mut self,
-        refined: &impl Parts<P>,
-        pieces: [(usize, SubTriangle, Borders); N],
-        depth: usize,
-    ) {
+    fn pieces<const N: usize>(&mut self, refined: &impl Parts<P>, pieces: [PartOf; N], depth: usize) {
         for regular in [true, false] {
-            for (child, part, borders) in pieces {
-                if refined.is_regular(child) == regular {
-                    self.refined(refined, child, part, borders, depth + 1);
-                }
+            for part in pieces.into_iter().filter(|part| refined.is_regular(part.0) == regular) {
+                self.refined(refined, part, depth + 1);
             }
         }
     }

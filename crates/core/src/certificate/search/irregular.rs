@@ -65,7 +65,7 @@ impl<P: HullPoint> Search<'_, P> {
     }
 
     /// A piece at an irregular vertex inside the surface, all of whose ring is there: as it is if that is enough, else refined.
-    pub(in super::super) fn extraordinary(
+    pub(super) fn extraordinary(
         &mut self,
         piece: &ExtraordinaryPatch<P>,
         part: SubTriangle,
