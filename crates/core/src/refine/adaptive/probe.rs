@@ -16,7 +16,6 @@ use crate::certificate::TriangleFrame;
 use crate::geometry::closest_to_origin;
 use crate::index::VertexId;
 use crate::mesh::Mesh;
-use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::ErrorBounds;
 use crate::vector::{DVec3, vector};
@@ -87,9 +86,8 @@ pub(super) fn probe(
         ErrorBounds { lower: 0.0, upper: 0.0, at: [0.0; 3], certified: engine.control.rules.is_certified() };
     let mesh = Nearest::of(engine, plan, emission)?;
     // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
-    let mut highest: Vec<(f64, Place)> =
-        measured.iter().flat_map(|all| all.iter().map(|face| face.highest)).collect();
-    sort(&mut highest, watch)?;
+    let heights = measured.iter().flat_map(|all| all.iter().map(|face| face.highest));
+    let highest = greatest(heights, PROBED, watch)?;
     let enough = if is_met { MET_NARROW } else { NARROW };
     let mut probed = Probed { leaves: HashSet::new(), enough };
     let mut is_known = vec![measured.is_some(); worst.len()];
@@ -114,8 +112,9 @@ pub(super) fn probe(
     // A tolerance that is met is proven already: what else there is to know must not take longer than to meet it.
     let mut room = if is_met { emission.triangles.len() / MET_SHARE + MET_AT_LEAST } else { usize::MAX };
     for round in 0.. {
-        let mut order: Vec<(f64, Place)> = worst.clone();
-        sort(&mut order, watch)?;
+        // Before this round fewer than half as many were tightened.
+        let most = PROBED.max(TIGHTENED << (round + 1));
+        let order = greatest(worst.iter().copied(), most, watch)?;
         best.upper = order.first().map_or(0.0, |&(bound, _)| bound);
         let is_leaf = |place: Place| is_known[place.face as usize];
         lower(engine, (plan, emission), &mesh, (&order, is_leaf, &mut probed), &mut best)?;
@@ -149,11 +148,30 @@ pub(super) fn probe(
     Ok(best)
 }
 
-/// The greatest first.
-fn sort(order: &mut [(f64, Place)], watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
+/// So many of the greatest bounds, the greatest first.
+fn greatest(
+    bounds: impl Iterator<Item = (f64, Place)>,
+    most: usize,
+    watch: &SharedWatch<'_>,
+) -> Result<Vec<(f64, Place)>, Cancelled> {
     let by_place = |a: &Place, b: &Place| (a.face, a.path).cmp(&(b.face, b.path));
-    let poll = &mut |_| watch.poll();
-    parallel::sort_polled(order, poll, |a, b| b.0.total_cmp(&a.0).then(by_place(&a.1, &b.1)))
+    let order = |a: &(f64, Place), b: &(f64, Place)| b.0.total_cmp(&a.0).then_with(|| by_place(&a.1, &b.1));
+    let mut found = Vec::with_capacity(2 * most);
+    // So many are at least as great as this.
+    let mut least: Option<(f64, Place)> = None;
+    watch.each(bounds, |bound| {
+        if least.is_some_and(|least| order(&least, &bound).is_le()) {
+            return;
+        }
+        found.push(bound);
+        if found.len() == 2 * most {
+            least = Some(*found.select_nth_unstable_by(most - 1, order).1);
+            found.truncate(most);
+        }
+    })?;
+    found.sort_unstable_by(order);
+    found.truncate(most);
+    Ok(found)
 }
 
 /// Raises the lower bound by points over the first leaves of a list that promise more, but for those that were looked at. Where a
@@ -221,7 +239,7 @@ impl Plan {
     fn worst_by_face(&self, watch: &SharedWatch<'_>) -> Result<Vec<(f64, Place)>, Cancelled> {
         let mut worst: Vec<(f64, Place)> =
             (0..self.closed.len() as u32).map(|face| (0.0, Place::root(face))).collect();
-        let closed = self.closed.iter().filter_map(|face| face.extent.as_ref());
+        let closed = self.closed.iter().filter_map(|face| face.extent());
         let extents = self.decision.extents().chain(closed);
         let judged = extents.filter_map(|extent| Some((extent.bound, extent.worst?)));
         watch.each(judged.chain(self.settled.iter().flatten().copied()), |(bound, place)| {
@@ -306,4 +324,33 @@ pub(super) fn rounding(control: &Mesh, max_levels: usize, watch: &SharedWatch<'_
     let most = most?.into_iter().flatten().max().unwrap_or(0);
     let units = 32.0 + 8.0 * max_levels.min(MOST_LEVELS) as f64 + f64::from(most);
     Ok((units * f64::EPSILON + 4.0 * TriangleFrame::ROUNDING) * size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::progress::{Stage, unobserved};
+
+    /// As sorting all of them tells, equal ones by their places.
+    #[test]
+    fn the_greatest_are_those_of_the_sorted_list() {
+        let mut unobserved = unobserved;
+        let watch = SharedWatch::new(&mut unobserved, Stage::Assembling);
+        let mut state = 5u64;
+        for (count, most) in [(0, 3), (2, 3), (5, 1), (300, 7), (5000, 64), (5000, 2500), (5000, 5000)] {
+            let mut number = |below: u64| {
+                state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                (state >> 33) % below
+            };
+            let mut all: Vec<(f64, Place)> = (0..count)
+                .map(|face| {
+                    (number(count / 3 + 1) as f64, Place { path: number(4), ..Place::root(face as u32) })
+                })
+                .collect();
+            let found = greatest(all.iter().copied(), most, &watch).unwrap();
+            all.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.face.cmp(&b.1.face)));
+            all.truncate(most);
+            assert_eq!(found, all, "{count}, {most}");
+        }
+    }
 }
