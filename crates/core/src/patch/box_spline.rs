@@ -180,8 +180,8 @@ fn ring_sum(points: &Points, ring: &[u8; 6]) -> DVec3 {
 
 /// The twelve points from the corners and their rings, of each of which we are told where the next corner stands in it.
 #[inline]
-pub(crate) fn assemble(corners: [DVec3; 3], rings: [&[DVec3; 6]; 3], turns: [usize; 3]) -> Points {
-    let mut points = [DVec3::ZERO; 12];
+pub(crate) fn assemble<T: Copy>(corners: [T; 3], rings: [&[T; 6]; 3], turns: [usize; 3]) -> [T; 12] {
+    let mut points = [corners[0]; 12];
     for corner in 0..3 {
         for slot in 0..6 {
             points[RINGS[corner][slot] as usize] = rings[corner][(slot + turns[corner]) % 6];
