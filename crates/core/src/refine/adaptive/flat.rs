@@ -36,6 +36,7 @@ use super::decide::Control;
 use super::quadtree::Edges;
 use crate::index::HalfEdgeId;
 use crate::mesh::NONE;
+use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_options::ExactOptions;
 use crate::vector::{DVec3, vector};
@@ -113,27 +114,34 @@ impl FlatRegions {
         let size = mesh.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
         let share = options.tolerance.map_or(f64::INFINITY, |tolerance| OF_TOLERANCE * tolerance);
         let most = share.min(IN_PLANE * size);
+        let normals = watch.pieces(mesh.face_count(), BLOCK, |block| {
+            block.map(|face| mesh.unit_face_normal(face)).collect::<Vec<DVec3>>()
+        })?;
+        let normals = normals.concat();
         let found = watch.pieces(mesh.face_count(), BLOCK, |block| {
-            let flat = block.map(|face| face as u32).filter(|&face| may_be_flat(control, edges, face));
-            flat.collect::<Vec<u32>>()
+            let flat = block.map(|face| face as u32);
+            let flat = flat.filter(|&face| may_be_flat((control, edges), &normals, face));
+            // The largest faces know their planes best.
+            let area = |face: u32| mesh.face_normal_vector(face as usize).length_squared();
+            flat.map(|face| (area(face), face)).collect::<Vec<(f64, u32)>>()
         })?;
         let mut flat = found.concat();
-        // The largest faces know their planes best.
-        let area = |face: u32| mesh.face_normal_vector(face as usize).length_squared();
-        flat.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
+        let by_area = |a: &(f64, u32), b: &(f64, u32)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
+        parallel::sort_polled(&mut flat, &mut |_| watch.poll(), by_area)?;
         let mut of_face = vec![NONE; mesh.face_count()];
         let mut is_left = vec![false; mesh.face_count()];
-        flat.iter().for_each(|&face| is_left[face as usize] = true);
+        flat.iter().for_each(|&(_, face)| is_left[face as usize] = true);
         let (mut regions, mut off_planes) = (Vec::new(), 0.0f64);
-        for seed in flat {
+        for (_, seed) in flat {
             watch.poll()?;
             if !is_left[seed as usize] {
                 continue;
             }
             let point = vector(mesh.positions()[mesh.triangles()[seed as usize][0] as usize]);
-            let plane = Plane { point, normal: mesh.unit_face_normal(seed as usize) };
+            let plane = Plane { point, normal: normals[seed as usize] };
             is_left[seed as usize] = false;
-            let Some(mut height) = height_over(control, seed, &plane).filter(|&height| height <= most) else {
+            let height = height_over(control, &normals, seed, &plane);
+            let Some(mut height) = height.filter(|&height| height <= most) else {
                 continue;
             };
             let mut faces = vec![seed];
@@ -146,7 +154,8 @@ impl FlatRegions {
                     if !is_left[beside as usize] {
                         continue;
                     }
-                    if let Some(found) = height_over(control, beside, &plane).filter(|&found| found <= most) {
+                    let found = height_over(control, &normals, beside, &plane);
+                    if let Some(found) = found.filter(|&found| found <= most) {
                         is_left[beside as usize] = false;
                         height = height.max(found);
                         faces.push(beside);
@@ -159,7 +168,7 @@ impl FlatRegions {
             off_planes = off_planes.max(height + HEIGHT_ROUNDING * size);
         }
         let weight = if options.max_memory.is_some() { 1 } else { WEIGHT };
-        let straight = strips::straight_faces((control, edges), (&of_face, most), watch)?;
+        let straight = strips::straight_faces((control, edges), &normals, (&of_face, most), watch)?;
         if regions.is_empty() && straight.is_empty() {
             return Ok(Self::default());
         }
@@ -290,18 +299,18 @@ impl FlatRegions {
 }
 
 /// Whether a face may be flat: most are told apart by those beside them.
-fn may_be_flat(control: &Control<'_>, edges: &Edges<'_>, face: u32) -> bool {
-    let normal = control.mesh.unit_face_normal(face as usize);
+fn may_be_flat((control, edges): (&Control<'_>, &Edges<'_>), normals: &[DVec3], face: u32) -> bool {
+    let normal = normals[face as usize];
     let open = control.open(face);
     let beside =
         (0..3u32).filter(|&edge| !open[edge as usize]).filter_map(|edge| edges.twin(3 * face + edge));
-    let mut normals = beside.map(|twin| control.mesh.unit_face_normal(twin as usize / 3));
-    normal != DVec3::ZERO && normals.all(|other| other.distance_squared(normal) <= ALIKE * ALIKE)
+    let mut beside = beside.map(|twin| normals[twin as usize / 3]);
+    normal != DVec3::ZERO && beside.all(|other| other.distance_squared(normal) <= ALIKE * ALIKE)
 }
 
 /// How far the surface over a face is off a plane at most; `None` where it faces the other way.
-fn height_over(control: &Control<'_>, face: u32, plane: &Plane) -> Option<f64> {
-    if control.mesh.unit_face_normal(face as usize).dot(plane.normal) <= 0.0 {
+fn height_over(control: &Control<'_>, normals: &[DVec3], face: u32, plane: &Plane) -> Option<f64> {
+    if normals[face as usize].dot(plane.normal) <= 0.0 {
         return None;
     }
     let mut most = 0.0f64;

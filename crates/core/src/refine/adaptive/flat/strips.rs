@@ -118,14 +118,15 @@ impl Regions {
 /// The control faces over which the surface is straight in a direction that is the same all over, but for those of flat regions, ascending.
 pub(super) fn straight_faces(
     (control, edges): (&Control<'_>, &Edges<'_>),
+    normals: &[DVec3],
     (flat, most): (&[u32], f64),
     watch: &SharedWatch<'_>,
 ) -> Result<Vec<u32>, Cancelled> {
     let mesh = control.mesh;
     let is_flat = |face: u32| flat.get(face as usize).is_some_and(|&region| region != NONE);
     let is_beside_its_like = |face: u32| {
-        let corners = mesh.triangles()[face as usize].map(|vertex| vector(mesh.positions()[vertex as usize]));
-        let plane = Plane { point: corners[0], normal: mesh.unit_face_normal(face as usize) };
+        let first = mesh.triangles()[face as usize][0];
+        let plane = Plane { point: vector(mesh.positions()[first as usize]), normal: normals[face as usize] };
         !is_flat(face)
             && plane.normal != DVec3::ZERO
             && (3 * face..3 * face + 3).any(|h| {
@@ -134,7 +135,7 @@ pub(super) fn straight_faces(
                     let opposite = mesh.triangles()[twin as usize / 3][(twin as usize + 2) % 3];
                     !is_flat(twin / 3)
                         && plane.height(vector(mesh.positions()[opposite as usize])).abs() <= most
-                        && mesh.unit_face_normal(twin as usize / 3).dot(plane.normal) > 0.0
+                        && normals[twin as usize / 3].dot(plane.normal) > 0.0
                 })
             })
     };
