@@ -5,7 +5,7 @@ use super::chains::Chains;
 use super::decide::Control;
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
 use super::leaf::leaf_triangles;
-use super::quadtree::{Edges, Place, Trees};
+use super::quadtree::{Edges, Place, Trees, UNJUDGED, is_split};
 use super::rim::Rim;
 use super::surface::{GeneralPiece, Ground, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
@@ -25,12 +25,19 @@ pub(super) struct Closed {
     pub(super) triangles: u32,
     /// Leaves.
     leaves: usize,
+    /// What is known of leaves that were judged; most faces have none.
+    pub(super) judged: Option<Box<JudgedLeaves>>,
+}
+
+/// What the leaves that a walk had to judge come to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct JudgedLeaves {
     /// For each leaf with two split edges, in the order of the walk, whether its diagonal starts at the unsplit edge's end.
-    pub(super) diagonals: Vec<bool>,
+    diagonals: Vec<bool>,
     /// What was judged here.
-    pub(super) extent: Option<Extent>,
+    extent: Option<Extent>,
     /// Leaves whose triangles fail.
-    pub(super) failing: Vec<Place>,
+    failing: Vec<Place>,
     /// Leaves that pass on conditions, in the order of the walk.
     pub(super) conditions: Vec<Condition>,
     /// What was said of leaves, by the edges that were split, for the next walk.
@@ -107,13 +114,18 @@ pub(super) fn close(
     (face, is_stopped): (u32, &IsStopped<'_>),
     knots: &mut Vec<Knot>,
 ) -> Closed {
+    let word = trees.root(face);
+    let is_whole = !is_split(word) && word & UNJUDGED == 0;
+    if is_whole && (3 * face..3 * face + 3).all(|h| chains.along(edges, h) == 0) {
+        return Closed { triangles: 1, leaves: 1, ..Closed::default() };
+    }
     let mut walk = Walk::new(trees, core::mem::take(knots), 0, is_stopped);
     walk.knots.clear();
     let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
     let at = (Place::root(face), Spot::WHOLE);
     let mut lister =
         Lister { triangles: 0, count: 0, open: control.open(face), rim: Rim::default(), leaves: Vec::new() };
-    walk.node(trees.root(face), at, sides, Surface::Unknown, &mut lister);
+    walk.node(word, at, sides, Surface::Unknown, &mut lister);
     *knots = walk.knots;
     let Lister { triangles, count, mut leaves, .. } = lister;
     let mut closed =
@@ -121,20 +133,21 @@ pub(super) fn close(
     if leaves.is_empty() {
         return closed;
     }
-    recall(&known.verdicts, &mut leaves);
+    recall(known.judged.as_ref().map_or(&[], |judged| &judged.verdicts), &mut leaves);
     if leaves.iter().any(|leaf| leaf.verdict.is_none()) {
         let closer = Closer { judge: goal.judge(control, max_levels, face), allowance };
         closer.judge(control.piece(face).surface(control.rules), 0, &mut leaves, is_stopped);
     }
-    closed.take(&leaves, max_levels);
+    let mut judged = JudgedLeaves::of(&leaves, max_levels);
     if is_kept {
-        closed.verdicts = leaves;
+        judged.verdicts = leaves;
     }
+    closed.judged = Some(Box::new(judged));
     closed
 }
 
 /// Takes over what was said of the same leaves with the same edges split.
-fn recall(known: &Verdicts, leaves: &mut Verdicts) {
+fn recall(known: &[Judged], leaves: &mut Verdicts) {
     let mut known = known.iter().peekable();
     for leaf in leaves {
         while known.next_if(|other| other.place.precedes(leaf.place)).is_some() {}
@@ -149,16 +162,40 @@ fn recall(known: &Verdicts, leaves: &mut Verdicts) {
 impl Closed {
     /// Forgets what is known of the tree and its leaves: it was replaced.
     pub(super) fn forget(&mut self) {
-        (self.leaves, self.verdicts) = (0, Verdicts::new());
+        self.leaves = 0;
+        self.judged.iter_mut().for_each(|judged| judged.verdicts = Verdicts::new());
+    }
+
+    /// For each leaf with two split edges, in the order of the walk, whether its diagonal starts at the unsplit edge's end.
+    pub(super) fn diagonals(&self) -> &[bool] {
+        self.judged.as_ref().map_or(&[], |judged| &judged.diagonals)
+    }
+
+    /// What was judged here.
+    pub(super) fn extent(&self) -> Option<&Extent> {
+        self.judged.as_ref()?.extent.as_ref()
+    }
+
+    /// Leaves that pass on conditions, in the order of the walk.
+    pub(super) fn conditions(&self) -> &[Condition] {
+        self.judged.as_ref().map_or(&[], |judged| &judged.conditions)
+    }
+
+    /// Leaves whose triangles fail; they are told once.
+    pub(super) fn take_failing(&mut self) -> Vec<Place> {
+        self.judged.as_mut().map(|judged| core::mem::take(&mut judged.failing)).unwrap_or_default()
     }
 
     /// Whether the triangles are the same if those along the edges are: in between leaves were only divided.
     pub(super) fn has_triangles_of(&self, other: &Self) -> bool {
-        self.leaves == other.leaves && self.diagonals == other.diagonals
+        self.leaves == other.leaves && self.diagonals() == other.diagonals()
     }
+}
 
-    /// Keeps what was said of leaves.
-    fn take(&mut self, leaves: &Verdicts, max_levels: u32) {
+impl JudgedLeaves {
+    /// What was said of leaves.
+    fn of(leaves: &[Judged], max_levels: u32) -> Self {
+        let mut judged = Self::default();
         let mut extent = Extent::NONE;
         for leaf in leaves {
             let place = leaf.place;
@@ -168,21 +205,22 @@ impl Closed {
                 continue;
             };
             if leaf.split.iter().filter(|&&is_split| is_split).count() == 2 {
-                self.diagonals.push(from_end);
+                judged.diagonals.push(from_end);
             }
             extent.add(&Extent { worst: Some(place), ..verdict.extent });
             match verdict.outcome {
                 Outcome::Passes => {}
-                Outcome::Fails => self.failing.push(place),
+                Outcome::Fails => judged.failing.push(place),
                 Outcome::Depends { .. } if leaf.is_strict && place.level < max_levels => {
-                    self.failing.push(place)
+                    judged.failing.push(place)
                 }
                 Outcome::Depends { deviation, tilt, slopes } => {
-                    self.conditions.push(Condition { place, deviation, tilt, slopes });
+                    judged.conditions.push(Condition { place, deviation, tilt, slopes });
                 }
             }
         }
-        self.extent = Some(extent);
+        judged.extent = Some(extent);
+        judged
     }
 }
 

@@ -418,9 +418,9 @@ fn write(
     for face in job.faces {
         walk.knots.clear();
         let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
-        (writer.face, writer.diagonals) = (face, &closed[face as usize].diagonals);
+        (writer.face, writer.diagonals) = (face, closed[face as usize].diagonals());
         writer.area = only.and_then(|areas| areas.0.get(&face));
-        writer.conditions = [decision.conditions(face), &closed[face as usize].conditions];
+        writer.conditions = [decision.conditions(face), closed[face as usize].conditions()];
         let before = writer.next_triangle - job.first_triangle;
         let at = (Place::root(face), Spot::WHOLE);
         let own = [0, 1, 2].map(|edge| chains.own(3 * face + edge));

@@ -84,7 +84,7 @@ impl Sources<'_> {
             triangles: &emission.triangles,
             next: emission.triangles_of(face).start as u32,
             open: control.open(face),
-            diagonals: &closed[face as usize].diagonals,
+            diagonals: closed[face as usize].diagonals(),
             rim: Rim::default(),
             is_stopped,
             beholder,

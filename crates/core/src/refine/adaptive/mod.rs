@@ -395,7 +395,7 @@ impl Engine<'_> {
                 return Ok(false);
             }
             let closed = &plan.closed;
-            let closing = |face: u32| closed[face as usize].extent.as_ref();
+            let closing = |face: u32| closed[face as usize].extent();
             let limits = (self.max_levels, most);
             let control = (self.control, self.watch);
             let again = plan.decision.settle(control, &plan.goal, &self.edges, limits, closing)?;
@@ -556,7 +556,7 @@ impl Engine<'_> {
             let mut is_dirty = vec![false; mesh.face_count()];
             let mut is_split = false;
             for &face in &dirty {
-                for place in core::mem::take(&mut plan.closed[face as usize].failing) {
+                for place in plan.closed[face as usize].take_failing() {
                     if place.level >= self.max_levels {
                         plan.has_failed = true;
                         continue;

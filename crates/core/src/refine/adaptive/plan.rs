@@ -59,7 +59,7 @@ impl Plan {
 
     /// The greatest bound of a face's triangles.
     pub(super) fn bound(&self, face: u32) -> f64 {
-        let closing = self.closed[face as usize].extent.as_ref().map_or(0.0, |extent| extent.bound);
+        let closing = self.closed[face as usize].extent().map_or(0.0, |extent| extent.bound);
         let settled = self.settled[face as usize].map_or(0.0, |(bound, _)| bound);
         closing.max(settled).max(self.decision.bound(face))
     }

@@ -97,11 +97,11 @@ impl Engine<'_> {
             return Ok(());
         }
         self.watch.each(0..plan.closed.len(), |face| {
-            let lists = [plan.decision.conditions(face as u32), &plan.closed[face].conditions];
+            let lists = [plan.decision.conditions(face as u32), plan.closed[face].conditions()];
             if plan.settled[face].is_some() || lists.iter().all(|list| list.is_empty()) {
                 return;
             }
-            let closing = |face: u32| plan.closed[face as usize].extent.as_ref();
+            let closing = |face: u32| plan.closed[face as usize].extent();
             let (around, _) = plan.decision.around(self.control, &self.edges, face as u32, closing);
             let bounds =
                 lists.into_iter().flatten().map(|condition| (condition.bound(&around), condition.place));
@@ -116,7 +116,7 @@ impl Engine<'_> {
         let faces = (0..plan.closed.len() as u32).filter(|&face| plan.settled[face as usize].is_none());
         self.watch.each(faces, |face| {
             let open = self.control.open(face);
-            let lists = [plan.decision.conditions(face), &plan.closed[face as usize].conditions];
+            let lists = [plan.decision.conditions(face), plan.closed[face as usize].conditions()];
             for condition in lists.into_iter().flatten() {
                 areas.add(&self.edges, condition.place, open);
             }
@@ -439,7 +439,7 @@ mod tests {
             if allowance == Allowance::NOTHING {
                 continue;
             }
-            let closing = plan.closed[face as usize].extent.unwrap_or(Extent::NONE);
+            let closing = plan.closed[face as usize].extent().copied().unwrap_or(Extent::NONE);
             let counted = extent.drift_slope.max(closing.drift_slope);
             for triangle in emission.triangles_of(face) {
                 let corners = emission.triangles[triangle].map(|vertex| {
@@ -533,7 +533,7 @@ mod tests {
                 let place = Place { face: 0, level: 20, path: 3 };
                 let condition =
                     Condition { place, deviation: Deviation::alone(0.0), tilt: 0.0, slopes: [1.0; 3] };
-                plan.closed[0].conditions.insert(0, condition);
+                plan.closed[0].judged.get_or_insert_default().conditions.insert(0, condition);
                 let mut lost = vec![0];
                 let is_whole = |face: &usize| {
                     plan.closed[*face].triangles == 1 && plan.decision.conditions(*face as u32).is_empty()
