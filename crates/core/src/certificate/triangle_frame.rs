@@ -45,6 +45,7 @@ pub(crate) struct Beside {
 }
 
 /// [`TriangleFrame::least_slope`] of a triangle of which nothing else is asked.
+#[inline]
 pub(crate) fn least_slope([a, b, c]: [DVec3; 3]) -> f64 {
     let edges = [b - a, c - b, a - c];
     let product = |corner: usize| -edges[corner].dot(edges[(corner + 2) % 3]);
@@ -174,6 +175,7 @@ impl TriangleFrame {
     }
 
     /// Tangent of the least angle; 0 or not a number for a triangle without area.
+    #[inline]
     pub(crate) fn least_slope(&self) -> f64 {
         self.least_slope
     }

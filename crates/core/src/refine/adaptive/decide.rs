@@ -316,10 +316,7 @@ impl<'a> Decider<'a> {
 
     /// What triangles of a face count on at first.
     fn guess(&self, face: u32, corners: &[LimitPoint; 3], middles: &[LimitPoint; 3]) -> Allowance {
-        let beside = beside(self.control, self.edges, face).map(|face| {
-            self.control.mesh.triangles()[face as usize]
-                .map(|vertex| vector(self.control.positions[vertex as usize]))
-        });
+        let beside = beside(self.control, self.edges, face).map(|face| self.control.corners(face));
         self.judge.guess(corners, middles, beside)
     }
 

@@ -17,8 +17,7 @@ use crate::certificate::{
 use crate::criterion::Criteria;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{LimitPoint, Patch, Rules, Spot};
-use crate::vector::DVec3;
-use crate::vector::Extremes;
+use crate::vector::{DVec3, Extremes};
 
 /// Halvings of a net before a triangle is given up: the bound is within some per cent of the truth then.
 pub(super) const HALVINGS: usize = 2;
@@ -455,24 +454,52 @@ impl Judge<'_> {
         RowTarget { distance: self.limit, tilt, slope, drift_share: DRIFT_SHARE }
     }
 
-    /// What a triangle counts on of those beside it at first, by the heights of points of its piece over it and its tilt, and the
-    /// corners of those beside: angles between planes shrink with the size of triangles, heights with its square. Where more than
-    /// distances count, triangles are looked at among their neighbours as they are emitted, and count on nothing.
+    /// What the triangles of a control face count on of those beside them at first: the greatest tilts and the least angles that are expected
+    /// there and in the faces beside. Angles between planes shrink with the size of triangles, heights with its square; those of the face are
+    /// known at some points of its piece, those beside are told by the normals at their corners. Where more than distances count, triangles
+    /// are looked at among their neighbours as they are emitted, and count on nothing.
     pub(super) fn guess(
         &self,
         corners: &[LimitPoint; 3],
         points: &[LimitPoint],
-        beside: impl Iterator<Item = [DVec3; 3]>,
+        beside: impl Iterator<Item = [LimitPoint; 3]>,
     ) -> Allowance {
         if self.criteria.is_some() {
             return Allowance::NOTHING;
         }
         let seen = Seen::of(corners, 0);
-        let height = seen.highest(points);
-        let levels = if height > self.limit { (self.limit / height).sqrt() } else { 1.0 };
-        let slopes = beside.map(least_slope);
-        let slope = slopes.fold(seen.frame.least_slope(), f64::min);
-        Allowance { tilt: (GENEROUS * seen.tilt * levels).max(LEAST_TILT), slope: SLOPE_LEFT * slope }
+        let tilt = seen.tilt * self.shrunk(seen.highest(points));
+        let slope = seen.frame.least_slope();
+        let (tilt, slope) = beside.fold((tilt, slope), |(tilt, slope), corners| {
+            (tilt.larger(self.tilt_beside(&corners)), slope.min(least_slope(corners.map(|at| at.position))))
+        });
+        Allowance { tilt: (GENEROUS * tilt).max(LEAST_TILT), slope: SLOPE_LEFT * slope }
+    }
+
+    /// The tilt that is expected of triangles in a face beside, by the normals at its corners; 0 where they tell nothing.
+    fn tilt_beside(&self, corners: &[LimitPoint; 3]) -> f64 {
+        let edge = |from: usize| corners[(from + 1) % 3].position - corners[from].position;
+        let across = edge(0).cross(edge(1));
+        let double_area = across.length();
+        if double_area.is_nan()
+            || double_area <= 0.0
+            || corners.iter().any(|corner| corner.normal == DVec3::ZERO)
+        {
+            return 0.0;
+        }
+        let normal = across / double_area;
+        // A curve over an edge that bends evenly stands as high as this.
+        let height = |from: usize| {
+            0.125 * (corners[(from + 1) % 3].normal - corners[from].normal).dot(edge(from)).abs()
+        };
+        let chord = |corner: usize| corners[corner].normal.distance_squared(normal);
+        let height = height(0).larger(height(1)).larger(height(2));
+        chord(0).larger(chord(1)).larger(chord(2)).sqrt() * self.shrunk(height)
+    }
+
+    /// What is left of angles where heights like this one are divided down to the limit.
+    fn shrunk(&self, height: f64) -> f64 {
+        if height > self.limit { (self.limit / height).sqrt() } else { 1.0 }
     }
 
     /// Whether a triangle may pass, as far as some points of its piece tell.
