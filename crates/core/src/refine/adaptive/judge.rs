@@ -12,7 +12,7 @@ use super::quadtree::Place;
 use super::surface::Ground;
 use super::trial::Trial;
 use crate::certificate::{
-    Cell, Deviation, Effort, NetPart, Pieces, RowTarget, SubTriangle, TriangleFrame, exceeds, least_slope,
+    Cell, Deviation, Effort, NetPart, Pieces, RowTarget, SubTriangle, TriangleFrame, exceeds,
 };
 use crate::criterion::Criteria;
 use crate::patch::bezier_triangle::BezierTriangle;
@@ -32,15 +32,6 @@ pub(super) const DIVISIONS: u32 = 2;
 /// it may be more acute, closing triangles above all. No more than √2 − 1, so that half of what an angle α leaves of π allows it, too: its
 /// tangent is 1 at least where α ≤ π/2, else tan(π − α) times 1/(1 + √(1 + tan²)).
 const DRIFT_SHARE: f64 = 0.41;
-
-/// The least tilt that neighbours are allowed: it costs next to nothing.
-const LEAST_TILT: f64 = 0.01;
-
-/// What a guess leaves for triangles that bend more than their control face does on the whole.
-const GENEROUS: f64 = 2.2;
-
-/// What is left of the least angle of the control faces when triangles close gaps, as tangents: they may halve it.
-const SLOPE_LEFT: f64 = 0.3;
 
 /// Below this level triangles count on neighbours with angles like their own.
 const FEW_LEVELS: u32 = 3;
@@ -146,7 +137,7 @@ impl Goal {
 pub(super) struct Judge<'a> {
     pub(super) rules: &'a Rules<'a>,
     /// What is asked beside distances.
-    criteria: Option<&'a Criteria>,
+    pub(super) criteria: Option<&'a Criteria>,
     back_faces: &'a BackFaces,
     /// The control face.
     face: u32,
@@ -155,7 +146,7 @@ pub(super) struct Judge<'a> {
     /// Levels from which on triangles are not divided, whatever they come to.
     max_levels: u32,
     /// Greatest value: a distance where nothing else counts.
-    limit: f64,
+    pub(super) limit: f64,
     /// Everything passes, and all that counts is how far it is off among its neighbours.
     is_lenient: bool,
 }
@@ -454,54 +445,6 @@ impl Judge<'_> {
         RowTarget { distance: self.limit, tilt, slope, drift_share: DRIFT_SHARE }
     }
 
-    /// What the triangles of a control face count on of those beside them at first: the greatest tilts and the least angles that are expected
-    /// there and in the faces beside. Angles between planes shrink with the size of triangles, heights with its square; those of the face are
-    /// known at some points of its piece, those beside are told by the normals at their corners. Where more than distances count, triangles
-    /// are looked at among their neighbours as they are emitted, and count on nothing.
-    pub(super) fn guess(
-        &self,
-        corners: &[LimitPoint; 3],
-        points: &[LimitPoint],
-        beside: impl Iterator<Item = [LimitPoint; 3]>,
-    ) -> Allowance {
-        if self.criteria.is_some() {
-            return Allowance::NOTHING;
-        }
-        let seen = Seen::of(corners, 0);
-        let tilt = seen.tilt * self.shrunk(seen.highest(points));
-        let slope = seen.frame.least_slope();
-        let (tilt, slope) = beside.fold((tilt, slope), |(tilt, slope), corners| {
-            (tilt.larger(self.tilt_beside(&corners)), slope.min(least_slope(corners.map(|at| at.position))))
-        });
-        Allowance { tilt: (GENEROUS * tilt).max(LEAST_TILT), slope: SLOPE_LEFT * slope }
-    }
-
-    /// The tilt that is expected of triangles in a face beside, by the normals at its corners; 0 where they tell nothing.
-    fn tilt_beside(&self, corners: &[LimitPoint; 3]) -> f64 {
-        let edge = |from: usize| corners[(from + 1) % 3].position - corners[from].position;
-        let across = edge(0).cross(edge(1));
-        let double_area = across.length();
-        if double_area.is_nan()
-            || double_area <= 0.0
-            || corners.iter().any(|corner| corner.normal == DVec3::ZERO)
-        {
-            return 0.0;
-        }
-        let normal = across / double_area;
-        // A curve over an edge that bends evenly stands as high as this.
-        let height = |from: usize| {
-            0.125 * (corners[(from + 1) % 3].normal - corners[from].normal).dot(edge(from)).abs()
-        };
-        let chord = |corner: usize| corners[corner].normal.distance_squared(normal);
-        let height = height(0).larger(height(1)).larger(height(2));
-        chord(0).larger(chord(1)).larger(chord(2)).sqrt() * self.shrunk(height)
-    }
-
-    /// What is left of angles where heights like this one are divided down to the limit.
-    fn shrunk(&self, height: f64) -> f64 {
-        if height > self.limit { (self.limit / height).sqrt() } else { 1.0 }
-    }
-
     /// Whether a triangle may pass, as far as some points of its piece tell.
     pub(super) fn may_pass(
         &self,
@@ -550,7 +493,7 @@ impl Seen {
     }
 
     /// How high the highest of some points stands over the triangle.
-    fn highest(&self, points: &[LimitPoint]) -> f64 {
+    pub(super) fn highest(&self, points: &[LimitPoint]) -> f64 {
         points.iter().map(|point| self.frame.height(point.position).abs()).fold(0.0, f64::max)
     }
 

@@ -34,6 +34,7 @@ mod emit;
 mod emitted;
 mod flat;
 mod frames;
+mod guess;
 mod judge;
 mod leaf;
 mod leaves;
