@@ -116,10 +116,9 @@ impl Engine<'_> {
                     break;
                 }
                 is_split = true;
-                self.mark(place.face, &mut is_dirty);
                 for place in core::mem::take(&mut fresh) {
                     self.split(&mut plan.decision.trees, place, |place| {
-                        self.mark(place.face, &mut is_dirty)
+                        self.mark_split(place, &mut is_dirty)
                     })?;
                     fresh.extend((0..4).map(|child| place.child(child)));
                 }

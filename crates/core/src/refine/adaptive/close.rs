@@ -186,9 +186,11 @@ impl Closed {
         self.judged.as_mut().map(|judged| core::mem::take(&mut judged.failing)).unwrap_or_default()
     }
 
-    /// Whether the triangles are the same if those along the edges are: in between leaves were only divided.
-    pub(super) fn has_triangles_of(&self, other: &Self) -> bool {
-        self.leaves == other.leaves && self.diagonals() == other.diagonals()
+    /// Whether triangles and conditions are the same if the vertices along the edges are: in between leaves were only divided.
+    pub(super) fn is_as(&self, other: &Self) -> bool {
+        self.leaves == other.leaves
+            && self.diagonals() == other.diagonals()
+            && self.conditions() == other.conditions()
     }
 }
 

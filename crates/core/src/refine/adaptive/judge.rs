@@ -171,7 +171,7 @@ pub(super) enum Outcome {
 }
 
 /// A leaf that passes if its neighbours turn out as expected.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Condition {
     pub(super) place: Place,
     pub(super) deviation: Deviation,

@@ -383,7 +383,7 @@ impl Engine<'_> {
         finer.decision.begin_again();
         let mut is_dirty = vec![false; plan.closed.len()];
         wanting.iter().for_each(|&face| finer.closed[face as usize].forget());
-        wanting.iter().for_each(|&face| self.mark(face, &mut is_dirty));
+        wanting.iter().for_each(|&face| self.mark_replaced(face, &mut is_dirty));
         let fits = self.carry_out(&mut finer, is_dirty, most)? && self.settle(&mut finer, most)?;
         Ok(fits.then_some(finer))
     }
@@ -407,7 +407,7 @@ impl Engine<'_> {
             }
             is_dirty.fill(false);
             again.iter().for_each(|&face| plan.closed[face as usize].forget());
-            again.iter().for_each(|&face| self.mark(face, &mut is_dirty));
+            again.iter().for_each(|&face| self.mark_replaced(face, &mut is_dirty));
         }
     }
 
@@ -489,7 +489,7 @@ impl Engine<'_> {
         })?;
         let mut all = Pending::default();
         self.watch.each(lists, |list| all.append(list))?;
-        self.balance(trees, all, |place| self.mark(place.face, is_dirty))
+        self.balance(trees, all, |place| self.mark_split(place, is_dirty))
     }
 
     fn balance(
@@ -529,19 +529,19 @@ impl Engine<'_> {
                 });
                 walks.collect::<Vec<_>>()
             })?;
-            // Where conditions are looked at they are emitted with the triangles, and others may have come about.
-            let has_conditions = !self.is_settled_later();
             self.watch.each(dirty.iter().zip(found.into_iter().flatten()), |(&face, found)| {
                 let known = core::mem::replace(&mut plan.closed[face as usize], found);
                 let found = &plan.closed[face as usize];
-                let is_same = !has_conditions
-                    && known.has_triangles_of(found)
+                let is_same = known.is_as(found)
                     && (3 * face..3 * face + 3).all(|h| {
                         let owner = first_of(edges, h);
                         chains.own(owner).1 == plan.chains.own(owner).1
                     });
-                plan.is_touched[face as usize] |= !is_same;
-                // Conditions count on the triangles beside, which may have been closed in another way.
+                if is_same {
+                    return;
+                }
+                plan.is_touched[face as usize] = true;
+                // Conditions count on the triangles beside.
                 plan.settled[face as usize] = None;
                 for twin in (3 * face..3 * face + 3).filter_map(|h| edges.twin(h)) {
                     plan.settled[twin as usize / 3] = None;
@@ -564,27 +564,39 @@ impl Engine<'_> {
                     }
                     is_split = true;
                     self.watch.poll()?;
-                    self.mark(face, &mut is_dirty);
-                    self.split(&mut plan.decision.trees, place, |place| pending.push(place))?;
+                    self.split(&mut plan.decision.trees, place, |place| {
+                        self.mark_split(place, &mut is_dirty);
+                        pending.push(place);
+                    })?;
                 }
             }
             if !is_split {
                 return Ok(true);
             }
-            self.balance(&mut plan.decision.trees, pending, |place| self.mark(place.face, &mut is_dirty))?;
+            self.balance(&mut plan.decision.trees, pending, |place| self.mark_split(place, &mut is_dirty))?;
             dirty = marked(&is_dirty);
         }
     }
 
-    /// Marks a face and all beyond its edges.
-    fn mark(&self, face: u32, is_dirty: &mut [bool]) {
+    /// Marks a control face whose tree was replaced, and all beyond its edges.
+    fn mark_replaced(&self, face: u32, is_dirty: &mut [bool]) {
         is_dirty[face as usize] = true;
-        for h in 3 * face..3 * face + 3 {
-            if let Some(twin) = self.edges.twin(h) {
-                is_dirty[twin as usize / 3] = true;
-            } else if let Some(group) = self.edges.group(h) {
-                self.edges.members(group).iter().for_each(|&(h, _)| is_dirty[h as usize / 3] = true);
-            }
+        (3 * face..3 * face + 3).for_each(|h| self.mark_beyond(h, is_dirty));
+    }
+
+    /// Marks the control face of a node that was split, and those that see it: it stands on their edges.
+    fn mark_split(&self, place: Place, is_dirty: &mut [bool]) {
+        is_dirty[place.face as usize] = true;
+        let edges = (0..3).filter(|&edge| place.lies_along(edge));
+        edges.for_each(|edge| self.mark_beyond(3 * place.face + edge as u32, is_dirty));
+    }
+
+    /// Marks the control faces beyond a half-edge.
+    fn mark_beyond(&self, h: u32, is_dirty: &mut [bool]) {
+        if let Some(twin) = self.edges.twin(h) {
+            is_dirty[twin as usize / 3] = true;
+        } else if let Some(group) = self.edges.group(h) {
+            self.edges.members(group).iter().for_each(|&(h, _)| is_dirty[h as usize / 3] = true);
         }
     }
 }

@@ -57,7 +57,6 @@ impl Engine<'_> {
                     continue;
                 }
                 is_split = true;
-                self.mark(place.face, &mut is_dirty);
                 if round > MOST_ROUNDS {
                     plan.decision.trees.make_strict(place);
                 }
@@ -85,7 +84,7 @@ impl Engine<'_> {
             return Ok(());
         }
         if around.level == level {
-            return self.split(&mut plan.decision.trees, around, |place| self.mark(place.face, is_dirty));
+            return self.split(&mut plan.decision.trees, around, |place| self.mark_split(place, is_dirty));
         }
         (0..4).try_for_each(|child| self.split_around(plan, (around.child(child), level), is_dirty))
     }
@@ -496,8 +495,7 @@ mod tests {
                     (word, place) = (plan.decision.trees.child(word, 1), place.child(1));
                 }
                 let mut is_dirty = vec![false; plan.closed.len()];
-                engine.mark(face, &mut is_dirty);
-                let split = |place: Place| engine.mark(place.face, &mut is_dirty);
+                let split = |place: Place| engine.mark_split(place, &mut is_dirty);
                 engine.split(&mut plan.decision.trees, place, split).unwrap();
                 assert!(engine.carry_out(&mut plan, is_dirty, usize::MAX).unwrap());
                 counted += plan.is_touched.iter().filter(|&&is_touched| !is_touched).count();

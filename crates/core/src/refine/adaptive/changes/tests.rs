@@ -97,8 +97,7 @@ fn divide(engine: &Engine<'_>, plan: &mut Plan, next: &mut impl FnMut(usize) -> 
             let child = next(4);
             (word, place) = (plan.decision.trees.child(word, child), place.child(child));
         }
-        engine.mark(place.face, &mut is_dirty);
-        let split = |place: Place| engine.mark(place.face, &mut is_dirty);
+        let split = |place: Place| engine.mark_split(place, &mut is_dirty);
         engine.split(&mut plan.decision.trees, place, split).unwrap();
     }
     assert!(engine.carry_out(plan, is_dirty, usize::MAX).unwrap());
