@@ -80,6 +80,12 @@ impl Place {
         })
     }
 
+    /// Whether the node beyond an edge is a child of the same node.
+    pub(crate) fn has_sibling_beyond(self, edge: usize) -> bool {
+        let child = (self.path & 3) as usize;
+        self.level > 0 && (child == 3 || edge == (child + 1) % 3)
+    }
+
     /// The node of level `down` below this one, at number `index` along edge `edge` from its start.
     pub(crate) fn along(self, edge: usize, down: u32, index: u32) -> Self {
         let digits = (0..down).rev().map(|bit| along_edge(edge, index >> bit & 1 == 1));

@@ -26,25 +26,33 @@ impl Pending {
         self.0[level].push(place);
     }
 
-    /// The nodes with children in the tree of a control face: the lowest ones, which speak for those above.
-    pub(super) fn push_tree(&mut self, trees: &Trees, face: u32) {
-        self.push_below(trees, trees.root(face), Place::root(face));
+    /// Those nodes with children in the tree of a control face that lack a neighbour: of even nodes the lowest ones, which speak for
+    /// those above.
+    pub(super) fn push_tree(&mut self, trees: &Trees, edges: &Edges<'_>, face: u32) {
+        self.push_below(trees, edges, trees.root(face), Place::root(face));
     }
 
-    fn push_below(&mut self, trees: &Trees, word: u32, place: Place) {
+    fn push_below(&mut self, trees: &Trees, edges: &Edges<'_>, word: u32, place: Place) {
         match even_depth(word) {
             Some(0) => {}
             Some(depth) => {
                 // Inside, neighbours are equally deep.
                 for edge in 0..3 {
                     for index in 0..1 << (depth - 1) {
-                        self.push(place.along(edge, depth - 1, index));
+                        let lowest = place.along(edge, depth - 1, index);
+                        if lacks(trees, edges, lowest, edge) {
+                            self.push(lowest);
+                        }
                     }
                 }
             }
             None => {
-                self.push(place);
-                (0..4).for_each(|child| self.push_below(trees, trees.child(word, child), place.child(child)));
+                if (0..3).any(|edge| lacks(trees, edges, place, edge)) {
+                    self.push(place);
+                }
+                for child in 0..4 {
+                    self.push_below(trees, edges, trees.child(word, child), place.child(child));
+                }
             }
         }
     }
@@ -55,6 +63,20 @@ impl Pending {
             self.0.resize_with(other.0.len(), Vec::new);
         }
         self.0.iter_mut().zip(other.0).for_each(|(own, mut list)| own.append(&mut list));
+    }
+}
+
+/// Whether the node of the same level beyond an edge may be missing.
+fn lacks(trees: &Trees, edges: &Edges<'_>, place: Place, edge: usize) -> bool {
+    if place.has_sibling_beyond(edge) {
+        return false;
+    }
+    match beyond(place, edge) {
+        Beyond::Same(other) => !trees.has(other),
+        Beyond::Control(along) => match edges.twin(along.half_edge) {
+            Some(twin) => !trees.has(along.node_at(twin, true).0),
+            None => edges.group(along.half_edge).is_some(),
+        },
     }
 }
 
@@ -77,7 +99,7 @@ pub(super) fn balance(
             if steps.is_multiple_of(STEPS) {
                 poll()?;
             }
-            for edge in 0..3 {
+            for edge in (0..3).filter(|&edge| !place.has_sibling_beyond(edge)) {
                 let mut ensure = |place: Place| trees.ensure(place, |place| fresh.push(place));
                 let fits = match beyond(place, edge) {
                     Beyond::Same(other) => ensure(other),
@@ -202,7 +224,7 @@ mod tests {
                 let mut expected = trees.clone();
                 brute_force(&mut expected, &edges, mesh.face_count() as u32);
                 let mut pending = Pending::default();
-                (0..mesh.face_count() as u32).for_each(|face| pending.push_tree(&trees, face));
+                (0..mesh.face_count() as u32).for_each(|face| pending.push_tree(&trees, &edges, face));
                 assert!(balance(&mut trees, &edges, pending, &mut || Ok(()), |_| ()).unwrap());
                 for face in 0..mesh.face_count() as u32 {
                     let (mut a, mut b) = (Vec::new(), Vec::new());

@@ -3,6 +3,8 @@
 //! Along a control edge stand the vertices that the nodes on any side of it have put there. Both faces of an edge share
 //! them; the copies of a cut edge have the same ones, each its own.
 
+use core::ops::Range;
+
 use super::quadtree::{Edges, FULL, Trees};
 use super::walk::{Knot, Side, merged, merged_all};
 use crate::mesh::Mesh;
@@ -12,7 +14,7 @@ use crate::progress::{Cancelled, SharedWatch};
 const BLOCK: usize = 1024;
 
 /// The vertices on all control edges.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Chains {
     /// By half-edge, where its vertices start; those of a half-edge whose twin comes first are the twin's.
     starts: Vec<u32>,
@@ -23,22 +25,37 @@ pub(super) struct Chains {
 }
 
 impl Chains {
+    /// Those of some trees, of which all but these control faces, ascending, have put the same vertices on their edges before.
     pub(super) fn of(
         mesh: &Mesh,
         edges: &Edges<'_>,
         trees: &Trees,
+        (before, dirty): (&Chains, &[u32]),
         watch: &SharedWatch<'_>,
     ) -> Result<Self, Cancelled> {
-        let half_edges = 3 * mesh.face_count();
         let mut groups = Vec::with_capacity(edges.group_count());
-        watch.each(0..edges.group_count(), |group| groups.push(group_places(edges, trees, group)))?;
-        let blocks = watch.pieces(half_edges, 3 * BLOCK, |block| {
-            let (mut counts, mut at) = (Vec::with_capacity(block.len()), Vec::new());
-            for h in block {
-                let before = at.len();
-                places(edges, trees, &groups, h as u32, &mut at);
-                counts.push((at.len() - before) as u32);
+        let is_dirty = |face: u32| dirty.binary_search(&face).is_ok();
+        watch.each(0..edges.group_count(), |group| {
+            let is_kept = edges.members(group).iter().all(|&(h, _)| !is_dirty(h / 3));
+            groups.push(if is_kept { Vec::new() } else { group_places(edges, trees, group) });
+        })?;
+        let half_edges = 3 * mesh.face_count();
+        let blocks = watch.pieces(mesh.face_count(), BLOCK, |block| {
+            let (mut counts, mut at) = (Vec::with_capacity(3 * block.len()), Vec::new());
+            let [first, end] = [block.start, block.end].map(|face| face as u32);
+            let mut kept = 3 * first;
+            let in_block =
+                dirty.partition_point(|&face| face < first)..dirty.partition_point(|&face| face < end);
+            for &face in &dirty[in_block] {
+                before.copy(kept..3 * face, &mut counts, &mut at);
+                for h in 3 * face..3 * face + 3 {
+                    let start = at.len();
+                    places(edges, trees, &groups, h, &mut at);
+                    counts.push((at.len() - start) as u32);
+                }
+                kept = 3 * face + 3;
             }
+            before.copy(kept..3 * end, &mut counts, &mut at);
             (counts, at)
         })?;
         let mut chains = Self {
@@ -59,6 +76,16 @@ impl Chains {
         Ok(chains)
     }
 
+    /// Appends how many vertices half-edges keep, and their places.
+    fn copy(&self, half_edges: Range<u32>, counts: &mut Vec<u32>, at: &mut Vec<u32>) {
+        if half_edges.is_empty() {
+            return;
+        }
+        let starts = &self.starts[half_edges.start as usize..=half_edges.end as usize];
+        counts.extend(starts.windows(2).map(|pair| pair[1] - pair[0]));
+        at.extend_from_slice(&self.at[starts[0] as usize..starts[starts.len() - 1] as usize]);
+    }
+
     /// Vertices on edges.
     pub(super) fn count(&self) -> usize {
         self.at.len()
@@ -76,7 +103,7 @@ impl Chains {
     }
 
     /// The numbers of those.
-    pub(super) fn vertices(&self, edges: &Edges<'_>, h: u32) -> core::ops::Range<usize> {
+    pub(super) fn vertices(&self, edges: &Edges<'_>, h: u32) -> Range<usize> {
         let (first, places) = self.own(first_of(edges, h));
         first as usize..first as usize + places.len()
     }

@@ -481,10 +481,10 @@ impl Engine<'_> {
 
     /// Neighbouring leaves are at most one level apart; marks what changes. Only marked faces may have more leaves than before.
     fn restrict(&self, trees: &mut Trees, is_dirty: &mut [bool]) -> Result<(), RefineError> {
-        let faces = marked(is_dirty);
+        let (faces, edges) = (marked(is_dirty), &self.edges);
         let lists = self.watch.pieces(faces.len(), block(faces.len()), |block| {
             let mut pending = Pending::default();
-            faces[block].iter().for_each(|&face| pending.push_tree(trees, face));
+            faces[block].iter().for_each(|&face| pending.push_tree(trees, edges, face));
             pending
         })?;
         let mut all = Pending::default();
@@ -507,7 +507,8 @@ impl Engine<'_> {
         let Self { control, ref edges, max_levels, .. } = *self;
         let mesh = control.mesh;
         loop {
-            let chains = Chains::of(mesh, edges, &plan.decision.trees, self.watch)?;
+            let known = (&plan.chains, &dirty[..]);
+            let chains = Chains::of(mesh, edges, &plan.decision.trees, known, self.watch)?;
             let decision = &plan.decision;
             // Most faces are walked over once.
             let is_first = dirty.len() == plan.closed.len();

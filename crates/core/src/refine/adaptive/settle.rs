@@ -261,6 +261,7 @@ fn corners(emission: &Emission, triangle: u32) -> [DVec3; 3] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::chains::Chains;
     use super::super::demands::Demands;
     use super::super::judge::{Allowance, Extent, Seen};
     use super::super::quadtree::{CONDITIONAL, LEAF, Piece, is_split};
@@ -498,6 +499,11 @@ mod tests {
                 let split = |place: Place| engine.mark_split(place, &mut is_dirty);
                 engine.split(&mut plan.decision.trees, place, split).unwrap();
                 assert!(engine.carry_out(&mut plan, is_dirty, usize::MAX).unwrap());
+                let all: Vec<u32> = (0..plan.closed.len() as u32).collect();
+                let (edges, trees) = (&engine.edges, &plan.decision.trees);
+                let known = (&Chains::default(), &all[..]);
+                let expected = Chains::of(engine.control.mesh, edges, trees, known, engine.watch).unwrap();
+                assert_eq!(plan.chains, expected, "{name}");
                 counted += plan.is_touched.iter().filter(|&&is_touched| !is_touched).count();
                 let again = engine.emit_all(&mut plan).unwrap();
                 plan.emission = None;
