@@ -6,11 +6,13 @@
 
 mod allowances;
 mod even_parts;
+mod found;
 
 use super::backs::BackFaces;
 use super::demands::Demands;
 use super::flat::FlatRegions;
-use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
+use super::guess::Expected;
+use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Seen, Verdict};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
 use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, Piece, Place, Trees, UNJUDGED};
@@ -28,6 +30,7 @@ use crate::progress::SharedWatch;
 use crate::refine::RefineError;
 use crate::vector::{DVec3, vector};
 use even_parts::{AtOnce, MOST_TESTED};
+use found::{Found, FoundByFace};
 
 /// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
 const BLOCK: usize = 64;
@@ -86,8 +89,7 @@ impl Control<'_> {
 #[derive(Clone)]
 pub(super) struct Decision {
     pub(super) trees: Trees,
-    pub(super) allowances: Vec<Allowance>,
-    found: Vec<Found>,
+    found: FoundByFace,
     /// How often faces were divided again.
     rounds: usize,
 }
@@ -103,16 +105,6 @@ pub(super) fn child_open(open: [bool; 3], child: usize) -> [bool; 3] {
     own
 }
 
-/// What one face came to.
-#[derive(Clone)]
-struct Found {
-    extent: Extent,
-    allowance: Allowance,
-    has_failed: bool,
-    /// Leaves that pass on conditions, in the order of the tree.
-    conditions: Vec<Condition>,
-}
-
 /// Divides all control faces; `None` if that takes more than `most` leaves.
 pub(super) fn decide(
     (control, watch): (&Control<'_>, &SharedWatch<'_>),
@@ -123,8 +115,10 @@ pub(super) fn decide(
 ) -> Result<Option<Decision>, RefineError> {
     let faces = control.mesh.face_count();
     let count = Count { leaves: AtomicUsize::new(0), most };
+    let expected = Expected::of_all((control, watch), goal, max_levels)?;
     let blocks = watch.long_pieces(faces, BLOCK, |block, is_stopped| {
         let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
+        decider.expected = &expected;
         let found: Vec<Found> = block.map(|face| decider.face(face as u32, None)).collect();
         decider.tell();
         (decider.piece, found)
@@ -132,18 +126,10 @@ pub(super) fn decide(
     if count.is_passed() {
         return Ok(None);
     }
-    let (mut pieces, mut found) = (Vec::with_capacity(blocks.len()), Vec::with_capacity(faces));
-    watch.each(blocks, |(piece, mut list)| {
-        pieces.push(piece);
-        found.append(&mut list);
-    })?;
-    let mut decision = Decision {
-        trees: Trees::of(&pieces, &mut || watch.poll())?,
-        allowances: found.iter().map(|found| found.allowance).collect(),
-        found,
-        rounds: 0,
-    };
-    drop(pieces);
+    let (pieces, found): (Vec<Piece>, Vec<Vec<Found>>) = blocks.into_iter().unzip();
+    let trees = Trees::of(&pieces, &mut || watch.poll())?;
+    let mut decision = Decision { trees, found: FoundByFace(found), rounds: 0 };
+    drop((pieces, expected));
     loop {
         match decision.settle((control, watch), goal, edges, (max_levels, most), |_| None)? {
             Some(faces) if faces.is_empty() => return Ok(Some(decision)),
@@ -156,22 +142,23 @@ pub(super) fn decide(
 impl Decision {
     /// The leaves of a face that pass on conditions, in the order of the tree; those that were split since are among them.
     pub(super) fn conditions(&self, face: u32) -> &[Condition] {
-        &self.found[face as usize].conditions
+        &self.found.of(face).conditions
+    }
+
+    /// What the triangles of a face count on.
+    pub(super) fn allowance(&self, face: u32) -> &Allowance {
+        &self.found.of(face).allowance
     }
 
     /// The same trees, of whose leaves nothing is known.
     pub(super) fn unjudged(mut self) -> Self {
-        for (found, allowance) in self.found.iter_mut().zip(&mut self.allowances) {
-            *allowance = Allowance::NOTHING;
-            let allowance = Allowance::NOTHING;
-            *found = Found { extent: Extent::NONE, allowance, has_failed: false, conditions: Vec::new() };
-        }
+        self.found.0.iter_mut().for_each(|block| block.fill(Found::NOTHING));
         self
     }
 
     /// The greatest bound of a leaf of a face, conditions expected to hold.
     pub(super) fn bound(&self, face: u32) -> f64 {
-        let found = &self.found[face as usize];
+        let found = self.found.of(face);
         let conditional = found.conditions.iter().map(|condition| condition.deviation.height);
         conditional.fold(found.extent.bound, f64::max)
     }
@@ -216,6 +203,8 @@ struct Decider<'a> {
     control: &'a Control<'a>,
     edges: &'a Edges<'a>,
     goal: &'a Goal,
+    /// By control face, if it is known of all.
+    expected: &'a [Expected],
     /// Of the face at hand.
     judge: Judge<'a>,
     max_levels: u32,
@@ -245,6 +234,7 @@ impl<'a> Decider<'a> {
             control,
             edges,
             goal,
+            expected: &[],
             judge: goal.judge(control, max_levels, 0),
             max_levels: max_levels.min(MOST_LEVELS),
             piece: Piece::default(),
@@ -265,8 +255,7 @@ impl<'a> Decider<'a> {
         if let Goal::Even(levels, is_finer) = self.goal {
             let word = self.even(levels + u32::from(is_finer[face as usize]));
             self.piece.roots.push(word);
-            let (extent, allowance) = (Extent::NONE, Allowance::NOTHING);
-            return Found { extent, allowance, has_failed: false, conditions: Vec::new() };
+            return Found::NOTHING;
         }
         self.judge = self.goal.judge(self.control, self.max_levels, face);
         let weight = self.control.flat.weight(face);
@@ -281,12 +270,13 @@ impl<'a> Decider<'a> {
         let word = if let Patch::Regular(points) = &patch {
             let net = BezierTriangle::of(points);
             let middles = net.middles().map(|position| LimitPoint { position, normal: DVec3::ZERO });
-            self.allowance = allowance.unwrap_or_else(|| self.guess(face, &corners, &middles));
-            self.regular(&net, corners, open, place)
+            let seen = Seen::of(&corners, 0);
+            self.allowance = allowance.unwrap_or_else(|| self.guess(face, &seen, &middles));
+            self.regular(&net, (corners, &seen), open, place)
         } else {
             let refined = patch.refined(self.control.rules);
             let middles = [0, 1, 2].map(|edge| refined.middle(edge));
-            self.allowance = allowance.unwrap_or_else(|| self.guess(face, &corners, &middles));
+            self.allowance = allowance.unwrap_or_else(|| self.guess(face, &Seen::of(&corners, 0), &middles));
             self.general(&patch, (&refined, middles), corners, open, place)
         };
         self.piece.roots.push(word);
@@ -315,14 +305,18 @@ impl<'a> Decider<'a> {
     }
 
     /// What triangles of a face count on at first.
-    fn guess(&self, face: u32, corners: &[LimitPoint; 3], middles: &[LimitPoint; 3]) -> Allowance {
-        let beside = beside(self.control, self.edges, face).map(|face| self.control.corners(face));
-        self.judge.guess(corners, middles, beside)
+    fn guess(&self, face: u32, seen: &Seen, middles: &[LimitPoint; 3]) -> Allowance {
+        let beside = beside(self.control, self.edges, face).map(|face| match self.expected {
+            [] => Expected::of(self.control, self.goal, self.max_levels, face),
+            known => known[face as usize],
+        });
+        self.judge.guess(seen, middles, beside)
     }
 
     fn node(&mut self, patch: &Patch, corners: [LimitPoint; 3], open: [bool; 3], place: Place) -> u32 {
         if let Patch::Regular(points) = patch {
-            return self.regular(&BezierTriangle::of(points), corners, open, place);
+            let seen = Seen::of(&corners, place.level);
+            return self.regular(&BezierTriangle::of(points), (corners, &seen), open, place);
         }
         let refined = patch.refined(self.control.rules);
         let middles = [0, 1, 2].map(|edge| refined.middle(edge));
@@ -368,11 +362,11 @@ impl<'a> Decider<'a> {
     fn regular(
         &mut self,
         net: &BezierTriangle,
-        corners: [LimitPoint; 3],
+        (corners, seen): ([LimitPoint; 3], &Seen),
         open: [bool; 3],
         place: Place,
     ) -> u32 {
-        let verdict = self.judge.at_a_glance(net, place.level, &corners, open, &self.allowance);
+        let verdict = self.judge.at_a_glance(net, seen, open, &self.allowance);
         let may_stay = !self.control.demands.divides(place);
         match verdict {
             Some(verdict) if may_stay && !verdict.fails() || place.level >= self.max_levels => {

@@ -1,10 +1,15 @@
 //! What the triangles of a control face count on of those beside them before anything is divided. [`super::decide`] checks it against
 //! what came out, and divides again the faces that counted on too much.
 
-use super::judge::{Allowance, Judge, Seen};
+use super::decide::Control;
+use super::judge::{Allowance, Goal, Judge, Seen};
 use crate::certificate::least_slope;
 use crate::patch::LimitPoint;
+use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, Extremes};
+
+/// Control faces that one call takes together.
+const BLOCK: usize = 1024;
 
 /// The least tilt that neighbours are allowed: it costs next to nothing.
 const LEAST_TILT: f64 = 0.01;
@@ -15,31 +20,62 @@ const GENEROUS: f64 = 2.2;
 /// What is left of the least angle of the control faces when triangles close gaps, as tangents: they may halve it.
 const SLOPE_LEFT: f64 = 0.3;
 
+/// What is expected of the triangles of a control face by its corners and their normals.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Expected {
+    /// The greatest tilt; 0 where the normals tell nothing.
+    tilt: f64,
+    /// The tangent of the least angle.
+    slope: f64,
+}
+
+impl Expected {
+    /// That of all control faces; of none where nothing is counted on.
+    pub(super) fn of_all(
+        (control, watch): (&Control<'_>, &SharedWatch<'_>),
+        goal: &Goal,
+        max_levels: u32,
+    ) -> Result<Vec<Self>, Cancelled> {
+        if control.criteria.is_some() || matches!(goal, Goal::Even(..)) {
+            return Ok(Vec::new());
+        }
+        let blocks = watch.pieces(control.mesh.face_count(), BLOCK, |block| {
+            block.map(|face| Self::of(control, goal, max_levels, face as u32)).collect::<Vec<_>>()
+        })?;
+        Ok(blocks.concat())
+    }
+
+    /// That of one.
+    pub(super) fn of(control: &Control<'_>, goal: &Goal, max_levels: u32, face: u32) -> Self {
+        let corners = control.corners(face);
+        let slope = least_slope(corners.map(|at| at.position));
+        Self { tilt: goal.judge(control, max_levels, face).tilt_by_normals(&corners), slope }
+    }
+}
+
 impl Judge<'_> {
     /// What the triangles of a control face count on of those beside them at first: the greatest tilts and the least angles that are expected
     /// there and in the faces beside. Angles between planes shrink with the size of triangles, heights with its square; those of the face are
-    /// known at some points of its piece, those beside are told by the normals at their corners. Where more than distances count, triangles
-    /// are looked at among their neighbours as they are emitted, and count on nothing.
+    /// known at some points of its piece. Where more than distances count, triangles are looked at among their neighbours as they are
+    /// emitted, and count on nothing.
     pub(super) fn guess(
         &self,
-        corners: &[LimitPoint; 3],
+        seen: &Seen,
         points: &[LimitPoint],
-        beside: impl Iterator<Item = [LimitPoint; 3]>,
+        beside: impl Iterator<Item = Expected>,
     ) -> Allowance {
         if self.criteria.is_some() {
             return Allowance::NOTHING;
         }
-        let seen = Seen::of(corners, 0);
         let tilt = seen.tilt * self.shrunk(seen.highest(points));
         let slope = seen.frame.least_slope();
-        let (tilt, slope) = beside.fold((tilt, slope), |(tilt, slope), corners| {
-            (tilt.larger(self.tilt_beside(&corners)), slope.min(least_slope(corners.map(|at| at.position))))
-        });
+        let (tilt, slope) = beside
+            .fold((tilt, slope), |(tilt, slope), other| (tilt.larger(other.tilt), slope.min(other.slope)));
         Allowance { tilt: (GENEROUS * tilt).max(LEAST_TILT), slope: SLOPE_LEFT * slope }
     }
 
-    /// The tilt that is expected of triangles in a face beside, by the normals at its corners; 0 where they tell nothing.
-    fn tilt_beside(&self, corners: &[LimitPoint; 3]) -> f64 {
+    /// The tilt that is expected of triangles in a face by the normals at its corners; 0 where they tell nothing.
+    fn tilt_by_normals(&self, corners: &[LimitPoint; 3]) -> f64 {
         let edge = |from: usize| corners[(from + 1) % 3].position - corners[from].position;
         let across = edge(0).cross(edge(1));
         let double_area = across.length();

@@ -318,21 +318,19 @@ impl Judge<'_> {
     pub(super) fn at_a_glance(
         &self,
         net: &BezierTriangle,
-        level: u32,
-        corners: &[LimitPoint; 3],
+        seen: &Seen,
         open: [bool; 3],
         allowance: &Allowance,
     ) -> Option<Verdict> {
         if self.is_lenient || self.rim_alone || self.criteria.is_some() {
             return None;
         }
-        let seen = Seen::of(corners, level);
         let (deviation, attained) = NetPart::own(net, SubTriangle::Whole).at_a_glance(&seen.frame, open);
-        if exceeds(attained, self.limit) && !self.is_kept(&seen) {
+        if exceeds(attained, self.limit) && !self.is_kept(seen) {
             let extent = Extent { bound: attained, ..seen.extent() };
             return Some(Verdict { outcome: Outcome::Fails, extent });
         }
-        Some(self.decided(&seen, deviation, allowance)).filter(Verdict::passes)
+        Some(self.decided(seen, deviation, allowance)).filter(Verdict::passes)
     }
 
     /// A triangle over a part of any piece, so many levels below its control face.

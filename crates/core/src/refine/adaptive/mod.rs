@@ -515,7 +515,7 @@ impl Engine<'_> {
             let found = self.watch.long_pieces(dirty.len(), BLOCK, |block, is_stopped| {
                 let mut knots = Vec::new();
                 let walks = dirty[block].iter().map(|&face| {
-                    let allowance = &decision.allowances[face as usize];
+                    let allowance = decision.allowance(face);
                     let trees = (&decision.trees, &chains);
                     let known = &plan.closed[face as usize];
                     close(

@@ -55,6 +55,9 @@ const MET_SHARE: usize = 64;
 /// How many of them may be in any case.
 const MET_AT_LEAST: usize = 6_000;
 
+/// Boxes that are looked at together: control faces with consecutive numbers are often near each other.
+const GROUP: usize = 64;
+
 /// Boxes and triangles that are looked at between two calls of the observer.
 const LOOKED_AT: u32 = 1 << 14;
 
@@ -257,7 +260,17 @@ struct Nearest<'a, 'w> {
     watch: &'a SharedWatch<'w>,
     emission: &'a Emission,
     /// Boxes that hold the surface over each control face, and so the corners of its triangles.
-    boxes: Vec<(DVec3, DVec3)>,
+    boxes: Vec<Bounds>,
+    /// Those of [`GROUP`] boxes together.
+    groups: Vec<Bounds>,
+}
+
+/// The least and the greatest coordinates of something.
+type Bounds = (DVec3, DVec3);
+
+/// The square of a point's distance from a box.
+fn gap(point: DVec3, &(low, high): &Bounds) -> f64 {
+    (low - point).max(point - high).max(DVec3::ZERO).length_squared()
 }
 
 impl<'a, 'w> Nearest<'a, 'w> {
@@ -279,20 +292,27 @@ impl<'a, 'w> Nearest<'a, 'w> {
         let faces = control.face_count();
         let boxes =
             engine.watch.pieces(faces, block(faces), |block| block.map(bounds).collect::<Vec<_>>())?;
-        Ok(Self { watch: engine.watch, emission, boxes: boxes.concat() })
+        let boxes = boxes.concat();
+        let both = |a: Bounds, b: &Bounds| (a.0.min(b.0), a.1.max(b.1));
+        let groups = boxes.chunks(GROUP).map(|group| group.iter().fold(group[0], both)).collect();
+        Ok(Self { watch: engine.watch, emission, boxes, groups })
     }
 
     /// The distance of a point to the mesh; `face` is likely to be nearest.
     fn distance(&self, point: DVec3, face: u32) -> Result<f64, Cancelled> {
         let mut least = f64::INFINITY;
         self.within(face, point, &mut least)?;
-        for (other, &(low, high)) in (0u32..).zip(&self.boxes) {
-            if other.is_multiple_of(LOOKED_AT) {
+        for (group, bounds) in self.groups.iter().enumerate() {
+            if group.is_multiple_of(LOOKED_AT as usize / GROUP) {
                 self.watch.poll()?;
             }
-            let gap = (low - point).max(point - high).max(DVec3::ZERO).length_squared();
-            if gap < least && other != face {
-                self.within(other, point, &mut least)?;
+            if gap(point, bounds) < least {
+                let first = GROUP * group;
+                for (other, bounds) in (first..).zip(&self.boxes[first..]).take(GROUP) {
+                    if gap(point, bounds) < least && other != face as usize {
+                        self.within(other as u32, point, &mut least)?;
+                    }
+                }
             }
         }
         Ok(least.sqrt())

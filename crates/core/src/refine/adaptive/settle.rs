@@ -435,7 +435,7 @@ mod tests {
         let emission = engine.emit_all(plan).unwrap();
         let sharp = sharp_edges(&emission, engine.watch).unwrap();
         for (face, extent) in (0..).zip(plan.decision.extents()) {
-            let allowance = plan.decision.allowances[face as usize];
+            let allowance = *plan.decision.allowance(face);
             if allowance == Allowance::NOTHING {
                 continue;
             }

@@ -29,14 +29,14 @@ impl Decision {
         let mut wanting = Vec::new();
         watch.each(0..faces, |face| {
             let (Allowance { tilt, slope }, counted) = self.around(control, edges, face, &closing);
-            let allowance = &self.allowances[face as usize];
+            let allowance = self.allowance(face);
             // What counts on nothing needs nothing.
             if *allowance != Allowance::NOTHING && !(tilt <= allowance.tilt && counted <= slope) {
                 wanting.push((face, tilt, slope));
             }
         })?;
         for &(face, tilt, slope) in &wanting {
-            let own = &mut self.allowances[face as usize];
+            let own = &mut self.found.of_mut(face).allowance;
             *own = if self.rounds >= MOST_ROUNDS {
                 Allowance::NOTHING
             } else {
@@ -45,7 +45,7 @@ impl Decision {
         }
         self.rounds += 1;
         let faces: Vec<(u32, Option<Allowance>)> =
-            wanting.iter().map(|&(face, ..)| (face, Some(self.allowances[face as usize]))).collect();
+            wanting.iter().map(|&(face, ..)| (face, Some(*self.allowance(face)))).collect();
         let fits = self.divide((control, watch), goal, edges, (max_levels, most), &faces)?;
         Ok(fits.then(|| wanting.into_iter().map(|(face, ..)| face).collect()))
     }
@@ -81,8 +81,7 @@ impl Decision {
             if !self.trees.replace(face, &piece) {
                 return Err(self.trees.too_many(piece.words.len()).into());
             }
-            self.allowances[face as usize] = found.allowance;
-            self.found[face as usize] = found;
+            *self.found.of_mut(face) = found;
         }
         Ok(true)
     }
@@ -97,7 +96,7 @@ impl Decision {
         closing: impl Fn(u32) -> Option<&'c Extent>,
     ) -> (Allowance, f64) {
         let all = |face: u32| {
-            let mut extent = self.found[face as usize].extent;
+            let mut extent = self.found.of(face).extent;
             if let Some(closing) = closing(face) {
                 extent.add(closing);
             }
