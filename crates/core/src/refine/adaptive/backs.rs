@@ -16,7 +16,7 @@
 //! **Views** make angles depend on triangles (equation 11). One that looks away is not divided, and no part of the outline is missed, if all of
 //! its piece does.
 
-use super::decide::Control;
+use super::control::Control;
 use super::emitted::{Emitted, Over};
 use super::surface::Ground;
 use crate::certificate::SubTriangle;

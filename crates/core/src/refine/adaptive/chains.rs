@@ -97,9 +97,14 @@ impl Chains {
         (self.base + start, &self.at[start as usize..end as usize])
     }
 
-    /// Vertices inside an edge, from any side of it.
+    /// How many vertices are inside an edge, from any side of it.
     pub(super) fn along(&self, edges: &Edges<'_>, h: u32) -> usize {
         self.own(first_of(edges, h)).1.len()
+    }
+
+    /// Whether there are none on the edges of a control face.
+    pub(super) fn are_none(&self, edges: &Edges<'_>, face: u32) -> bool {
+        (3 * face..3 * face + 3).all(|h| self.along(edges, h) == 0)
     }
 
     /// The numbers of those.

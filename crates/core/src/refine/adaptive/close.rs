@@ -2,7 +2,7 @@
 //! made for their neighbours' sake. Counts vertices and triangles on the way.
 
 use super::chains::Chains;
-use super::decide::Control;
+use super::control::Control;
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
 use super::leaf::leaf_triangles;
 use super::quadtree::{Edges, Place, Trees, UNJUDGED, is_split};
@@ -115,8 +115,7 @@ pub(super) fn close(
     knots: &mut Vec<Knot>,
 ) -> Closed {
     let word = trees.root(face);
-    let is_whole = !is_split(word) && word & UNJUDGED == 0;
-    if is_whole && (3 * face..3 * face + 3).all(|h| chains.along(edges, h) == 0) {
+    if !is_split(word) && word & UNJUDGED == 0 && chains.are_none(edges, face) {
         return Closed { triangles: 1, leaves: 1, ..Closed::default() };
     }
     let mut walk = Walk::new(trees, core::mem::take(knots), 0, is_stopped);

@@ -8,27 +8,20 @@ mod allowances;
 mod even_parts;
 mod found;
 
-use super::backs::BackFaces;
-use super::demands::Demands;
-use super::flat::FlatRegions;
+use super::control::Control;
 use super::guess::Expected;
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Seen, Verdict};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
 use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, Piece, Place, Trees, UNJUDGED};
-use super::surface::{Ground, SurfacePiece};
+use super::surface::Ground;
 use crate::certificate::{Cell, CellRows, Marks, Pieces, SubTriangle};
-use crate::criterion::Criteria;
-use crate::index::{FaceId, HalfEdgeId};
-use crate::limit::SidedNormals;
-use crate::mesh::{Mesh, Sharpness};
 use crate::parallel::IsStopped;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::large_rings::LargeRings;
-use crate::patch::{LimitPoint, Patch, RefinedPatch, Rules, Spot, child_corners, root_patch};
+use crate::patch::{LimitPoint, Patch, RefinedPatch, Spot, child_corners};
 use crate::progress::SharedWatch;
 use crate::refine::RefineError;
-use crate::vector::{DVec3, vector};
+use crate::vector::DVec3;
 use even_parts::{AtOnce, MOST_TESTED};
 use found::{Found, FoundByFace};
 
@@ -37,53 +30,6 @@ const BLOCK: usize = 64;
 
 /// Leaves that are added to the common count together.
 const COUNTED: usize = 256;
-
-/// What is known of the control mesh.
-pub(super) struct Control<'a> {
-    pub(super) mesh: &'a Mesh,
-    pub(super) sharpness: &'a Sharpness<'a>,
-    pub(super) large: LargeRings,
-    /// What is sharp in the limit.
-    pub(super) lasting: &'a Sharpness<'a>,
-    pub(super) positions: Vec<[f64; 3]>,
-    /// Limit normals by side.
-    pub(super) sided: SidedNormals,
-    pub(super) rules: &'a Rules<'a>,
-    /// The faces whose surface is a part of a plane.
-    pub(super) flat: FlatRegions,
-    /// What is asked; `None` where nothing but distances and numbers of triangles count.
-    pub(super) criteria: Option<Criteria>,
-    /// What looks away from those who look.
-    pub(super) back_faces: BackFaces,
-    /// What is divided in any case.
-    pub(super) demands: &'a Demands,
-}
-
-impl Control<'_> {
-    pub(super) fn patch(&self, face: u32) -> Patch {
-        root_patch(self.mesh, self.sharpness, &self.large, FaceId(face), self.rules)
-    }
-
-    /// The surface over a face.
-    pub(super) fn piece(&self, face: u32) -> SurfacePiece {
-        SurfacePiece::of(self.patch(face), self.corners(face))
-    }
-
-    /// The limits of a face's corners, normals on its side.
-    pub(super) fn corners(&self, face: u32) -> [LimitPoint; 3] {
-        [0, 1, 2].map(|corner| {
-            let h = HalfEdgeId::of(FaceId(face), corner);
-            let topology = self.mesh.topology();
-            let position = vector(self.positions[topology.origin(h).index()]);
-            LimitPoint { position, normal: vector(self.sided.at(topology, h)) }
-        })
-    }
-
-    /// Which edges of a face lie on the boundary or on a sharp edge.
-    pub(super) fn open(&self, face: u32) -> [bool; 3] {
-        [0, 1, 2].map(|edge| self.lasting.edge(HalfEdgeId::of(FaceId(face), edge)) > 0.0)
-    }
-}
 
 /// The trees, and what their leaves come to and count on, by control face.
 #[derive(Clone)]
@@ -191,13 +137,6 @@ impl Count {
     }
 }
 
-/// The faces beyond the edges of a face that are not sharp.
-fn beside<'c>(control: &'c Control<'_>, edges: &'c Edges<'_>, face: u32) -> impl Iterator<Item = u32> + 'c {
-    let open = control.open(face);
-    let inner = (0..3u32).filter(move |&edge| !open[edge as usize]);
-    inner.filter_map(move |edge| edges.twin(3 * face + edge)).map(|h| h / 3)
-}
-
 /// Divides faces one by one.
 struct Decider<'a> {
     control: &'a Control<'a>,
@@ -213,7 +152,8 @@ struct Decider<'a> {
     extent: Extent,
     conditions: Vec<Condition>,
     has_failed: bool,
-    cell_rows: Box<CellRows>,
+    /// Made when rows are tested first.
+    cell_rows: Option<Box<CellRows>>,
     marks: [Marks; MOST_TESTED],
     /// Leaves that were not added to the count, and so many of them count as one.
     leaves: usize,
@@ -242,7 +182,7 @@ impl<'a> Decider<'a> {
             extent: Extent::NONE,
             conditions: Vec::new(),
             has_failed: false,
-            cell_rows: Box::default(),
+            cell_rows: None,
             marks: Default::default(),
             leaves: 0,
             weight: 1,
@@ -306,7 +246,7 @@ impl<'a> Decider<'a> {
 
     /// What triangles of a face count on at first.
     fn guess(&self, face: u32, seen: &Seen, middles: &[LimitPoint; 3]) -> Allowance {
-        let beside = beside(self.control, self.edges, face).map(|face| match self.expected {
+        let beside = self.control.beside(self.edges, face).map(|face| match self.expected {
             [] => Expected::of(self.control, self.goal, self.max_levels, face),
             known => known[face as usize],
         });

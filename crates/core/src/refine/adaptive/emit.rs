@@ -11,9 +11,10 @@ mod leaf_writer;
 use super::area::Areas;
 use super::chains::{Chains, first_of};
 use super::close::Closed;
-use super::decide::{Control, Decision};
+use super::control::Control;
+use super::decide::Decision;
 use super::judge::Condition;
-use super::quadtree::{Edges, FULL, Place, is_split};
+use super::quadtree::{Edges, FULL, LEAF, Place, is_split};
 use super::rim::Rim;
 use super::surface::Surface;
 use super::walk::Walk;
@@ -416,6 +417,15 @@ fn write(
         is_stopped,
     };
     for face in job.faces {
+        let word = trees.root(face);
+        let is_whole = word == LEAF && chains.are_none(edges, face);
+        if is_whole && only.is_none() && closed[face as usize].conditions().is_empty() {
+            let first = writer.push(control.mesh.triangles()[face as usize]);
+            job.parents[(first / 3 - job.first_triangle) as usize] = face;
+            let own = split_off(&mut job.borders, 3);
+            (first..).zip(own).for_each(|(h, border)| *border = h);
+            continue;
+        }
         walk.knots.clear();
         let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
         (writer.face, writer.diagonals) = (face, closed[face as usize].diagonals());
@@ -424,9 +434,9 @@ fn write(
         let before = writer.next_triangle - job.first_triangle;
         let at = (Place::root(face), Spot::WHOLE);
         let own = [0, 1, 2].map(|edge| chains.own(3 * face + edge));
-        if !is_split(trees.root(face)) && own.iter().all(|(_, places)| places.is_empty()) {
+        if !is_split(word) && own.iter().all(|(_, places)| places.is_empty()) {
             // No vertex is its own.
-            walk.node(trees.root(face), at, sides, Surface::Unknown, &mut writer);
+            walk.node(word, at, sides, Surface::Unknown, &mut writer);
         } else {
             let piece = control.piece(face);
             let surface = piece.surface(control.rules);
@@ -435,7 +445,7 @@ fn write(
                     job.on_edges.set(number + i as u32, point, origin);
                 });
             }
-            walk.node(trees.root(face), at, sides, surface, &mut writer);
+            walk.node(word, at, sides, surface, &mut writer);
         }
         writer.end();
         let after = writer.next_triangle - job.first_triangle;

@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use super::chains::Chains;
 use super::close::Closed;
-use super::decide::Control;
+use super::control::Control;
 use super::emit::Emission;
 use super::leaf::leaf_triangles;
 use super::quadtree::{Edges, Place, Trees};

@@ -32,7 +32,7 @@ pub(super) use strips::Net;
 use unfolded::is_unfolded;
 
 use super::chains::Chains;
-use super::decide::Control;
+use super::control::Control;
 use super::quadtree::Edges;
 use crate::index::HalfEdgeId;
 use crate::mesh::NONE;

@@ -1,7 +1,7 @@
 //! What the triangles of a control face count on of those beside them before anything is divided. [`super::decide`] checks it against
 //! what came out, and divides again the faces that counted on too much.
 
-use super::decide::Control;
+use super::control::Control;
 use super::judge::{Allowance, Goal, Judge, Seen};
 use crate::certificate::least_slope;
 use crate::patch::LimitPoint;

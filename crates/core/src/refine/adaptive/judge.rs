@@ -7,7 +7,7 @@
 //! against it face by face, so no triangle has to look at its neighbours.
 
 use super::backs::{BackFaces, Behind, Leaf};
-use super::decide::Control;
+use super::control::Control;
 use super::quadtree::Place;
 use super::surface::Ground;
 use super::trial::Trial;
@@ -95,7 +95,7 @@ impl Extent {
 }
 
 /// What is asked of the triangles of each control face. Values are distances between a triangle and its part of the surface
-/// where nothing else counts ([`super::decide::Control::criteria`]), else how many times over the criteria fail.
+/// where nothing else counts ([`super::control::Control::criteria`]), else how many times over the criteria fail.
 #[derive(Clone, Debug)]
 pub(super) enum Goal {
     /// Greatest value of a triangle.

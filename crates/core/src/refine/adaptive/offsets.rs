@@ -10,7 +10,7 @@
 //! say: they may be much coarser than those beside them, which would not stand what these want.
 
 use super::backs::{Behind, looks_away};
-use super::decide::Control;
+use super::control::Control;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
 use super::measure::fail;

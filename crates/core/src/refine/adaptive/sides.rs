@@ -1,7 +1,7 @@
 //! What of the emitted mesh lies along sharp and cut edges: normals by side, tags, copies.
 
 use super::chains::Chains;
-use super::decide::Control;
+use super::control::Control;
 use super::emit::Emission;
 use super::quadtree::Edges;
 use crate::index::HalfEdgeId;

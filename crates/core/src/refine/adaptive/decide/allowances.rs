@@ -2,9 +2,10 @@
 
 use core::sync::atomic::AtomicUsize;
 
+use super::super::control::Control;
 use super::super::judge::{Allowance, Extent, Goal};
 use super::super::quadtree::Edges;
-use super::{BLOCK, Control, Count, Decider, Decision, beside};
+use super::{BLOCK, Count, Decider, Decision};
 use crate::progress::SharedWatch;
 use crate::refine::RefineError;
 
@@ -104,7 +105,7 @@ impl Decision {
         };
         let own = all(face);
         let mut around = Allowance { tilt: own.tilt, slope: own.slope };
-        for other in beside(control, edges, face).map(all) {
+        for other in control.beside(edges, face).map(all) {
             around = Allowance { tilt: around.tilt.max(other.tilt), slope: around.slope.min(other.slope) };
         }
         (around, own.drift_slope)

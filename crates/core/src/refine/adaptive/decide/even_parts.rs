@@ -54,7 +54,7 @@ impl Decider<'_> {
         let mut tested = 0;
         for divisions in least..=last {
             let marks = &mut levels[tested];
-            self.cell_rows.test(&block, divisions, &target, &mut extent, marks);
+            self.cell_rows.get_or_insert_default().test(&block, divisions, &target, &mut extent, marks);
             tested += 1;
             if marks.are_all_passing() {
                 break;

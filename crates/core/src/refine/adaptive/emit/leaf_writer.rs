@@ -331,7 +331,7 @@ impl Writer<'_> {
 
     /// Adds a triangle; gives its first half-edge.
     #[inline]
-    fn push(&mut self, triangle: [u32; 3]) -> u32 {
+    pub(super) fn push(&mut self, triangle: [u32; 3]) -> u32 {
         self.triangles[(self.next_triangle - self.first_triangle) as usize] = triangle;
         self.next_triangle += 1;
         3 * (self.next_triangle - 1)

@@ -16,7 +16,7 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::normal_net::{CUBIC, tangents};
 use crate::patch::{Patch, VertexSector};
 use crate::progress::{Cancelled, SharedWatch};
-use crate::refine::adaptive::decide::Control;
+use crate::refine::adaptive::control::Control;
 use crate::refine::adaptive::quadtree::Edges;
 use crate::vector::{DVec3, unit_normal, unit_or_zero, vector};
 use std::collections::HashSet;

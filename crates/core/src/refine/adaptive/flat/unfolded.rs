@@ -5,7 +5,7 @@
 //! below zero ([`crate::patch::normal_net`]). Pieces at irregular vertices are refined until no more is left than adds nothing to
 //! a distance: all points of that are as near to the vertex, which the region has in any case.
 
-use super::super::decide::Control;
+use super::super::control::Control;
 use super::Plane;
 use crate::patch::Patch;
 use crate::patch::bezier_triangle::BezierTriangle;

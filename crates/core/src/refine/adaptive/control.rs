@@ -1,0 +1,68 @@
+//! The control mesh as all passes see it: limits at its vertices, the surface over its faces, what is sharp or flat, and what is asked.
+
+use super::backs::BackFaces;
+use super::demands::Demands;
+use super::flat::FlatRegions;
+use super::quadtree::Edges;
+use super::surface::SurfacePiece;
+use crate::criterion::Criteria;
+use crate::index::{FaceId, HalfEdgeId};
+use crate::limit::SidedNormals;
+use crate::mesh::{Mesh, Sharpness};
+use crate::patch::large_rings::LargeRings;
+use crate::patch::{LimitPoint, Patch, Rules, root_patch};
+use crate::vector::vector;
+
+/// What is known of the control mesh, and what is asked.
+pub(super) struct Control<'a> {
+    pub(super) mesh: &'a Mesh,
+    pub(super) sharpness: &'a Sharpness<'a>,
+    pub(super) large: LargeRings,
+    /// What is sharp in the limit.
+    pub(super) lasting: &'a Sharpness<'a>,
+    pub(super) positions: Vec<[f64; 3]>,
+    /// Limit normals by side.
+    pub(super) sided: SidedNormals,
+    pub(super) rules: &'a Rules<'a>,
+    /// The faces whose surface is a part of a plane.
+    pub(super) flat: FlatRegions,
+    /// What is asked; `None` where nothing but distances and numbers of triangles count.
+    pub(super) criteria: Option<Criteria>,
+    /// What looks away from those who look.
+    pub(super) back_faces: BackFaces,
+    /// What is divided in any case.
+    pub(super) demands: &'a Demands,
+}
+
+impl Control<'_> {
+    pub(super) fn patch(&self, face: u32) -> Patch {
+        root_patch(self.mesh, self.sharpness, &self.large, FaceId(face), self.rules)
+    }
+
+    /// The surface over a face.
+    pub(super) fn piece(&self, face: u32) -> SurfacePiece {
+        SurfacePiece::of(self.patch(face), self.corners(face))
+    }
+
+    /// The limits of a face's corners, normals on its side.
+    pub(super) fn corners(&self, face: u32) -> [LimitPoint; 3] {
+        [0, 1, 2].map(|corner| {
+            let h = HalfEdgeId::of(FaceId(face), corner);
+            let topology = self.mesh.topology();
+            let position = vector(self.positions[topology.origin(h).index()]);
+            LimitPoint { position, normal: vector(self.sided.at(topology, h)) }
+        })
+    }
+
+    /// Which edges of a face lie on the boundary or on a sharp edge.
+    pub(super) fn open(&self, face: u32) -> [bool; 3] {
+        [0, 1, 2].map(|edge| self.lasting.edge(HalfEdgeId::of(FaceId(face), edge)) > 0.0)
+    }
+
+    /// The faces beyond the edges of a face that are not sharp.
+    pub(super) fn beside<'c>(&'c self, edges: &'c Edges<'_>, face: u32) -> impl Iterator<Item = u32> + 'c {
+        let open = self.open(face);
+        let inner = (0..3u32).filter(move |&edge| !open[edge as usize]);
+        inner.filter_map(move |edge| edges.twin(3 * face + edge)).map(|h| h / 3)
+    }
+}
