@@ -226,6 +226,20 @@ impl<'a> SharedWatch<'a> {
         self.long_pieces(n, length, |piece, _| f(piece))
     }
 
+    /// `[f(0), f(1), …, f(n−1)]`, each written where it belongs, `length` of them by one call.
+    pub(crate) fn map<T: Send + Clone + Default, F: Fn(usize) -> T + Sync>(
+        &self,
+        n: usize,
+        length: usize,
+        f: F,
+    ) -> Result<Vec<T>, Cancelled> {
+        let mut slots = vec![T::default(); n];
+        parallel::for_each_chunk_polled(&mut slots, length, &mut |_| self.poll(), |chunk, slots| {
+            (chunk * length..).zip(slots).for_each(|(i, slot)| *slot = f(i));
+        })?;
+        Ok(slots)
+    }
+
     /// [`parallel::long_pieces_polled`].
     pub(crate) fn long_pieces<T: Send, F: Fn(Range<usize>, &IsStopped<'_>) -> T + Sync>(
         &self,

@@ -237,8 +237,7 @@ fn heights(engine: &Engine<'_>) -> Result<Vec<f64>, Cancelled> {
         let middles = piece.surface(control.rules).middles();
         middles.iter().map(|middle| frame.height(middle.position).abs()).fold(0.0, f64::max)
     };
-    let blocks = engine.watch.pieces(faces, block(faces), |block| block.map(height).collect::<Vec<f64>>())?;
-    Ok(blocks.concat())
+    engine.watch.map(faces, block(faces), height)
 }
 
 /// Spends what is left of a budget on the worst faces, as many as fit: they come within the lesser of two distances, the

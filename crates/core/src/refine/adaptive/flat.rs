@@ -114,10 +114,7 @@ impl FlatRegions {
         let size = mesh.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
         let share = options.tolerance.map_or(f64::INFINITY, |tolerance| OF_TOLERANCE * tolerance);
         let most = share.min(IN_PLANE * size);
-        let normals = watch.pieces(mesh.face_count(), BLOCK, |block| {
-            block.map(|face| mesh.unit_face_normal(face)).collect::<Vec<DVec3>>()
-        })?;
-        let normals = normals.concat();
+        let normals: Vec<DVec3> = watch.map(mesh.face_count(), BLOCK, |face| mesh.unit_face_normal(face))?;
         let found = watch.pieces(mesh.face_count(), BLOCK, |block| {
             let flat = block.map(|face| face as u32);
             let flat = flat.filter(|&face| may_be_flat((control, edges), &normals, face));

@@ -21,7 +21,7 @@ const GENEROUS: f64 = 2.2;
 const SLOPE_LEFT: f64 = 0.3;
 
 /// What is expected of the triangles of a control face by its corners and their normals.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Expected {
     /// The greatest tilt; 0 where the normals tell nothing.
     tilt: f64,
@@ -39,10 +39,8 @@ impl Expected {
         if control.criteria.is_some() || matches!(goal, Goal::Even(..)) {
             return Ok(Vec::new());
         }
-        let blocks = watch.pieces(control.mesh.face_count(), BLOCK, |block| {
-            block.map(|face| Self::of(control, goal, max_levels, face as u32)).collect::<Vec<_>>()
-        })?;
-        Ok(blocks.concat())
+        let of = |face: usize| Self::of(control, goal, max_levels, face as u32);
+        watch.map(control.mesh.face_count(), BLOCK, of)
     }
 
     /// That of one.

@@ -290,9 +290,7 @@ impl<'a, 'w> Nearest<'a, 'w> {
             bounds
         };
         let faces = control.face_count();
-        let boxes =
-            engine.watch.pieces(faces, block(faces), |block| block.map(bounds).collect::<Vec<_>>())?;
-        let boxes = boxes.concat();
+        let boxes = engine.watch.map(faces, block(faces), bounds)?;
         let both = |a: Bounds, b: &Bounds| (a.0.min(b.0), a.1.max(b.1));
         let groups = boxes.chunks(GROUP).map(|group| group.iter().fold(group[0], both)).collect();
         Ok(Self { watch: engine.watch, emission, boxes, groups })
