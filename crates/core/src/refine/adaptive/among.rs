@@ -1,6 +1,7 @@
 //! Emission where triangles are looked at among their neighbours, all of them: for goals beside distances, and for vertices
 //! that are moved off the surface.
 
+use super::carry_out::marked;
 use super::changes::{Changes, Moves};
 use super::emit::Emission;
 use super::emitted::Sources;
@@ -9,7 +10,7 @@ use super::measure::{Measured, measure};
 use super::offsets::Bulges;
 use super::quadtree::Place;
 use super::result::Outcome;
-use super::{ADDED, Engine, Plan, marked};
+use super::{ADDED, Engine, Plan};
 use crate::progress::Stage;
 use crate::refine::RefineError;
 use crate::refine::exact_options::ExactOptions;

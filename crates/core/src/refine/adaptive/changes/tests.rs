@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::f64::consts::TAU;
 
+use super::super::carry_out::marked;
 use super::super::demands::Demands;
 use super::super::emit::Scope;
 use super::super::emitted::{Beholder, Emitted, Over, Sources};
@@ -11,7 +12,7 @@ use super::super::measure::{Measured, measure};
 use super::super::offsets::Bulges;
 use super::super::quadtree::{Place, is_split};
 use super::super::settle::{beside, sharp_edges};
-use super::super::{Engine, Plan, marked, with_engine};
+use super::super::{Engine, Plan, with_engine};
 use super::*;
 use crate::certificate::SubTriangle;
 use crate::mesh::{Mesh, PolygonSoup};
