@@ -82,8 +82,7 @@ impl Place {
 
     /// Whether the node beyond an edge is a child of the same node.
     pub(crate) fn has_sibling_beyond(self, edge: usize) -> bool {
-        let child = (self.path & 3) as usize;
-        self.level > 0 && (child == 3 || edge == (child + 1) % 3)
+        self.level > 0 && is_beside_sibling((self.path & 3) as usize, edge)
     }
 
     /// The node of level `down` below this one, at number `index` along edge `edge` from its start.
@@ -91,6 +90,13 @@ impl Place {
         let digits = (0..down).rev().map(|bit| along_edge(edge, index >> bit & 1 == 1));
         digits.fold(self, |place, child| place.child(child))
     }
+}
+
+/// Whether what lies beyond an edge of a child is a child of the same node: every edge of the middle one, and that of any other which
+/// faces the middle.
+#[inline]
+fn is_beside_sibling(child: usize, edge: usize) -> bool {
+    child == 3 || edge == (child + 1) % 3
 }
 
 /// The child at the first or the second half of an edge.
@@ -132,7 +138,7 @@ pub(crate) fn beyond(place: Place, edge: usize) -> Beyond {
     let (mut index, mut depth) = (0u32, 0u32);
     while level > 0 {
         let child = (path & 3) as usize;
-        if child == 3 || edge == (child + 1) % 3 {
+        if is_beside_sibling(child, edge) {
             let sibling = if child == 3 { (edge + 2) % 3 } else { 3 };
             path = path & !3 | sibling as u64;
             // Down again on the other side, where the edge runs the other way.

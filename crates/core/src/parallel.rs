@@ -231,11 +231,19 @@ pub(crate) fn map_polled<T: Send + Clone + Default, F: Fn(usize) -> T + Sync>(
     poll: &mut Poll<'_>,
     f: F,
 ) -> Result<Vec<T>, Cancelled> {
+    map_chunks_polled(n, SEQUENTIAL_BELOW, poll, f)
+}
+
+/// [`map_polled`], `length` items at a time; so many should take a few milliseconds at most.
+pub(crate) fn map_chunks_polled<T: Send + Clone + Default, F: Fn(usize) -> T + Sync>(
+    n: usize,
+    length: usize,
+    poll: &mut Poll<'_>,
+    f: F,
+) -> Result<Vec<T>, Cancelled> {
     let mut slots = vec![T::default(); n];
-    for_each_chunk_polled(&mut slots, SEQUENTIAL_BELOW, poll, |chunk, slots| {
-        for (i, slot) in slots.iter_mut().enumerate() {
-            *slot = f(chunk * SEQUENTIAL_BELOW + i);
-        }
+    for_each_chunk_polled(&mut slots, length, poll, |chunk, slots| {
+        (chunk * length..).zip(slots).for_each(|(i, slot)| *slot = f(i));
     })?;
     Ok(slots)
 }

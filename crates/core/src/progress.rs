@@ -233,11 +233,7 @@ impl<'a> SharedWatch<'a> {
         length: usize,
         f: F,
     ) -> Result<Vec<T>, Cancelled> {
-        let mut slots = vec![T::default(); n];
-        parallel::for_each_chunk_polled(&mut slots, length, &mut |_| self.poll(), |chunk, slots| {
-            (chunk * length..).zip(slots).for_each(|(i, slot)| *slot = f(i));
-        })?;
-        Ok(slots)
+        parallel::map_chunks_polled(n, length, &mut |_| self.poll(), f)
     }
 
     /// [`parallel::long_pieces_polled`].

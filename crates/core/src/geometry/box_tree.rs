@@ -22,7 +22,13 @@ pub(crate) fn grown(bounds: Bounds, point: DVec3) -> Bounds {
 /// The distance of a point from a box: 0 inside.
 #[inline]
 pub(crate) fn distance_to(bounds: &Bounds, point: DVec3) -> f64 {
-    (bounds[0] - point).max(point - bounds[1]).max(DVec3::ZERO).length()
+    distance_squared_to(bounds, point).sqrt()
+}
+
+/// The square of [`distance_to`].
+#[inline]
+pub(crate) fn distance_squared_to(bounds: &Bounds, point: DVec3) -> f64 {
+    (bounds[0] - point).max(point - bounds[1]).max(DVec3::ZERO).length_squared()
 }
 
 /// A box, and what is in it.

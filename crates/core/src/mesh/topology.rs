@@ -145,7 +145,15 @@ impl Topology {
     /// The outgoing half-edges of `vertex`, counter-clockwise: one for each face.
     #[inline]
     pub fn outgoing_ring(&self, vertex: VertexId) -> impl Iterator<Item = HalfEdgeId> + Clone + use<'_> {
-        let first = self.outgoing(vertex);
+        self.outgoing_from(self.outgoing(vertex))
+    }
+
+    /// `first` and the outgoing half-edges that follow it counter-clockwise at its origin, as far as the faces reach.
+    #[inline]
+    pub(crate) fn outgoing_from(
+        &self,
+        first: HalfEdgeId,
+    ) -> impl Iterator<Item = HalfEdgeId> + Clone + use<'_> {
         core::iter::successors(Some(first), move |h| self.twin(h.previous()).filter(|&next| next != first))
     }
 

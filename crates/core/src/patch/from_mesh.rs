@@ -39,16 +39,15 @@ pub(crate) fn root_patch(
 fn regular(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> Option<Points> {
     let topology = mesh.topology();
     let ring = |h: HalfEdgeId| {
+        let mut targets = topology.outgoing_from(h).map(|h| topology.target(h));
         let mut ring = [topology.target(h); 6];
-        let mut next = h;
-        for vertex in &mut ring[1..] {
-            next = topology.twin(next.previous()).filter(|&next| next != h)?;
-            *vertex = topology.target(next);
+        for vertex in &mut ring {
+            *vertex = targets.next()?;
         }
-        (topology.twin(next.previous()) == Some(h)).then_some(ring)
+        targets.next().is_none().then_some(ring)
     };
     let vertices = corners.map(|h| topology.origin(h));
-    if vertices.into_iter().any(|vertex| sharpness.is_tagged(vertex)) {
+    if vertices.into_iter().any(|vertex| sharpness.is_tagged(vertex) || topology.is_boundary(vertex)) {
         return None;
     }
     let [a, b, c] = corners;

@@ -35,7 +35,7 @@ pub(super) struct JudgedLeaves {
     /// For each leaf with two split edges, in the order of the walk, whether its diagonal starts at the unsplit edge's end.
     diagonals: Vec<bool>,
     /// What was judged here.
-    extent: Option<Extent>,
+    extent: Extent,
     /// Leaves whose triangles fail.
     failing: Vec<Place>,
     /// Leaves that pass on conditions, in the order of the walk.
@@ -172,7 +172,7 @@ impl Closed {
 
     /// What was judged here.
     pub(super) fn extent(&self) -> Option<&Extent> {
-        self.judged.as_ref()?.extent.as_ref()
+        self.judged.as_ref().map(|judged| &judged.extent)
     }
 
     /// Leaves that pass on conditions, in the order of the walk.
@@ -197,18 +197,17 @@ impl JudgedLeaves {
     /// What was said of leaves.
     fn of(leaves: &[Judged], max_levels: u32) -> Self {
         let mut judged = Self::default();
-        let mut extent = Extent::NONE;
         for leaf in leaves {
             let place = leaf.place;
             let Some((verdict, from_end)) = leaf.verdict else {
                 // What nobody has judged is beyond every bound.
-                extent.add(&Extent { bound: f64::INFINITY, worst: Some(place), ..Extent::NONE });
+                judged.extent.add(&Extent { bound: f64::INFINITY, worst: Some(place), ..Extent::NONE });
                 continue;
             };
             if leaf.split.iter().filter(|&&is_split| is_split).count() == 2 {
                 judged.diagonals.push(from_end);
             }
-            extent.add(&Extent { worst: Some(place), ..verdict.extent });
+            judged.extent.add(&Extent { worst: Some(place), ..verdict.extent });
             match verdict.outcome {
                 Outcome::Passes => {}
                 Outcome::Fails => judged.failing.push(place),
@@ -220,7 +219,6 @@ impl JudgedLeaves {
                 }
             }
         }
-        judged.extent = Some(extent);
         judged
     }
 }

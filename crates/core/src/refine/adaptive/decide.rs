@@ -61,7 +61,7 @@ pub(super) fn decide(
 ) -> Result<Option<Decision>, RefineError> {
     let faces = control.mesh.face_count();
     let count = Count { leaves: AtomicUsize::new(0), most };
-    let expected = Expected::of_all((control, watch), goal, max_levels)?;
+    let expected = Expected::of_all((control, watch), goal)?;
     let blocks = watch.long_pieces(faces, BLOCK, |block, is_stopped| {
         let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
         decider.expected = &expected;
@@ -247,7 +247,7 @@ impl<'a> Decider<'a> {
     /// What triangles of a face count on at first.
     fn guess(&self, face: u32, seen: &Seen, middles: &[LimitPoint; 3]) -> Allowance {
         let beside = self.control.beside(self.edges, face).map(|face| match self.expected {
-            [] => Expected::of(self.control, self.goal, self.max_levels, face),
+            [] => Expected::of(self.control, self.goal, face),
             known => known[face as usize],
         });
         self.judge.guess(seen, middles, beside)

@@ -6,7 +6,7 @@ use super::judge::{Allowance, Goal, Judge, Seen};
 use crate::certificate::least_slope;
 use crate::patch::LimitPoint;
 use crate::progress::{Cancelled, SharedWatch};
-use crate::vector::{DVec3, Extremes};
+use crate::vector::{DVec3, Extremes, unit_normal};
 
 /// Control faces that one call takes together.
 const BLOCK: usize = 1024;
@@ -34,20 +34,19 @@ impl Expected {
     pub(super) fn of_all(
         (control, watch): (&Control<'_>, &SharedWatch<'_>),
         goal: &Goal,
-        max_levels: u32,
     ) -> Result<Vec<Self>, Cancelled> {
         if control.criteria.is_some() || matches!(goal, Goal::Even(..)) {
             return Ok(Vec::new());
         }
-        let of = |face: usize| Self::of(control, goal, max_levels, face as u32);
+        let of = |face: usize| Self::of(control, goal, face as u32);
         watch.map(control.mesh.face_count(), BLOCK, of)
     }
 
     /// That of one.
-    pub(super) fn of(control: &Control<'_>, goal: &Goal, max_levels: u32, face: u32) -> Self {
+    pub(super) fn of(control: &Control<'_>, goal: &Goal, face: u32) -> Self {
         let corners = control.corners(face);
         let slope = least_slope(corners.map(|at| at.position));
-        Self { tilt: goal.judge(control, max_levels, face).tilt_by_normals(&corners), slope }
+        Self { tilt: tilt_by_normals(&corners, goal.allowed(face)), slope }
     }
 }
 
@@ -65,36 +64,31 @@ impl Judge<'_> {
         if self.criteria.is_some() {
             return Allowance::NOTHING;
         }
-        let tilt = seen.tilt * self.shrunk(seen.highest(points));
+        let tilt = seen.tilt * shrunk(seen.highest(points), self.limit);
         let slope = seen.frame.least_slope();
         let (tilt, slope) = beside
             .fold((tilt, slope), |(tilt, slope), other| (tilt.larger(other.tilt), slope.min(other.slope)));
         Allowance { tilt: (GENEROUS * tilt).max(LEAST_TILT), slope: SLOPE_LEFT * slope }
     }
+}
 
-    /// The tilt that is expected of triangles in a face by the normals at its corners; 0 where they tell nothing.
-    fn tilt_by_normals(&self, corners: &[LimitPoint; 3]) -> f64 {
-        let edge = |from: usize| corners[(from + 1) % 3].position - corners[from].position;
-        let across = edge(0).cross(edge(1));
-        let double_area = across.length();
-        if double_area.is_nan()
-            || double_area <= 0.0
-            || corners.iter().any(|corner| corner.normal == DVec3::ZERO)
-        {
-            return 0.0;
-        }
-        let normal = across / double_area;
-        // A curve over an edge that bends evenly stands as high as this.
-        let height = |from: usize| {
-            0.125 * (corners[(from + 1) % 3].normal - corners[from].normal).dot(edge(from)).abs()
-        };
-        let chord = |corner: usize| corners[corner].normal.distance_squared(normal);
-        let height = height(0).larger(height(1)).larger(height(2));
-        chord(0).larger(chord(1)).larger(chord(2)).sqrt() * self.shrunk(height)
+/// The tilt that is expected of triangles in a face by the normals at its corners, divided down to a limit; 0 where they tell nothing.
+fn tilt_by_normals(corners: &[LimitPoint; 3], limit: f64) -> f64 {
+    let normal = unit_normal(corners.each_ref().map(|corner| corner.position));
+    if normal == DVec3::ZERO || corners.iter().any(|corner| corner.normal == DVec3::ZERO) {
+        return 0.0;
     }
+    // A curve over an edge that bends evenly stands as high as this.
+    let height = |from: usize| {
+        let [from, to] = [&corners[from], &corners[(from + 1) % 3]];
+        0.125 * (to.normal - from.normal).dot(to.position - from.position).abs()
+    };
+    let chord = |corner: usize| corners[corner].normal.distance_squared(normal);
+    let height = height(0).larger(height(1)).larger(height(2));
+    chord(0).larger(chord(1)).larger(chord(2)).sqrt() * shrunk(height, limit)
+}
 
-    /// What is left of angles where heights like this one are divided down to the limit.
-    fn shrunk(&self, height: f64) -> f64 {
-        if height > self.limit { (self.limit / height).sqrt() } else { 1.0 }
-    }
+/// What is left of angles where heights like this one are divided down to the limit.
+fn shrunk(height: f64, limit: f64) -> f64 {
+    if height > limit { (limit / height).sqrt() } else { 1.0 }
 }

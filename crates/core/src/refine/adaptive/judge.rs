@@ -80,6 +80,12 @@ pub(super) struct Extent {
     pub(super) worst: Option<Place>,
 }
 
+impl Default for Extent {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
 impl Extent {
     pub(super) const NONE: Self =
         Self { tilt: 0.0, slope: f64::INFINITY, drift_slope: 0.0, bound: 0.0, worst: None };

@@ -13,6 +13,7 @@ use super::measure::{Measured, measure};
 use super::quadtree::Place;
 use super::{Engine, Plan, block};
 use crate::certificate::TriangleFrame;
+use crate::geometry::box_tree::{Bounds, NO_BOUNDS, distance_squared_to, grown};
 use crate::geometry::closest_to_origin;
 use crate::index::VertexId;
 use crate::mesh::Mesh;
@@ -265,34 +266,22 @@ struct Nearest<'a, 'w> {
     groups: Vec<Bounds>,
 }
 
-/// The least and the greatest coordinates of something.
-type Bounds = (DVec3, DVec3);
-
-/// The square of a point's distance from a box.
-fn gap(point: DVec3, &(low, high): &Bounds) -> f64 {
-    (low - point).max(point - high).max(DVec3::ZERO).length_squared()
-}
-
 impl<'a, 'w> Nearest<'a, 'w> {
     fn of(engine: &'a Engine<'w>, plan: &Plan, emission: &'a Emission) -> Result<Self, Cancelled> {
         let (control, edges) = (engine.control.mesh, &engine.edges);
         let bounds = |face: usize| {
             let corners = control.triangles()[face].map(|vertex| vector(emission.positions[vertex as usize]));
-            let mut bounds =
-                (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+            let mut bounds = corners.into_iter().fold(NO_BOUNDS, grown);
             let edges = (3 * face as u32..3 * face as u32 + 3).map(|h| plan.chains.vertices(edges, h));
             for run in edges.chain([emission.vertices_inside(face as u32)]) {
-                let (low, high) = &mut bounds;
-                for &point in &emission.positions[run] {
-                    (*low, *high) = (low.min(vector(point)), high.max(vector(point)));
-                }
+                bounds = emission.positions[run].iter().map(|&point| vector(point)).fold(bounds, grown);
             }
             bounds
         };
         let faces = control.face_count();
         let boxes = engine.watch.map(faces, block(faces), bounds)?;
-        let both = |a: Bounds, b: &Bounds| (a.0.min(b.0), a.1.max(b.1));
-        let groups = boxes.chunks(GROUP).map(|group| group.iter().fold(group[0], both)).collect();
+        let joined = |a: Bounds, &[low, high]: &Bounds| grown(grown(a, low), high);
+        let groups = boxes.chunks(GROUP).map(|group| group.iter().fold(NO_BOUNDS, joined)).collect();
         Ok(Self { watch: engine.watch, emission, boxes, groups })
     }
 
@@ -304,10 +293,10 @@ impl<'a, 'w> Nearest<'a, 'w> {
             if group.is_multiple_of(LOOKED_AT as usize / GROUP) {
                 self.watch.poll()?;
             }
-            if gap(point, bounds) < least {
+            if distance_squared_to(bounds, point) < least {
                 let first = GROUP * group;
                 for (other, bounds) in (first..).zip(&self.boxes[first..]).take(GROUP) {
-                    if gap(point, bounds) < least && other != face as usize {
+                    if distance_squared_to(bounds, point) < least && other != face as usize {
                         self.within(other as u32, point, &mut least)?;
                     }
                 }

@@ -26,7 +26,7 @@ impl Decision {
         (max_levels, most): (u32, usize),
         closing: impl Fn(u32) -> Option<&'c Extent> + Sync,
     ) -> Result<Option<Vec<u32>>, RefineError> {
-        let faces = self.found.len() as u32;
+        let faces = control.mesh.face_count() as u32;
         let mut wanting = Vec::new();
         watch.each(0..faces, |face| {
             let (Allowance { tilt, slope }, counted) = self.around(control, edges, face, &closing);

@@ -28,11 +28,6 @@ impl Found {
 pub(super) struct FoundByFace(pub(super) Vec<Vec<Found>>);
 
 impl FoundByFace {
-    /// So many faces.
-    pub(super) fn len(&self) -> usize {
-        self.0.last().map_or(0, |last| BLOCK * (self.0.len() - 1) + last.len())
-    }
-
     pub(super) fn of(&self, face: u32) -> &Found {
         &self.0[face as usize / BLOCK][face as usize % BLOCK]
     }
