@@ -18,13 +18,13 @@ use crate::refine::exact_result::ExactStop;
 const STEP: f64 = 6.0;
 
 /// The part of the budget that may be left (one in so many).
-const LEFT: usize = 100;
+const LEFT: usize = 64;
 
 /// Fewer triangles than this may be left in any case.
 const LEFT_AT_LEAST: usize = 12;
 
-/// Distances nearer to each other than this tell nothing any more.
-const NEAR: f64 = 1e-3;
+/// Distances nearer to each other than this, relative, are as good as each other: bounds are within some per cent of the truth.
+const NEAR: f64 = 0.01;
 
 /// Between distances nearer than that, as a logarithm, counts jump: the middle is as good as any guess.
 const CLOSE: f64 = 0.03;
@@ -32,14 +32,20 @@ const CLOSE: f64 = 0.03;
 /// What fails so many times over is as bad as any that has no number.
 const COARSEST: f64 = 1e12;
 
-/// What is found is at most so many times a distance that is known not to fit.
+/// What is found is at most so many times a distance that does not fit.
 const PROMISED: f64 = 1.1;
+
+/// Distances this far from what was found, as ratios, tell how triangles grow there, ...
+const TELLING: (f64, f64) = (1.03, 1.5);
+
+/// ... and where they grow with this power at least, they do so a step of [`PROMISED`] further.
+const STEADY: f64 = 0.5;
 
 /// The part of the budget that a guess aims at: what is left then is enough.
 const AIM: f64 = 0.996;
 
-/// The part of the budget that the first plan aims at, so that it fits.
-const FIRST_AIM: f64 = 0.8;
+/// The part of the budget that the first plan aims at: it has somewhat more, mostly.
+const FIRST_AIM: f64 = 0.85;
 
 /// Triangles that a face takes for each time that it is too high, about: some are less high than need be, others close gaps.
 const FOR_ONE: f64 = 2.9;
@@ -47,11 +53,24 @@ const FOR_ONE: f64 = 2.9;
 /// From one guess to the next distances fall by this much at most.
 const MOST_APART: f64 = 8.0;
 
+/// Powers with which triangles grow, where two plans tell of one.
+const POWERS: (f64, f64) = (0.4, 3.0);
+
 /// After more plans in a row than these that brought nothing, distances fall ever faster.
 const MOST_IDLE: u32 = 2;
 
 /// Plans beyond the budget are counted to the end up to so many more triangles (one in so many): then the next guess is better.
-const COUNTED_BEYOND: usize = 4;
+const COUNTED_BEYOND: usize = 3;
+
+/// Of the ends between which is looked further, a guess keeps away by this much, as a logarithm, or by a twentieth of what lies between.
+const LEAST_MOVED: f64 = 0.005;
+
+/// What has more triangles than could be counted has about so many times the budget.
+const UNCOUNTED: usize = 2;
+
+/// Plans are looked at among their neighbours if they leave less of the budget than that (one in so many): those that leave
+/// more are not the last.
+const FAR: usize = 20;
 
 /// Distances that are tried below what was found where finer divisions may take fewer triangles: how many, and the ratio of one to the next.
 const MOST_EVENER: usize = 10;
@@ -59,6 +78,12 @@ const EVENER: f64 = 0.93;
 
 /// Plans that are made to spend what is left.
 const MOST_FILLS: usize = 9;
+
+/// Faces on which that is spent come within a distance that is less by this at least: a difference that takes triangles.
+const FILLED_APART: f64 = 1.03;
+
+/// Triangles that a division brings about at least, about.
+const LEAST_GAIN: f64 = 2.0;
 
 /// Budgets below this are spent to the last face.
 const EXACT: usize = 20_000;
@@ -77,16 +102,15 @@ impl Growth {
     }
 
     /// The distance at which so many are wanted, where there are some at another.
-    fn distance(&self, from: f64, triangles: usize, wanted: f64, power: f64) -> f64 {
+    fn distance(&self, (from, triangles): (f64, usize), wanted: f64, power: f64) -> f64 {
         let times = self.divided(wanted) / self.divided(triangles as f64);
-        from / times.max(1.0 + NEAR).powf(1.0 / power).min(MOST_APART)
+        from / times.powf(1.0 / power).clamp(1.0 / MOST_APART, MOST_APART)
     }
 
     /// The power between two distances with their triangles.
     fn power(&self, (coarse, few): (f64, usize), (fine, many): (f64, usize)) -> f64 {
         let times = self.divided(many as f64) / self.divided(few as f64);
-        let power = times.ln() / (coarse / fine).ln();
-        if power > 0.0 { power.clamp(0.4, 3.0) } else { 1.0 }
+        times.ln() / (coarse / fine).ln()
     }
 }
 
@@ -108,72 +132,9 @@ pub(super) fn search(
     {
         return Ok((plan, ExactStop::Met));
     }
-    let everything = engine.plan(Goal::Within(f64::INFINITY), usize::MAX)?;
-    let mut best = everything.ok_or_else(|| MeshError::Broken {
-        place: format!("{} control faces", engine.control.mesh.face_count()),
-        what: "undivided faces fit any budget",
-    })?;
-    // Criteria may have no answer to undivided faces but that they are as bad as can be.
-    let worst = best.worst();
-    let is_known = worst.is_finite() || engine.control.criteria.is_none();
-    let (mut high, mut low) = (if is_known { worst } else { COARSEST }, floor);
-    let growth = Growth { undivided: best.triangles as f64 };
-    // Triangles at the lesser distance, where they were counted to the end.
-    let mut beyond = None;
-    let mut power = 1.0f64;
-    let enough = most - (most / LEFT).max(LEFT_AT_LEAST).min(most);
-    let aim = AIM * most as f64;
-    // How often the same end was moved, up to twice.
-    let (mut fitted, mut moved) = (true, 0);
-    // Plans in a row that brought nothing: where levels end the division, no distance does.
-    let mut idle = 0u32;
-    let is_near = |high: f64, low: f64, triangles: usize| {
-        high <= low * if triangles < enough { 1.0 + NEAR } else { PROMISED }
-    };
-    let mut first = if engine.is_settled_later() { None } else { expected(engine, FIRST_AIM * most as f64)? };
-    // Of distances below what is added to all of them nobody is any nearer.
-    let least = if engine.control.criteria.is_some() { f64::MIN_POSITIVE } else { engine.rounding };
-    while !is_near(high, low, best.triangles) && high > least.max(f64::MIN_POSITIVE) {
-        let mut next = growth.distance(high, best.triangles, aim.min(STEP * best.triangles as f64), power);
-        if let Some(expected) = first.take().filter(|&expected| low < expected && expected < high) {
-            next = expected;
-        } else if low > 0.0 {
-            // Between two counts a power; but counts come in steps, so the middle where the same end was moved twice.
-            let span = (high / low).ln();
-            let is_apart = span > CLOSE && moved < 2;
-            let guess = beyond.filter(|_| is_apart).map(|beyond| {
-                let power = growth.power((high, best.triangles), (low, beyond));
-                growth.distance(high, best.triangles, aim, power)
-            });
-            let edge = (0.05 * span).exp();
-            next = guess.map_or(middle(low, high), |guess| guess.clamp(low * edge, high / edge));
-        }
-        if best.triangles >= enough {
-            // Where many triangles pass at once much less may take hardly more.
-            next = (high / PROMISED).max(low);
-        }
-        if idle > MOST_IDLE && (low == 0.0 || best.triangles >= enough) {
-            next = if low > 0.0 { middle(low, high) } else { high / MOST_APART.powi(1 << idle) };
-        }
-        if !(next < high && next > low) {
-            break;
-        }
-        let counted = most.saturating_add(most / COUNTED_BEYOND);
-        let faces = 0..best.closed.len() as u32;
-        let wanting: Vec<u32> = faces.filter(|&face| exceeds(best.bound(face), next)).collect();
-        let found = plan(engine, &best, Goal::Within(next), &wanting, counted)?;
-        let fits = found.as_ref().is_some_and(|plan| plan.triangles <= most);
-        moved = if fits == fitted && moved < 2 { moved + 1 } else { 1 };
-        fitted = fits;
-        match found {
-            Some(plan) if fits => {
-                idle = if plan.triangles > best.triangles { 0 } else { idle + 1 };
-                power = growth.power((high, best.triangles), (next, plan.triangles));
-                (high, best) = (next, plan);
-            }
-            found => (low, beyond) = (next, found.map(|plan| plan.triangles)),
-        }
-    }
+    let mut search = Search::new(engine, floor, most)?;
+    search.narrow()?;
+    let Search { mut high, mut low, mut best, least, .. } = search;
     if engine.control.flat.has_strips() {
         // A finer division that is more even may leave fewer triangles once strips are put together.
         let mut next = high;
@@ -187,10 +148,217 @@ pub(super) fn search(
             }
         }
     }
-    if most < EXACT && low > 0.0 {
-        best = fill(engine, best, (high, low), most)?;
+    if most < EXACT && high > least && best.worst() > 0.0 {
+        let less = if low > 0.0 { low.min(high / FILLED_APART) } else { high / PROMISED };
+        best = fill(engine, best, (high, less.max(floor)), most)?;
     }
     Ok((best, cap))
+}
+
+/// Undivided faces, which fit any budget.
+fn coarsest(engine: &Engine<'_>) -> Result<Plan, RefineError> {
+    let everything = engine.plan(Goal::Within(f64::INFINITY), usize::MAX)?;
+    let broken = || MeshError::Broken {
+        place: format!("{} control faces", engine.control.mesh.face_count()),
+        what: "undivided faces fit any budget",
+    };
+    everything.ok_or_else(|| broken().into())
+}
+
+/// The narrowing of distances to the least one that fits.
+struct Search<'e, 'a> {
+    engine: &'e Engine<'a>,
+    most: usize,
+    /// So many triangles are enough.
+    enough: usize,
+    growth: Growth,
+    /// The least distance whose plan fits, as far as known, and that plan.
+    high: f64,
+    best: Plan,
+    /// Whether that was looked at among its neighbours.
+    is_settled: bool,
+    /// The greatest distance that does not fit; 0 where none is known.
+    low: f64,
+    /// Of distances below this nobody is any nearer.
+    least: f64,
+    /// What the last plans came to, before they were looked at among their neighbours: at [`Self::high`], and at [`Self::low`].
+    fitting: usize,
+    beyond: Option<usize>,
+    /// The distances that fitted, with their triangles.
+    before: Vec<(f64, usize)>,
+    /// How many times as many triangles there are once they were looked at among their neighbours.
+    settling: f64,
+    /// Whether the last plan fitted, and how often in a row that was the same.
+    fitted: bool,
+    moved: i32,
+    /// Plans in a row that brought nothing: where levels end the division, no distance does.
+    idle: u32,
+}
+
+impl<'e, 'a> Search<'e, 'a> {
+    fn new(engine: &'e Engine<'a>, floor: f64, most: usize) -> Result<Self, RefineError> {
+        let best = coarsest(engine)?;
+        let has_criteria = engine.control.criteria.is_some();
+        // Of distances below what is added to all of them nobody is any nearer.
+        let least = if has_criteria { f64::MIN_POSITIVE } else { engine.rounding.max(f64::MIN_POSITIVE) };
+        Ok(Self {
+            engine,
+            most,
+            enough: most - (most / LEFT).max(LEFT_AT_LEAST).min(most),
+            growth: Growth { undivided: best.triangles as f64 },
+            high: Self::coarsest_distance(engine, &best),
+            is_settled: true,
+            low: floor,
+            least,
+            fitting: best.triangles,
+            best,
+            beyond: None,
+            before: Vec::new(),
+            settling: 1.0,
+            fitted: true,
+            moved: 0,
+            idle: 0,
+        })
+    }
+
+    /// The distance of undivided faces.
+    fn coarsest_distance(engine: &Engine<'_>, plan: &Plan) -> f64 {
+        // Criteria may have no answer to undivided faces but that they are as bad as can be.
+        let worst = plan.worst();
+        if worst.is_finite() || engine.control.criteria.is_none() { worst } else { COARSEST }
+    }
+
+    /// Narrows until what fits is as fine as it may be.
+    fn narrow(&mut self) -> Result<(), RefineError> {
+        let engine = self.engine;
+        let mut first = None;
+        if !engine.is_settled_later() {
+            first = expected(engine, FIRST_AIM * self.most as f64)?;
+        }
+        loop {
+            while !self.is_near() && self.high > self.least {
+                let next = match first.take().filter(|&expected| self.low < expected && expected < self.high)
+                {
+                    Some(expected) => expected,
+                    None => self.next(),
+                };
+                if !(next < self.high && next > self.low) {
+                    break;
+                }
+                self.try_within(next)?;
+            }
+            if self.is_settled || engine.settle(&mut self.best, self.most)? {
+                return Ok(());
+            }
+            // It did not fit in the end: all again above it.
+            (self.low, self.beyond) = (self.high, Some(self.fitting));
+            self.before.clear();
+            self.best = coarsest(engine)?;
+            (self.high, self.is_settled) = (Self::coarsest_distance(engine, &self.best), true);
+            self.fitting = self.best.triangles;
+        }
+    }
+
+    /// Whether what was found is as fine as it may be.
+    fn is_near(&self) -> bool {
+        if self.best.triangles < self.enough {
+            return self.high <= self.low * (1.0 + NEAR);
+        }
+        self.high <= self.low * PROMISED || self.is_steady()
+    }
+
+    /// Whether triangles grow steadily around what was found, so that a distance [`PROMISED`] times as small has too many.
+    fn is_steady(&self) -> bool {
+        let known = (self.high, self.fitting);
+        let beyond = self.beyond.map(|beyond| (self.low, beyond));
+        self.before.iter().copied().chain(beyond).any(|tried| {
+            let ratio = (tried.0 / self.high).max(self.high / tried.0);
+            (TELLING.0..TELLING.1).contains(&ratio) && self.growth.power(known, tried) >= STEADY
+        })
+    }
+
+    /// The distance that is tried next.
+    fn next(&self) -> f64 {
+        let (high, low) = (self.high, self.low);
+        let has_enough = self.best.triangles >= self.enough;
+        if self.idle > MOST_IDLE && (low == 0.0 || has_enough) {
+            return if low > 0.0 { middle(low, high) } else { high / MOST_APART.powi(1 << self.idle) };
+        }
+        if has_enough {
+            // Where many triangles pass at once much less may take hardly more.
+            return (high / PROMISED).max(low);
+        }
+        let aim = AIM * self.most as f64 / self.settling;
+        let known = (high, self.fitting);
+        // Where faces are not divided yet nothing tells how triangles grow.
+        let is_divided = |before: &&(f64, usize)| before.1 as f64 > self.growth.undivided;
+        let before = self.before.last().filter(is_divided);
+        let power = before.map_or(1.0, |&before| self.growth.power(before, known));
+        let power = if power > 0.0 { power.clamp(POWERS.0, POWERS.1) } else { 1.0 };
+        if low == 0.0 {
+            return self
+                .growth
+                .distance(known, aim.min(STEP * self.best.triangles as f64), power)
+                .min(high / (1.0 + NEAR));
+        }
+        let span = (high / low).ln();
+        let Some(beyond) = self.beyond.filter(|_| span > CLOSE) else { return middle(low, high) };
+        // Between two counts a power; but counts come in steps, so the middle where the same end was moved twice, or, where the ends are far
+        // apart, further from what was moved each time.
+        let is_apart = span > 2.0 * TELLING.1.ln();
+        if !is_apart && self.moved > 2 {
+            return middle(low, high);
+        }
+        let divided = |triangles: f64| self.growth.divided(triangles);
+        let is_beyond_nearer = divided(beyond as f64) * divided(self.fitting as f64) < divided(aim).powi(2);
+        let near = if is_beyond_nearer { (low, beyond) } else { known };
+        let power =
+            if is_apart { power } else { self.growth.power(known, (low, beyond)).clamp(POWERS.0, POWERS.1) };
+        let guess = self.growth.distance(near, aim, power);
+        let farther = if is_apart { (self.moved - 1).clamp(0, 3) } else { 0 };
+        let guess = near.0 * (guess / near.0).powi(1 << farther);
+        let edge = (0.05 * span).min(LEAST_MOVED).exp();
+        guess.clamp(low * edge, high / edge)
+    }
+
+    /// Makes the plan of a distance, which becomes either end.
+    fn try_within(&mut self, next: f64) -> Result<(), RefineError> {
+        let (engine, most) = (self.engine, self.most);
+        let faces = 0..self.best.closed.len() as u32;
+        let wanting: Vec<u32> = faces.filter(|&face| exceeds(self.best.bound(face), next)).collect();
+        let counted = most.saturating_add(most / COUNTED_BEYOND);
+        let goal = Goal::Within(next);
+        let mut found = match engine.is_settled_later() {
+            true => engine.plan(goal, counted)?,
+            false => engine.finer_unsettled(&self.best, goal, &wanting, counted)?,
+        };
+        let count = found.as_ref().map(|plan| plan.triangles);
+        let mut is_settled = engine.is_settled_later();
+        let mut fits = count.is_some_and(|count| count <= most);
+        if let Some(plan) =
+            found.as_mut().filter(|plan| fits && !is_settled && plan.triangles >= most - most / FAR)
+        {
+            fits = engine.settle(plan, counted)? && plan.triangles <= most;
+            is_settled = true;
+            self.settling = (plan.triangles as f64 / count.unwrap_or(most) as f64).max(1.0);
+        }
+        self.moved = if fits == self.fitted { self.moved + 1 } else { 1 };
+        self.fitted = fits;
+        match (found, count) {
+            (Some(plan), Some(count)) if fits => {
+                self.idle = if plan.triangles > self.best.triangles { 0 } else { self.idle + 1 };
+                self.before.push((self.high, self.fitting));
+                (self.high, self.fitting, self.best, self.is_settled) = (next, count, plan, is_settled);
+            }
+            _ => {
+                let count = count.unwrap_or(most.saturating_mul(UNCOUNTED));
+                // All at once are more than the budget: whatever is near by will not do.
+                self.moved += i32::from(self.beyond == Some(count));
+                (self.low, self.beyond) = (next, Some(count));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// A plan for a goal that asks more of these faces than another: from that, where it knows what its triangles come to.
@@ -260,7 +428,9 @@ fn filled(
     let Some(left) = most.checked_sub(coarsest.triangles) else { return Ok(coarsest) };
     let mut left = left as f64;
     let order = coarsest.faces_by_bound();
-    let costs = order.iter().map(|&(_, face)| gain * f64::from(coarsest.closed[face as usize].triangles));
+    let costs = order
+        .iter()
+        .map(|&(_, face)| (gain * f64::from(coarsest.closed[face as usize].triangles)).max(LEAST_GAIN));
     let guess = costs.take_while(|cost| {
         left -= cost;
         left >= 0.0

@@ -374,6 +374,18 @@ impl Engine<'_> {
         wanting: &[u32],
         most: usize,
     ) -> Result<Option<Plan>, RefineError> {
+        let Some(mut finer) = self.finer_unsettled(plan, goal, wanting, most)? else { return Ok(None) };
+        Ok(self.settle(&mut finer, most)?.then_some(finer))
+    }
+
+    /// The same, but nothing is looked at among its neighbours ([`Self::settle`]): hardly fewer triangles, for less.
+    fn finer_unsettled(
+        &self,
+        plan: &Plan,
+        goal: Goal,
+        wanting: &[u32],
+        most: usize,
+    ) -> Result<Option<Plan>, RefineError> {
         let mut finer = plan.with_goal(goal);
         let again: Vec<_> = wanting.iter().map(|&face| (face, None)).collect();
         let control = (self.control, self.watch);
@@ -384,8 +396,7 @@ impl Engine<'_> {
         let mut is_dirty = vec![false; plan.closed.len()];
         wanting.iter().for_each(|&face| finer.closed[face as usize].forget());
         wanting.iter().for_each(|&face| self.mark_replaced(face, &mut is_dirty));
-        let fits = self.carry_out(&mut finer, is_dirty, most)? && self.settle(&mut finer, most)?;
-        Ok(fits.then_some(finer))
+        Ok(self.carry_out(&mut finer, is_dirty, most)?.then_some(finer))
     }
 
     /// Emits a plan, dividing what fails among its neighbours; `None` if there are too many triangles.
