@@ -42,7 +42,7 @@ const TELLING: (f64, f64) = (1.03, 1.5);
 const STEADY: f64 = 0.5;
 
 /// The part of the budget that a guess aims at: what is left then is enough.
-const AIM: f64 = 0.996;
+const AIM: f64 = 0.993;
 
 /// The part of the budget that the first plan aims at: it has somewhat more, mostly.
 const FIRST_AIM: f64 = 0.85;

@@ -78,7 +78,7 @@ impl Engine<'_> {
             let chains = Chains::of(mesh, edges, &plan.decision.trees, known, self.watch)?;
             let decision = &plan.decision;
             // Most faces are walked over once.
-            let is_first = dirty.len() == plan.closed.len();
+            let is_kept = plan.is_kept || dirty.len() < plan.closed.len();
             let found = self.watch.long_pieces(dirty.len(), BLOCK, |block, is_stopped| {
                 let mut knots = Vec::new();
                 let walks = dirty[block].iter().map(|&face| {
@@ -90,7 +90,7 @@ impl Engine<'_> {
                         (&plan.goal, max_levels),
                         edges,
                         trees,
-                        (allowance, known, !is_first),
+                        (allowance, known, is_kept),
                         (face, is_stopped),
                         &mut knots,
                     )

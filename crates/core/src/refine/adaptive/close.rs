@@ -165,6 +165,16 @@ impl Closed {
         self.judged.iter_mut().for_each(|judged| judged.verdicts = Verdicts::new());
     }
 
+    /// The same, but for leaves that are within a value whatever their neighbours are.
+    pub(super) fn forget_beyond(&mut self, limit: f64) {
+        self.leaves = 0;
+        let is_within = |leaf: &Judged| {
+            let verdict = leaf.verdict.as_ref();
+            verdict.is_some_and(|(verdict, _)| verdict.passes() && verdict.extent.bound <= limit)
+        };
+        self.judged.iter_mut().for_each(|judged| judged.verdicts.retain(is_within));
+    }
+
     /// For each leaf with two split edges, in the order of the walk, whether its diagonal starts at the unsplit edge's end.
     pub(super) fn diagonals(&self) -> &[bool] {
         self.judged.as_ref().map_or(&[], |judged| &judged.diagonals)

@@ -4,6 +4,7 @@
 //! those beside ([`Allowance`]) is guessed from the control faces' own curvature, checked against what came out, and
 //! widened where it was too little.
 
+mod again;
 mod allowances;
 mod even_parts;
 mod found;
@@ -13,7 +14,7 @@ use super::guess::Expected;
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Seen, Verdict};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
-use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, Piece, Place, Trees, UNJUDGED};
+use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, Piece, Place, Trees, UNJUDGED, bounded};
 use super::surface::Ground;
 use crate::certificate::{Cell, CellRows, Marks, Pieces, SubTriangle};
 use crate::parallel::IsStopped;
@@ -191,21 +192,16 @@ impl<'a> Decider<'a> {
         }
     }
 
+    /// Divides a face from the beginning, with an allowance or one that is guessed.
     fn face(&mut self, face: u32, allowance: Option<Allowance>) -> Found {
         if let Goal::Even(levels, is_finer) = self.goal {
             let word = self.even(levels + u32::from(is_finer[face as usize]));
             self.piece.roots.push(word);
             return Found::NOTHING;
         }
-        self.judge = self.goal.judge(self.control, self.max_levels, face);
-        let weight = self.control.flat.weight(face);
-        if weight != self.weight {
-            self.tell();
-            self.weight = weight;
-        }
+        self.begin(face);
         let patch = self.control.patch(face);
         let corners = self.control.corners(face);
-        (self.extent, self.has_failed) = (Extent::NONE, false);
         let (open, place) = (self.control.open(face), Place::root(face));
         let word = if let Patch::Regular(points) = &patch {
             let net = BezierTriangle::of(points);
@@ -220,6 +216,22 @@ impl<'a> Decider<'a> {
             self.general(&patch, (&refined, middles), corners, open, place)
         };
         self.piece.roots.push(word);
+        self.end()
+    }
+
+    /// Begins with a face.
+    fn begin(&mut self, face: u32) {
+        self.judge = self.goal.judge(self.control, self.max_levels, face);
+        let weight = self.control.flat.weight(face);
+        if weight != self.weight {
+            self.tell();
+            self.weight = weight;
+        }
+        (self.extent, self.has_failed) = (Extent::NONE, false);
+    }
+
+    /// What the face came to.
+    fn end(&mut self) -> Found {
         Found {
             extent: self.extent,
             allowance: self.allowance,
@@ -375,7 +387,7 @@ impl<'a> Decider<'a> {
         self.extent.add(&Extent { worst: Some(place), ..verdict.extent });
         self.count_leaves(1);
         match verdict.outcome {
-            Outcome::Passes => LEAF,
+            Outcome::Passes => bounded(LEAF, verdict.extent.bound),
             Outcome::Fails => {
                 self.has_failed = true;
                 LEAF

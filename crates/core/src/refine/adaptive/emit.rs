@@ -14,7 +14,7 @@ use super::close::Closed;
 use super::control::Control;
 use super::decide::Decision;
 use super::judge::Condition;
-use super::quadtree::{Edges, FULL, LEAF, Place, is_split};
+use super::quadtree::{Edges, FULL, Place, is_plain_leaf, is_split};
 use super::rim::Rim;
 use super::surface::Surface;
 use super::walk::Walk;
@@ -418,7 +418,7 @@ fn write(
     };
     for face in job.faces {
         let word = trees.root(face);
-        let is_whole = word == LEAF && chains.are_none(edges, face);
+        let is_whole = is_plain_leaf(word) && chains.are_none(edges, face);
         if is_whole && only.is_none() && closed[face as usize].conditions().is_empty() {
             let first = writer.push(control.mesh.triangles()[face as usize]);
             job.parents[(first / 3 - job.first_triangle) as usize] = face;

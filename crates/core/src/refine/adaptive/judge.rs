@@ -45,6 +45,9 @@ const NEARLY_FLAT: f64 = 0.06;
 /// And for bounds that are no more than so many times too great.
 const NEAR_MISS: f64 = 1.05;
 
+/// What faces count on of those beside them is guessed anew where a distance falls by more than this.
+const MOST_TIMES: f64 = 1.5;
+
 /// Unit vectors are off by no more than this.
 const ROUNDING: f64 = 1e-12;
 
@@ -125,6 +128,11 @@ impl Goal {
         let (rules, criteria) = (control.rules, control.criteria.as_ref());
         let (back_faces, rim_alone) = (&control.back_faces, control.flat.is_its_rim(face));
         Judge { rules, criteria, back_faces, face, rim_alone, max_levels, limit: distance, is_lenient }
+    }
+
+    /// Whether not much less is asked of a face than by another goal, so that what it counted on of those beside it will do.
+    pub(super) fn is_near(&self, coarser: &Self, face: u32) -> bool {
+        coarser.allowed(face) <= MOST_TIMES * self.allowed(face)
     }
 
     /// What bounds may come to once the neighbours are known.
@@ -209,7 +217,7 @@ impl Verdict {
     /// That of no triangle.
     pub(super) const NONE: Self = Self { outcome: Outcome::Passes, extent: Extent::NONE };
 
-    fn passes(&self) -> bool {
+    pub(super) fn passes(&self) -> bool {
         matches!(self.outcome, Outcome::Passes)
     }
 

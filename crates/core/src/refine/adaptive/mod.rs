@@ -387,14 +387,20 @@ impl Engine<'_> {
         most: usize,
     ) -> Result<Option<Plan>, RefineError> {
         let mut finer = plan.with_goal(goal);
-        let again: Vec<_> = wanting.iter().map(|&face| (face, None)).collect();
-        let control = (self.control, self.watch);
-        if !finer.decision.divide(control, &finer.goal, &self.edges, (self.max_levels, most), &again)? {
+        let (control, limits) = ((self.control, self.watch), (self.max_levels, most));
+        let again = (wanting, Some(&plan.goal));
+        if !finer.decision.divide(control, &finer.goal, &self.edges, limits, again)? {
             return Ok(None);
         }
         finer.decision.begin_again();
         let mut is_dirty = vec![false; plan.closed.len()];
-        wanting.iter().for_each(|&face| finer.closed[face as usize].forget());
+        for &face in wanting {
+            let closed = &mut finer.closed[face as usize];
+            match finer.goal.is_near(&plan.goal, face) {
+                true => closed.forget_beyond(finer.goal.allowed(face)),
+                false => closed.forget(),
+            }
+        }
         wanting.iter().for_each(|&face| self.mark_replaced(face, &mut is_dirty));
         Ok(self.carry_out(&mut finer, is_dirty, most)?.then_some(finer))
     }

@@ -1,7 +1,7 @@
 //! Quadtrees over the control faces.
 //!
-//! A tree is a word for its root: [`LEAF`] with a depth `m` says that all leaves lie `m` levels below, anything else is the
-//! place of four consecutive words, those of the children, which [`crate::node`] numbers.
+//! A tree is a word for its root: [`LEAF`] with a depth `m` says that all leaves lie `m` levels below, and how far off they are at most
+//! ([`bounded`]); anything else is the place of four consecutive words, those of the children, which [`crate::node`] numbers.
 
 use crate::mesh::MeshError;
 pub(super) use crate::node::{Along, Beyond, Edges, Place, along_edge, beyond};
@@ -23,6 +23,15 @@ pub(super) const STRICT: u32 = 1 << 28;
 /// The marks of leaves.
 const MARKS: u32 = UNJUDGED | CONDITIONAL | STRICT;
 
+/// The depth of leaves below a node.
+const DEPTH: u32 = (1 << 5) - 1;
+
+/// What is known of the greatest bound of leaves: the upper bits of the number, the least of them counted up; 0 where nothing is.
+const BOUND: u32 = STRICT - 1 - DEPTH;
+
+/// The bits of a number that are left out there.
+const LEFT_OUT: u32 = 40;
+
 /// Nodes whose places have room beside the marks.
 pub(super) const MOST_NODES: usize = STRICT as usize;
 
@@ -43,13 +52,42 @@ pub(super) struct Trees {
 /// Whether a node has children.
 #[inline]
 pub(super) fn is_split(word: u32) -> bool {
-    word & !MARKS != LEAF
+    word & LEAF == 0 || word & DEPTH != 0
+}
+
+/// Whether a control face or node is a leaf without any mark.
+#[inline]
+pub(super) fn is_plain_leaf(word: u32) -> bool {
+    word & !BOUND == LEAF
+}
+
+/// Whether a node is a leaf that nobody has judged.
+#[inline]
+pub(super) fn is_unjudged(word: u32) -> bool {
+    even_depth(word) == Some(0) && word & UNJUDGED != 0
+}
+
+/// A leaf's word, with what its bound is at most.
+#[inline]
+pub(super) fn bounded(word: u32, bound: f64) -> u32 {
+    if !(bound >= 0.0 && bound.is_finite()) {
+        return word;
+    }
+    let upper = ((bound + 0.0).to_bits() >> LEFT_OUT) as u32 + 1;
+    word | upper << DEPTH.count_ones()
+}
+
+/// What the bounds of leaves below a node, where they are equally deep, are at most, if it is known and they have no marks.
+#[inline]
+pub(super) fn bound_of(word: u32) -> Option<f64> {
+    let is_known = word & LEAF != 0 && word & MARKS == 0 && word & BOUND != 0;
+    is_known.then(|| f64::from_bits(u64::from((word & BOUND) >> DEPTH.count_ones()) << LEFT_OUT))
 }
 
 /// The depth of the leaves below a node where they are equally deep.
 #[inline]
 pub(super) fn even_depth(word: u32) -> Option<u32> {
-    (word & LEAF != 0).then_some(word & !(LEAF | MARKS))
+    (word & LEAF != 0).then_some(word & DEPTH)
 }
 
 impl Trees {
@@ -208,8 +246,12 @@ impl Piece {
     /// The word of a node over a regular part with the given children.
     pub(super) fn node(&mut self, children: [u32; 4]) -> u32 {
         let [first, ..] = children;
-        if first & LEAF != 0 && first & MARKS == 0 && children == [first; 4] && first & !LEAF < MOST_LEVELS {
-            return first + 1;
+        let is_even = first & LEAF != 0 && first & MARKS == 0 && first & DEPTH < MOST_LEVELS;
+        if is_even && children.iter().all(|child| child & !BOUND == first & !BOUND) {
+            // Of bounds the greatest, but none where one is not known.
+            let bounds = children.map(|child| child & BOUND);
+            let [least, most] = [u32::min, u32::max].map(|of| bounds.into_iter().reduce(of).unwrap_or(0));
+            return (first & !BOUND | if least > 0 { most } else { 0 }) + 1;
         }
         self.irregular_node(children)
     }
@@ -225,6 +267,38 @@ impl Piece {
 #[cfg(test)]
 mod tests {
     use super::*;
+    /// Bounds that are read are those that were written, but for what rounding adds.
+    #[test]
+    fn bounds_are_kept_in_words() {
+        let mut state = 5u64;
+        let random = (0..10_000).map(move |_| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            f64::from_bits(state >> 1)
+        });
+        let random = random.filter(|bound| bound.is_finite());
+        for bound in random.chain([0.0, -0.0, 1.0, f64::MIN_POSITIVE, 5e-324, f64::MAX]) {
+            for depth in [0, 1, MOST_LEVELS] {
+                let word = bounded(LEAF + depth, bound);
+                assert_eq!((even_depth(word), is_split(word)), (Some(depth), depth > 0), "{bound}");
+                let known = bound_of(word).unwrap();
+                assert!(bound <= known, "{bound}: {known}");
+                assert!(
+                    known <= bound * (1.0 + 1.0 / 2048.0) || bound < f64::MIN_POSITIVE,
+                    "{bound}: {known}"
+                );
+            }
+        }
+        assert_eq!(bound_of(LEAF), None);
+        for bound in [f64::INFINITY, f64::NAN, -1.0] {
+            assert_eq!(bounded(LEAF, bound), LEAF);
+        }
+        assert_eq!(bound_of(bounded(LEAF | CONDITIONAL, 1.0)), None);
+        let mut piece = Piece::default();
+        let leaves = |last| [1.0, 3.0, 2.0, last].map(|bound| bounded(LEAF, bound));
+        assert_eq!(bound_of(piece.node(leaves(0.5))), bound_of(bounded(LEAF, 3.0)));
+        assert_eq!(piece.node(leaves(f64::INFINITY)), LEAF + 1);
+        assert!(piece.words.is_empty());
+    }
 
     #[test]
     fn even_nodes_are_split_where_asked() {

@@ -5,6 +5,7 @@ use core::sync::atomic::AtomicUsize;
 use super::super::control::Control;
 use super::super::judge::{Allowance, Extent, Goal};
 use super::super::quadtree::Edges;
+use super::again::Before;
 use super::{BLOCK, Count, Decider, Decision};
 use crate::progress::SharedWatch;
 use crate::refine::RefineError;
@@ -45,10 +46,9 @@ impl Decision {
             };
         }
         self.rounds += 1;
-        let faces: Vec<(u32, Option<Allowance>)> =
-            wanting.iter().map(|&(face, ..)| (face, Some(*self.allowance(face)))).collect();
-        let fits = self.divide((control, watch), goal, edges, (max_levels, most), &faces)?;
-        Ok(fits.then(|| wanting.into_iter().map(|(face, ..)| face).collect()))
+        let faces: Vec<u32> = wanting.into_iter().map(|(face, ..)| face).collect();
+        let fits = self.divide((control, watch), goal, edges, (max_levels, most), (&faces, None))?;
+        Ok(fits.then_some(faces))
     }
 
     /// Nothing was divided again so far.
@@ -56,20 +56,25 @@ impl Decision {
         self.rounds = 0;
     }
 
-    /// Divides some faces anew, with these allowances or such as are guessed; `false` if that takes too many leaves.
+    /// Divides some faces again, with the allowances that they have, or further than they were for another goal; `false` if that takes too
+    /// many leaves.
     pub(in super::super) fn divide(
         &mut self,
         (control, watch): (&Control<'_>, &SharedWatch<'_>),
         goal: &Goal,
         edges: &Edges<'_>,
         (max_levels, most): (u32, usize),
-        faces: &[(u32, Option<Allowance>)],
+        (faces, coarser): (&[u32], Option<&Goal>),
     ) -> Result<bool, RefineError> {
         let count = Count { leaves: AtomicUsize::new(0), most };
         let again = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
             let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
-            let again = faces[block].iter().map(|&(face, allowance)| {
-                let found = decider.face(face, allowance);
+            let again = faces[block].iter().map(|&face| {
+                let found = self.found.of(face);
+                let found = match coarser {
+                    None => decider.face(face, Some(found.allowance)),
+                    Some(goal) => decider.again(face, Before { trees: &self.trees, goal }, found),
+                };
                 decider.tell();
                 (face, core::mem::take(&mut decider.piece), found)
             });

@@ -1,7 +1,7 @@
 //! Even parts of regular pieces: all nodes of a level are tested at once, and single ones only where that leaves something open.
 
 use super::super::judge::Extent;
-use super::super::quadtree::{LEAF, Place};
+use super::super::quadtree::{LEAF, Place, bounded};
 use super::super::surface::Ground;
 use super::Decider;
 use crate::certificate::{Cell, MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, SubTriangle};
@@ -29,6 +29,8 @@ struct Rows<'a> {
     /// By level from `first` below the node on.
     marks: &'a [Marks],
     first: u32,
+    /// The word of leaves that passed.
+    passing: u32,
 }
 
 impl Decider<'_> {
@@ -63,9 +65,10 @@ impl Decider<'_> {
         self.add_rows(place, &extent);
         let word = if tested == 1 && levels[0].are_all_passing() {
             self.count_leaves(1 << (2 * least));
-            LEAF + least
+            bounded(LEAF + least, extent.bound)
         } else {
-            let found = Rows { ground, place, spot, marks: &levels[..tested], first: least };
+            let passing = bounded(LEAF, extent.bound);
+            let found = Rows { ground, place, spot, marks: &levels[..tested], first: least, passing };
             self.row_node(&found, (0, 0, false), 0)
         };
         self.marks = levels;
@@ -79,7 +82,7 @@ impl Decider<'_> {
             let mark = rows.marks[tested].at(i, j, is_headlong);
             if mark == Mark::Passes {
                 self.count_leaves(1);
-                return LEAF;
+                return rows.passing;
             }
             let is_last = tested + 1 == rows.marks.len();
             if is_last || mark == Mark::Open {
