@@ -85,6 +85,9 @@ const FILLED_APART: f64 = 1.03;
 /// Triangles that a division brings about at least, about.
 const LEAST_GAIN: f64 = 2.0;
 
+/// How many times as many triangles there are, about, once a plan was looked at among its neighbours, as long as none was: measured 1.00 to 1.017.
+const SETTLING: f64 = 1.012;
+
 /// Budgets below this are spent to the last face.
 const EXACT: usize = 20_000;
 
@@ -214,7 +217,7 @@ impl<'e, 'a> Search<'e, 'a> {
             best,
             beyond: None,
             before: Vec::new(),
-            settling: 1.0,
+            settling: SETTLING,
             fitted: true,
             moved: 0,
             idle: 0,
