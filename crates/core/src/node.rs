@@ -55,9 +55,14 @@ impl Place {
 
     /// Whether a walk over the face comes to this node before the other, or to one that holds it.
     pub(crate) fn precedes(self, other: Self) -> bool {
+        Self { face: other.face, ..self }.in_order(&other).is_lt()
+    }
+
+    /// The order of faces, and in each that of a walk over leaves.
+    pub(crate) fn in_order(&self, other: &Self) -> core::cmp::Ordering {
         let most = self.level.max(other.level);
-        let path = |place: Self| place.path << (2 * (most - place.level));
-        (path(self), self.level) < (path(other), other.level)
+        let key = |place: &Self| (place.face, place.path << (2 * (most - place.level)), place.level);
+        key(self).cmp(&key(other))
     }
 
     /// Whether another is this node or one below it.

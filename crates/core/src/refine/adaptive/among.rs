@@ -3,6 +3,7 @@
 
 use super::carry_out::marked;
 use super::changes::{Changes, Moves};
+use super::dirty::Dirty;
 use super::emit::Emission;
 use super::emitted::Sources;
 use super::judge::Goal;
@@ -56,9 +57,9 @@ impl Engine<'_> {
             is_new.iter_mut().zip(&touched).for_each(|(is_new, is_touched)| *is_new |= is_touched);
             // What cannot be balanced is divided before anything is measured.
             let failing = if allowed > 0.0 { bulges.failing() } else { Vec::new() };
-            if let Some(is_dirty) = self.divide(&mut plan, &failing, Some(allowed))? {
+            if let Some(dirty) = self.divide(&mut plan, &failing, Some(allowed))? {
                 plan.emission = Some(emission);
-                if !self.carry_out(&mut plan, is_dirty, most)? {
+                if !self.carry_out(&mut plan, dirty, most)? {
                     return Ok(None);
                 }
                 continue;
@@ -84,13 +85,13 @@ impl Engine<'_> {
             let failing: Vec<(Place, f64)> =
                 measured.iter().flat_map(|face| &face.failing).copied().collect();
             let is_full = is_budget && plan.triangles + ADDED * failing.len() > most;
-            let is_dirty = if is_full { None } else { self.divide(&mut plan, &failing, None)? };
-            let Some(is_dirty) = is_dirty else {
+            let dirty = if is_full { None } else { self.divide(&mut plan, &failing, None)? };
+            let Some(dirty) = dirty else {
                 return Ok(Some(Outcome { plan, emission, measured: Some(measured) }));
             };
             before = Some(Moves::of(&mut emission, &plan.chains));
             plan.emission = Some(emission);
-            if !self.carry_out(&mut plan, is_dirty, most)? {
+            if !self.carry_out(&mut plan, dirty, most)? {
                 return Ok(None);
             }
         }
@@ -103,8 +104,8 @@ impl Engine<'_> {
         plan: &mut Plan,
         failing: &[(Place, f64)],
         allowed: Option<f64>,
-    ) -> Result<Option<Vec<bool>>, RefineError> {
-        let mut is_dirty = vec![false; plan.closed.len()];
+    ) -> Result<Option<Dirty>, RefineError> {
+        let mut dirty = Dirty::none(plan.closed.len());
         let mut is_split = false;
         let mut fresh = Vec::new();
         for &(place, height) in failing {
@@ -118,9 +119,7 @@ impl Engine<'_> {
                 }
                 is_split = true;
                 for place in core::mem::take(&mut fresh) {
-                    self.split(&mut plan.decision.trees, place, |place| {
-                        self.mark_split(place, &mut is_dirty)
-                    })?;
+                    self.split(&mut plan.decision.trees, place, &mut dirty)?;
                     fresh.extend((0..4).map(|child| place.child(child)));
                 }
                 if left <= 1.0 {
@@ -130,7 +129,7 @@ impl Engine<'_> {
             }
             fresh.clear();
         }
-        Ok(is_split.then_some(is_dirty))
+        Ok(is_split.then_some(dirty))
     }
 
     /// The finest mesh with balanced triangles within a value; `None` if that takes more triangles than there may be.

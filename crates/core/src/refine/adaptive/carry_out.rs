@@ -3,22 +3,23 @@
 
 use super::balance::{Pending, balance};
 use super::chains::{Chains, first_of};
-use super::close::close;
+use super::close::Closing;
+use super::dirty::Dirty;
 use super::quadtree::{Place, Trees};
 use super::{BLOCK, Engine, Plan, block};
 use crate::refine::RefineError;
 
 impl Engine<'_> {
-    /// Restricts and closes until everything holds, beginning with the marked faces; `false` if there are too many triangles.
+    /// Restricts and closes until everything holds, beginning with what is dirty; `false` if there are too many triangles.
     pub(super) fn carry_out(
         &self,
         plan: &mut Plan,
-        mut is_dirty: Vec<bool>,
+        mut dirty: Dirty,
         most: usize,
     ) -> Result<bool, RefineError> {
         loop {
-            self.restrict(&mut plan.decision.trees, &mut is_dirty)?;
-            if !self.close(plan, marked(&is_dirty), most)? {
+            self.restrict(&mut plan.decision.trees, &mut dirty)?;
+            if !self.close(plan, dirty, most)? {
                 return Ok(false);
             }
             let closed = &plan.closed;
@@ -31,24 +32,26 @@ impl Engine<'_> {
                 plan.has_failed |= plan.decision.has_failed();
                 return Ok(true);
             }
-            is_dirty.fill(false);
+            dirty = Dirty::none(plan.closed.len());
             again.iter().for_each(|&face| plan.closed[face as usize].forget());
-            again.iter().for_each(|&face| self.mark_replaced(face, &mut is_dirty));
+            again.iter().for_each(|&face| dirty.replace(&self.edges, face));
         }
     }
 
+    /// Splits a leaf; told to what is dirty.
     pub(super) fn split(
         &self,
         trees: &mut Trees,
         place: Place,
-        fresh: impl FnMut(Place),
+        dirty: &mut Dirty,
     ) -> Result<(), RefineError> {
-        trees.split(place, fresh).then_some(()).ok_or_else(|| trees.too_many(4).into())
+        let fits = trees.split(place, |place| dirty.add(&self.edges, place));
+        fits.then_some(()).ok_or_else(|| trees.too_many(4).into())
     }
 
-    /// Neighbouring leaves are at most one level apart; marks what changes. Only marked faces may have more leaves than before.
-    fn restrict(&self, trees: &mut Trees, is_dirty: &mut [bool]) -> Result<(), RefineError> {
-        let (faces, edges) = (marked(is_dirty), &self.edges);
+    /// Neighbouring leaves are at most one level apart; adds what is split for that. Only what is dirty may have more leaves than before.
+    fn restrict(&self, trees: &mut Trees, dirty: &mut Dirty) -> Result<(), RefineError> {
+        let (faces, edges) = (dirty.replaced(), &self.edges);
         let lists = self.watch.pieces(faces.len(), block(faces.len()), |block| {
             let mut pending = Pending::default();
             faces[block].iter().for_each(|&face| pending.push_tree(trees, edges, face));
@@ -56,117 +59,89 @@ impl Engine<'_> {
         })?;
         let mut all = Pending::default();
         self.watch.each(lists, |list| all.append(list))?;
-        self.balance(trees, all, |place| self.mark_split(place, is_dirty))
-    }
-
-    fn balance(
-        &self,
-        trees: &mut Trees,
-        pending: Pending,
-        split: impl FnMut(Place),
-    ) -> Result<(), RefineError> {
-        let fits = balance(trees, &self.edges, pending, &mut || self.watch.poll(), split)?;
+        self.watch.each(dirty.split(), |&place| all.push(place))?;
+        let fits = balance(trees, edges, all, &mut || self.watch.poll(), |place| dirty.add(edges, place))?;
         fits.then_some(()).ok_or_else(|| trees.too_many(4).into())
     }
 
-    /// Walks over the given faces, splitting what fails, until nothing does; `false` if there are too many triangles.
-    fn close(&self, plan: &mut Plan, mut dirty: Vec<u32>, most: usize) -> Result<bool, RefineError> {
-        let Self { control, ref edges, max_levels, .. } = *self;
-        let mesh = control.mesh;
+    /// Closes what is dirty, splitting what fails, until nothing does; `false` if there are too many triangles.
+    fn close(&self, plan: &mut Plan, mut dirty: Dirty, most: usize) -> Result<bool, RefineError> {
         loop {
-            let known = (&plan.chains, &dirty[..]);
-            let chains = Chains::of(mesh, edges, &plan.decision.trees, known, self.watch)?;
-            let decision = &plan.decision;
-            // Most faces are walked over once.
-            let is_kept = plan.is_kept || dirty.len() < plan.closed.len();
-            let found = self.watch.long_pieces(dirty.len(), BLOCK, |block, is_stopped| {
-                let mut knots = Vec::new();
-                let walks = dirty[block].iter().map(|&face| {
-                    let allowance = decision.allowance(face);
-                    let trees = (&decision.trees, &chains);
-                    let known = &plan.closed[face as usize];
-                    close(
-                        control,
-                        (&plan.goal, max_levels),
-                        edges,
-                        trees,
-                        (allowance, known, is_kept),
-                        (face, is_stopped),
-                        &mut knots,
-                    )
-                });
-                walks.collect::<Vec<_>>()
-            })?;
-            self.watch.each(dirty.iter().zip(found.into_iter().flatten()), |(&face, found)| {
-                let known = core::mem::replace(&mut plan.closed[face as usize], found);
-                let found = &plan.closed[face as usize];
-                let is_same = known.is_as(found)
-                    && (3 * face..3 * face + 3).all(|h| {
-                        let owner = first_of(edges, h);
-                        chains.own(owner).1 == plan.chains.own(owner).1
-                    });
-                if is_same {
-                    return;
-                }
-                plan.is_touched[face as usize] = true;
-                // Conditions count on the triangles beside.
-                plan.settled[face as usize] = None;
-                for twin in (3 * face..3 * face + 3).filter_map(|h| edges.twin(h)) {
-                    plan.settled[twin as usize / 3] = None;
-                }
-            })?;
-            plan.chains = chains;
+            self.close_once(plan, &dirty)?;
             plan.triangles = self.triangles(plan)?;
             self.watch.round(plan.triangles)?;
             if plan.triangles > most {
                 return Ok(false);
             }
-            let mut pending = Pending::default();
-            let mut is_dirty = vec![false; mesh.face_count()];
-            let mut is_split = false;
-            for &face in &dirty {
+            let mut next = Dirty::none(plan.closed.len());
+            for face in dirty.faces() {
                 for place in plan.closed[face as usize].take_failing() {
                     if place.level >= self.max_levels {
                         plan.has_failed = true;
                         continue;
                     }
-                    is_split = true;
                     self.watch.poll()?;
-                    self.split(&mut plan.decision.trees, place, |place| {
-                        self.mark_split(place, &mut is_dirty);
-                        pending.push(place);
-                    })?;
+                    self.split(&mut plan.decision.trees, place, &mut next)?;
                 }
             }
-            if !is_split {
+            if next.split().is_empty() {
                 return Ok(true);
             }
-            self.balance(&mut plan.decision.trees, pending, |place| self.mark_split(place, &mut is_dirty))?;
-            dirty = marked(&is_dirty);
+            dirty = next;
+            self.restrict(&mut plan.decision.trees, &mut dirty)?;
         }
     }
 
-    /// Marks a control face whose tree was replaced, and all beyond its edges.
-    pub(super) fn mark_replaced(&self, face: u32, is_dirty: &mut [bool]) {
-        is_dirty[face as usize] = true;
-        (3 * face..3 * face + 3).for_each(|h| self.mark_beyond(h, is_dirty));
+    /// Closes the faces that are dirty.
+    fn close_once(&self, plan: &mut Plan, dirty: &Dirty) -> Result<(), RefineError> {
+        let Self { control, ref edges, max_levels, .. } = *self;
+        let faces = dirty.faces();
+        let Plan { goal, decision, closed, .. } = &*plan;
+        let known = (&plan.chains, &faces[..]);
+        let chains = Chains::of(control.mesh, edges, &decision.trees, known, self.watch)?;
+        let closing = Closing { control, goal, max_levels, edges, trees: &decision.trees, chains: &chains };
+        let seen = dirty.leaves(&decision.trees, edges, self.watch)?;
+        let mut split = dirty.split().to_vec();
+        split.sort_unstable_by(Place::in_order);
+        let found = self.watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
+            let mut knots = Vec::new();
+            let closed = faces[block].iter().map(|&face| {
+                let known = (decision.allowance(face), &closed[face as usize]);
+                if dirty.is_replaced(face) {
+                    return closing.close(face, known, is_stopped, &mut knots);
+                }
+                closing.close_again(face, known, (of_face(&split, face), of_face(&seen, face)), is_stopped)
+            });
+            closed.collect::<Vec<_>>()
+        })?;
+        self.watch.each(faces.iter().zip(found.into_iter().flatten()), |(&face, found)| {
+            let known = core::mem::replace(&mut plan.closed[face as usize], found);
+            let found = &plan.closed[face as usize];
+            let is_same = known.is_as(found)
+                && (3 * face..3 * face + 3).all(|h| {
+                    let owner = first_of(edges, h);
+                    chains.own(owner).1 == plan.chains.own(owner).1
+                });
+            if is_same {
+                return;
+            }
+            plan.is_touched[face as usize] = true;
+            // Conditions count on the triangles beside.
+            plan.settled[face as usize] = None;
+            for twin in (3 * face..3 * face + 3).filter_map(|h| edges.twin(h)) {
+                plan.settled[twin as usize / 3] = None;
+            }
+        })?;
+        plan.chains = chains;
+        Ok(())
     }
+}
 
-    /// Marks the control face of a node that was split, and those that see it: it stands on their edges.
-    pub(super) fn mark_split(&self, place: Place, is_dirty: &mut [bool]) {
-        is_dirty[place.face as usize] = true;
-        let edges = (0..3).filter(|&edge| place.lies_along(edge));
-        edges.for_each(|edge| self.mark_beyond(3 * place.face + edge as u32, is_dirty));
-    }
-
-    /// Marks the control faces beyond a half-edge.
-    fn mark_beyond(&self, h: u32, is_dirty: &mut [bool]) {
-        if let Some(twin) = self.edges.twin(h) {
-            is_dirty[twin as usize / 3] = true;
-        } else if let Some(group) = self.edges.group(h) {
-            self.edges.members(group).iter().for_each(|&(h, _)| is_dirty[h as usize / 3] = true);
-        }
-    }
+/// Those of some places, in the order of faces, that are in one.
+fn of_face(places: &[Place], face: u32) -> &[Place] {
+    let start = places.partition_point(|place| place.face < face);
+    let end = places.partition_point(|place| place.face <= face);
+    &places[start..end]
 }
 
 pub(super) fn marked(is_marked: &[bool]) -> Vec<u32> {

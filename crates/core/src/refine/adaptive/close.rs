@@ -1,64 +1,30 @@
 //! Judges what the closing of gaps brings: the triangles of leaves with split edges (the paper's Figure 5), and leaves that were
 //! made for their neighbours' sake. Counts vertices and triangles on the way.
+//!
+//! A face is walked over as a whole once; where leaves were split since, only they and those beside them are looked at
+//! again ([`close_again`]).
+
+mod judged;
 
 use super::chains::Chains;
 use super::control::Control;
-use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Verdict};
+use super::dirty::split_edges;
+use super::judge::{Allowance, Goal, Judge, Verdict};
 use super::leaf::leaf_triangles;
-use super::quadtree::{Edges, Place, Trees, UNJUDGED, is_split};
+use super::quadtree::{Edges, Place, STRICT, Trees, UNJUDGED, is_split, is_unjudged};
 use super::rim::Rim;
 use super::surface::{GeneralPiece, Ground, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
+use core::iter::Peekable;
+
 use crate::certificate::{Cell, Pieces, SubTriangle};
 use crate::parallel::IsStopped;
 use crate::patch::{LimitPoint, Spot};
+pub(super) use judged::Closed;
+use judged::{Judged, JudgedLeaves, recall};
 
 /// Leaves that are judged between two questions whether that is still of use.
 const ASKED: usize = 256;
-
-/// What the walk over a control face found.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Closed {
-    /// Vertices inside the face.
-    pub(super) vertices: u32,
-    /// Triangles.
-    pub(super) triangles: u32,
-    /// Leaves.
-    leaves: usize,
-    /// What is known of leaves that were judged; most faces have none.
-    pub(super) judged: Option<Box<JudgedLeaves>>,
-}
-
-/// What the leaves that a walk had to judge come to.
-#[derive(Clone, Debug, Default)]
-pub(super) struct JudgedLeaves {
-    /// For each leaf with two split edges, in the order of the walk, whether its diagonal starts at the unsplit edge's end.
-    diagonals: Vec<bool>,
-    /// What was judged here.
-    extent: Extent,
-    /// Leaves whose triangles fail.
-    failing: Vec<Place>,
-    /// Leaves that pass on conditions, in the order of the walk.
-    pub(super) conditions: Vec<Condition>,
-    /// What was said of leaves, by the edges that were split, for the next walk.
-    verdicts: Verdicts,
-}
-
-/// What was said of leaves in the order of the walk.
-type Verdicts = Vec<Judged>;
-
-/// A leaf with split edges, or one that was made for its neighbours' sake.
-#[derive(Clone, Debug)]
-pub(super) struct Judged {
-    place: Place,
-    /// The edges that are split.
-    split: [bool; 3],
-    /// The edges beyond which there is nobody.
-    open: [bool; 3],
-    is_strict: bool,
-    /// What was said of it, and whether its diagonal starts at the unsplit edge's end.
-    verdict: Option<(Verdict, bool)>,
-}
 
 /// Lists the leaves of a face that have to be judged, and counts its triangles and all leaves.
 struct Lister {
@@ -67,7 +33,7 @@ struct Lister {
     /// The face's own edges.
     open: [bool; 3],
     rim: Rim,
-    leaves: Verdicts,
+    leaves: Vec<Judged>,
 }
 
 impl Visitor for Lister {
@@ -100,136 +66,127 @@ impl Lister {
         let on_side = [j == 0, i + j + 1 == n, i == 0];
         let open = [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && node.place.lies_along(edge));
         let split = split.map(|middle| middle.is_some());
-        self.leaves.push(Judged { place, split, open, is_strict: node.is_strict, verdict: None });
+        self.leaves.push(Judged::new(place, split, open, node.is_strict));
     }
 }
 
-/// Walks over a face; `known` is what was said on the last walk.
-pub(super) fn close(
-    control: &Control<'_>,
-    (goal, max_levels): (&Goal, u32),
-    edges: &Edges<'_>,
-    (trees, chains): (&Trees, &Chains),
-    (allowance, known, is_kept): (&Allowance, &Closed, bool),
-    (face, is_stopped): (u32, &IsStopped<'_>),
-    knots: &mut Vec<Knot>,
-) -> Closed {
-    let word = trees.root(face);
-    if !is_split(word) && word & UNJUDGED == 0 && chains.are_none(edges, face) {
-        return Closed { triangles: 1, leaves: 1, ..Closed::default() };
-    }
-    let mut walk = Walk::new(trees, core::mem::take(knots), 0, is_stopped);
-    walk.knots.clear();
-    let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
-    let at = (Place::root(face), Spot::WHOLE);
-    let mut lister =
-        Lister { triangles: 0, count: 0, open: control.open(face), rim: Rim::default(), leaves: Vec::new() };
-    walk.node(word, at, sides, Surface::Unknown, &mut lister);
-    *knots = walk.knots;
-    let Lister { triangles, count, mut leaves, .. } = lister;
-    let mut closed =
-        Closed { vertices: walk.next, triangles: triangles as u32, leaves: count, ..Closed::default() };
-    if leaves.is_empty() {
-        return closed;
-    }
-    recall(known.judged.as_ref().map_or(&[], |judged| &judged.verdicts), &mut leaves);
-    if leaves.iter().any(|leaf| leaf.verdict.is_none()) {
-        let closer = Closer { judge: goal.judge(control, max_levels, face), allowance };
-        closer.judge(control.piece(face).surface(control.rules), 0, &mut leaves, is_stopped);
-    }
-    let mut judged = JudgedLeaves::of(&leaves, max_levels);
-    if is_kept {
-        judged.verdicts = leaves;
-    }
-    closed.judged = Some(Box::new(judged));
-    closed
+/// What closing a face takes.
+#[derive(Clone, Copy)]
+pub(super) struct Closing<'a> {
+    pub(super) control: &'a Control<'a>,
+    pub(super) goal: &'a Goal,
+    pub(super) max_levels: u32,
+    pub(super) edges: &'a Edges<'a>,
+    pub(super) trees: &'a Trees,
+    pub(super) chains: &'a Chains,
 }
 
-/// Takes over what was said of the same leaves with the same edges split.
-fn recall(known: &[Judged], leaves: &mut Verdicts) {
-    let mut known = known.iter().peekable();
-    for leaf in leaves {
-        while known.next_if(|other| other.place.precedes(leaf.place)).is_some() {}
-        if let Some(other) = known.next_if(|other| other.place == leaf.place)
-            && other.split == leaf.split
-        {
-            leaf.verdict = other.verdict;
+impl Closing<'_> {
+    /// Walks over a face; `known` is what was said the last time.
+    pub(super) fn close(
+        &self,
+        face: u32,
+        (allowance, known): (&Allowance, &Closed),
+        is_stopped: &IsStopped<'_>,
+        knots: &mut Vec<Knot>,
+    ) -> Closed {
+        let Self { control, edges, trees, chains, .. } = *self;
+        let word = trees.root(face);
+        if !is_split(word) && word & UNJUDGED == 0 && chains.are_none(edges, face) {
+            return Closed { triangles: 1, leaves: 1, ..Closed::default() };
         }
-    }
-}
-
-impl Closed {
-    /// Forgets what is known of the tree and its leaves: it was replaced.
-    pub(super) fn forget(&mut self) {
-        self.leaves = 0;
-        self.judged.iter_mut().for_each(|judged| judged.verdicts = Verdicts::new());
-    }
-
-    /// The same, but for leaves that are within a value whatever their neighbours are.
-    pub(super) fn forget_beyond(&mut self, limit: f64) {
-        self.leaves = 0;
-        let is_within = |leaf: &Judged| {
-            let verdict = leaf.verdict.as_ref();
-            verdict.is_some_and(|(verdict, _)| verdict.passes() && verdict.extent.bound <= limit)
-        };
-        self.judged.iter_mut().for_each(|judged| judged.verdicts.retain(is_within));
+        let mut walk = Walk::new(trees, core::mem::take(knots), 0, is_stopped);
+        walk.knots.clear();
+        let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
+        let at = (Place::root(face), Spot::WHOLE);
+        let (open, rim) = (control.open(face), Rim::default());
+        let mut lister = Lister { triangles: 0, count: 0, open, rim, leaves: Vec::new() };
+        walk.node(word, at, sides, Surface::Unknown, &mut lister);
+        *knots = walk.knots;
+        let Lister { triangles, count, mut leaves, .. } = lister;
+        recall(known.known(), &mut leaves);
+        let counted =
+            Closed { vertices: walk.next, triangles: triangles as u32, leaves: count, judged: None };
+        self.judged(face, counted, (leaves, allowance), is_stopped)
     }
 
-    /// For each leaf with two split edges, in the order of the walk, whether its diagonal starts at the unsplit edge's end.
-    pub(super) fn diagonals(&self) -> &[bool] {
-        self.judged.as_ref().map_or(&[], |judged| &judged.diagonals)
+    /// Closes a face again, of which leaves were `split` since, by looking at the leaves that see these: `seen`. Both are in the order of a
+    /// walk.
+    pub(super) fn close_again(
+        &self,
+        face: u32,
+        (allowance, known): (&Allowance, &Closed),
+        (split, seen): (&[Place], &[Place]),
+        is_stopped: &IsStopped<'_>,
+    ) -> Closed {
+        let leaves = self.listed_again(face, known.known(), (split, seen));
+        let count = known.leaves + 3 * split.len();
+        let on_leaves = |leaf: &Judged| leaf.split.iter().filter(|&&is_split| is_split).count();
+        let triangles = count + leaves.iter().map(on_leaves).sum::<usize>();
+        // A disc of so many triangles and vertices on its rim has (triangles − rim) / 2 + 1 vertices inside (Euler).
+        let on_rim: usize = (3 * face..3 * face + 3).map(|h| self.chains.along(self.edges, h) + 1).sum();
+        let vertices = (triangles + 2).saturating_sub(on_rim) / 2;
+        let counted =
+            Closed { vertices: vertices as u32, triangles: triangles as u32, leaves: count, judged: None };
+        self.judged(face, counted, (leaves, allowance), is_stopped)
     }
 
-    /// What was judged here.
-    pub(super) fn extent(&self) -> Option<&Extent> {
-        self.judged.as_ref().map(|judged| &judged.extent)
-    }
-
-    /// Leaves that pass on conditions, in the order of the walk.
-    pub(super) fn conditions(&self) -> &[Condition] {
-        self.judged.as_ref().map_or(&[], |judged| &judged.conditions)
-    }
-
-    /// Leaves whose triangles fail; they are told once.
-    pub(super) fn take_failing(&mut self) -> Vec<Place> {
-        self.judged.as_mut().map(|judged| core::mem::take(&mut judged.failing)).unwrap_or_default()
-    }
-
-    /// Whether triangles and conditions are the same if the vertices along the edges are: in between leaves were only divided.
-    pub(super) fn is_as(&self, other: &Self) -> bool {
-        self.leaves == other.leaves
-            && self.diagonals() == other.diagonals()
-            && self.conditions() == other.conditions()
-    }
-}
-
-impl JudgedLeaves {
-    /// What was said of leaves.
-    fn of(leaves: &[Judged], max_levels: u32) -> Self {
-        let mut judged = Self::default();
-        for leaf in leaves {
-            let place = leaf.place;
-            let Some((verdict, from_end)) = leaf.verdict else {
-                // What nobody has judged is beyond every bound.
-                judged.extent.add(&Extent { bound: f64::INFINITY, worst: Some(place), ..Extent::NONE });
-                continue;
-            };
-            if leaf.split.iter().filter(|&&is_split| is_split).count() == 2 {
-                judged.diagonals.push(from_end);
-            }
-            judged.extent.add(&Extent { worst: Some(place), ..verdict.extent });
-            match verdict.outcome {
-                Outcome::Passes => {}
-                Outcome::Fails => judged.failing.push(place),
-                Outcome::Depends { .. } if leaf.is_strict && place.level < max_levels => {
-                    judged.failing.push(place)
-                }
-                Outcome::Depends { deviation, tilt, slopes } => {
-                    judged.conditions.push(Condition { place, deviation, tilt, slopes });
-                }
+    /// The leaves of a face that have to be judged, in the order of a walk: those known but for the ones that were split, and the ones that are
+    /// seen anew.
+    fn listed_again(&self, face: u32, known: &[Judged], (split, seen): (&[Place], &[Place])) -> Vec<Judged> {
+        let open = self.control.open(face);
+        let mut leaves = Vec::with_capacity(known.len() + seen.len());
+        let (mut known, mut split) = (known.iter().peekable(), split.iter().peekable());
+        for &place in seen {
+            keep(&mut known, &mut split, Some(place), &mut leaves);
+            let mask = split_edges(self.trees, self.edges, place);
+            let word = self.trees.word_at(place).unwrap_or(UNJUDGED);
+            let before = known.next_if(|other| other.place == place);
+            if mask != [false; 3] || is_unjudged(word) {
+                let open = [0, 1, 2].map(|edge| open[edge] && place.lies_along(edge));
+                let mut leaf = Judged::new(place, mask, open, word & STRICT != 0);
+                before.into_iter().for_each(|before| leaf.recall(before));
+                leaves.push(leaf);
             }
         }
-        judged
+        keep(&mut known, &mut split, None, &mut leaves);
+        leaves
+    }
+
+    /// Judges the leaves of a face that nobody has judged.
+    fn judged(
+        &self,
+        face: u32,
+        mut closed: Closed,
+        (mut leaves, allowance): (Vec<Judged>, &Allowance),
+        is_stopped: &IsStopped<'_>,
+    ) -> Closed {
+        if leaves.is_empty() {
+            return closed;
+        }
+        let Self { control, goal, max_levels, .. } = *self;
+        if !leaves.iter().all(Judged::is_said) {
+            let closer = Closer { judge: goal.judge(control, max_levels, face), allowance };
+            let mut wanting: Vec<&mut Judged> = leaves.iter_mut().filter(|leaf| !leaf.is_said()).collect();
+            closer.judge(control.piece(face).surface(control.rules), 0, &mut wanting, is_stopped);
+        }
+        closed.judged = Some(Box::new(JudgedLeaves::of(leaves, max_levels)));
+        closed
+    }
+}
+
+/// Keeps the known leaves that come before a place, or all, but for those that were split.
+fn keep<'k, 's>(
+    known: &mut Peekable<impl Iterator<Item = &'k Judged>>,
+    split: &mut Peekable<impl Iterator<Item = &'s Place>>,
+    end: Option<Place>,
+    leaves: &mut Vec<Judged>,
+) {
+    while let Some(leaf) = known.next_if(|leaf| end.is_none_or(|end| leaf.place.precedes(end))) {
+        while split.next_if(|place| place.precedes(leaf.place)).is_some() {}
+        if split.next_if(|&&place| place == leaf.place).is_none() {
+            leaves.push(leaf.clone());
+        }
     }
 }
 
@@ -240,29 +197,31 @@ struct Closer<'a> {
 }
 
 impl Closer<'_> {
-    /// Judges those of a node's leaves that nobody has judged, over its surface.
-    fn judge(&self, surface: Surface<'_>, level: u32, leaves: &mut [Judged], is_stopped: &IsStopped<'_>) {
-        let mut wanting = leaves.iter_mut().filter(|leaf| leaf.verdict.is_none()).peekable();
-        if wanting.peek().is_none() {
-            return;
-        }
+    /// Judges leaves of a node over its surface.
+    fn judge(
+        &self,
+        surface: Surface<'_>,
+        level: u32,
+        leaves: &mut [&mut Judged],
+        is_stopped: &IsStopped<'_>,
+    ) {
         match surface {
             Surface::Unknown => {}
             Surface::Regular(piece, spot) => {
                 let ground = piece.ground();
-                for (i, leaf) in wanting.enumerate() {
+                for (i, leaf) in leaves.iter_mut().enumerate() {
                     if i % ASKED == ASKED - 1 && is_stopped() {
                         return;
                     }
                     let levels = level..leaf.place.level;
                     let spot = levels.fold(spot, |spot, level| spot.child(leaf.place.digit(level)));
-                    leaf.verdict = Some(self.regular(ground, spot, leaf));
+                    leaf.say(self.regular(ground, spot, leaf));
                 }
             }
             Surface::General(..) if is_stopped() => {}
             Surface::General(piece, rules) => match leaves {
                 [leaf] if leaf.place.level == level => {
-                    leaf.verdict = Some(self.general(piece, piece.middles(rules), leaf))
+                    leaf.say(self.general(piece, piece.middles(rules), leaf));
                 }
                 _ => {
                     for of_child in leaves.chunk_by_mut(|a, b| a.place.digit(level) == b.place.digit(level)) {
@@ -331,3 +290,6 @@ fn best(
     }
     best.unwrap_or((Verdict::NONE, false))
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,6 +5,7 @@
 //! by as many threads as there are, each into its own parts of the arrays. Faces that were emitted before and have not changed
 //! since are taken over ([`kept`]).
 
+mod arrays;
 mod kept;
 mod leaf_writer;
 
@@ -25,14 +26,14 @@ use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
 use crate::refine::exact_result::Origin;
 use crate::vector::{DVec3, unit_or_zero, vector};
+use arrays::{Arrays, Lengths, Moves};
 use kept::Kept;
 use leaf_writer::{Vertices, Writer, split_off};
 
 /// Triangles that one call writes, about.
 const JOB: u32 = 8192;
 
-/// Origins that are written together, and control faces that are passed over together: some milliseconds.
-const FILLED: usize = 1 << 17;
+/// Control faces that are passed over together: some milliseconds.
 const POLLED: u32 = 1 << 12;
 
 /// What is emitted.
@@ -65,7 +66,7 @@ pub(super) struct Emission {
 
 /// The numbers of vertices.
 struct Numbers {
-    /// By half-edge, the first of its own.
+    /// By half-edge, the first of its own; one more than there are half-edges.
     on_edges: Vec<u32>,
     /// By control face, the first inside it; one more than there are faces.
     inside: Vec<u32>,
@@ -153,6 +154,23 @@ pub(super) enum Scope<'a> {
 /// What arrays are made of that nobody has touched; the half-edge of that number has another one as its twin.
 const UNKNOWN: u32 = 0;
 
+/// What was emitted last.
+pub(super) enum Last<'a> {
+    /// It is of no more use: what is emitted goes into its arrays.
+    Taken(Box<Emission>),
+    /// It stays as it is.
+    Kept(&'a Emission),
+}
+
+impl Last<'_> {
+    fn emission(&self) -> &Emission {
+        match self {
+            Self::Taken(emission) => emission,
+            Self::Kept(emission) => emission,
+        }
+    }
+}
+
 /// Emits leaves. `closed` is what the walks over the faces found, `before` what was
 /// emitted last and the control faces that were walked over since: others are taken over as they are. `has_origins` if origins are
 /// asked for.
@@ -162,16 +180,17 @@ pub(super) fn emit(
     (decision, chains): (&Decision, &Chains),
     closed: &[Closed],
     (scope, has_origins): (Scope<'_>, bool),
-    before: Option<(&Emission, &[bool])>,
+    before: Option<(Last<'_>, &[bool])>,
 ) -> Result<Emission, RefineError> {
     let faces = control.mesh.face_count();
     let too_many = |what, count| MeshError::TooMany { what, count, limit: MAX_FACES };
     let is_kept = |face: u32| {
         // Normals on sharp edges are averages by now.
-        let is_here = |(before, is_changed): (&Emission, &[bool])| {
-            before.is_whole[face as usize] && !is_changed[face as usize] && control.open(face) == [false; 3]
+        let is_here = |(before, is_changed): &(Last<'_>, &[bool])| {
+            let is_whole = before.emission().is_whole[face as usize];
+            is_whole && !is_changed[face as usize] && control.open(face) == [false; 3]
         };
-        before.is_some_and(is_here)
+        before.as_ref().is_some_and(is_here)
     };
     let mut extend = match scope {
         Scope::Faces(areas) | Scope::Areas(areas) => extends(edges, areas, faces),
@@ -200,14 +219,27 @@ pub(super) fn emit(
         next += count;
         next - count
     });
-    let first_triangles = first_triangles.chain([total as u32]).collect();
+    let first_triangles: Vec<u32> = first_triangles.chain([total as u32]).collect();
+    let numbers = Numbers::of(control, chains, &counts);
+    let length = Lengths { vertices: on_edges + inside, triangles: total };
+    let mut before = before.map(|(last, _)| last);
+    let arrays = match &mut before {
+        Some(Last::Taken(before)) => {
+            let mut arrays = Arrays::taken(before);
+            let moves = moves(control, (before, &extend), (&numbers, &first_triangles), watch)?;
+            arrays.rearrange(length, (&moves.0, &moves.1), watch)?;
+            arrays
+        }
+        _ => Arrays::fresh(length, room(control, chains, (closed, scope), length), has_origins, watch)?,
+    };
+    let Arrays { positions, normals, origins, triangles, twins, parents } = arrays;
     let mut emission = Emission {
-        positions: vec![[0.0; 3]; on_edges + inside],
-        normals: vec![[0.0; 3]; on_edges + inside],
-        origins: nowhere(if has_origins { on_edges + inside } else { 0 }, watch)?,
-        triangles: vec![[0; 3]; total],
-        twins: vec![0; 3 * total],
-        parents: vec![0; total],
+        positions,
+        normals,
+        origins,
+        triangles,
+        twins,
+        parents,
         starts: first_triangles,
         offsets: Vec::new(),
         borders: Borders { half_edges: vec![0; starts[3 * faces] as usize], starts },
@@ -215,12 +247,18 @@ pub(super) fn emit(
         junctions: Junctions::default(),
         conditions: Vec::new(),
         feet: Vec::new(),
-        numbers: Numbers::of(control, chains, &counts),
+        numbers,
         is_whole: Vec::new(),
     };
     corners(control, &mut emission, watch)?;
     let jobs = jobs(control, edges, chains, &counts, &mut emission, watch)?;
-    let kept = before.map(|(before, _)| Kept { before, mesh: control.mesh, edges, chains });
+    let kept = before.as_ref().map(|last| Kept {
+        before: last.emission(),
+        mesh: control.mesh,
+        edges,
+        chains,
+        is_in_place: matches!(last, Last::Taken(_)),
+    });
     let conditions = parallel::each_long_polled(jobs, &mut |_| watch.poll(), |job, is_stopped| {
         write(control, edges, (decision, chains), (closed, kept.as_ref(), only), job, is_stopped)
     });
@@ -229,6 +267,46 @@ pub(super) fn emit(
     join(edges, &mut emission, watch)?;
     sharp_edges((control, watch), edges, chains, &mut emission)?;
     Ok(emission)
+}
+
+/// How much there may be in the end.
+fn room(
+    control: &Control<'_>,
+    chains: &Chains,
+    (closed, scope): (&[Closed], Scope<'_>),
+    length: Lengths,
+) -> Lengths {
+    if matches!(scope, Scope::Areas(_)) {
+        return length;
+    }
+    let count = |of: fn(&Closed) -> u32| closed.iter().map(|face| of(face) as usize).sum::<usize>();
+    let vertices = control.mesh.vertex_count() + chains.count() + count(|face| face.vertices);
+    Lengths { vertices, triangles: count(|face| face.triangles) }
+}
+
+/// Where the vertices and triangles of control faces that are kept stood before, and where they stand now.
+fn moves(
+    control: &Control<'_>,
+    (before, extend): (&Emission, &[Extend]),
+    (now, starts): (&Numbers, &[u32]),
+    watch: &SharedWatch<'_>,
+) -> Result<(Moves, Moves), Cancelled> {
+    let (mut vertices, mut triangles) = (Moves::default(), Moves::default());
+    let is_kept = |face: usize| extend[face] == Extend::Kept;
+    vertices.push(0..control.mesh.vertex_count(), 0);
+    let was = &before.numbers;
+    watch.each(0..3 * extend.len(), |h| {
+        if is_kept(h / 3) {
+            vertices.push(was.on_edges[h] as usize..was.on_edges[h + 1] as usize, now.on_edges[h] as usize);
+        }
+    })?;
+    watch.each(0..extend.len(), |face| {
+        if is_kept(face) {
+            vertices.push(before.vertices_inside(face as u32), now.inside[face] as usize);
+            triangles.push(before.triangles_of(face as u32), starts[face] as usize);
+        }
+    })?;
+    Ok((vertices, triangles))
 }
 
 /// How much of each face some areas take: theirs, and the edges of the faces around them.
@@ -240,16 +318,6 @@ fn extends(edges: &Edges<'_>, areas: &Areas, faces: usize) -> Vec<Extend> {
     }
     areas.0.keys().for_each(|&face| extend[face as usize] = Extend::All);
     extend
-}
-
-/// Origins of vertices that are not known yet: written piece by piece, since they are no zeros, which cost nothing.
-fn nowhere(count: usize, watch: &SharedWatch<'_>) -> Result<Vec<Origin>, Cancelled> {
-    let mut origins = Vec::with_capacity(count);
-    while origins.len() < count {
-        origins.resize(count.min(origins.len() + FILLED), NOWHERE);
-        watch.poll()?;
-    }
-    Ok(origins)
 }
 
 /// How much is emitted, by control face.
@@ -282,7 +350,7 @@ impl Numbers {
             Some(*next)
         });
         let inside = core::iter::once(first).chain(inside);
-        let on_edges = (0..3 * counts.closed.len() as u32).map(|h| chains.own(h).0);
+        let on_edges = (0..3 * counts.closed.len() as u32).map(|h| chains.own(h).0).chain([first]);
         Self { on_edges: on_edges.collect(), inside: inside.collect() }
     }
 }
@@ -414,6 +482,7 @@ fn write(
         rim: Rim::default(),
         below: Vec::new(),
         places: Vec::new(),
+        rows: Default::default(),
         is_stopped,
     };
     for face in job.faces {

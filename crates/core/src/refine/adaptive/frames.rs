@@ -5,6 +5,7 @@
 //! nothing. Then each frame is replayed with that plan, and measured as it came out.
 
 use super::demands::Demands;
+use super::dirty::Dirty;
 use super::judge::Goal;
 use super::measure::{Measured, measure};
 use super::result::open_cones;
@@ -84,7 +85,7 @@ fn first(engine: &Engine<'_>, options: &ExactOptions) -> Result<Plan, RefineErro
     let Plan { decision, has_failed, .. } = plan;
     let mut plan = Plan::of(Goal::Within(f64::INFINITY), decision.unjudged(), faces);
     plan.has_failed = has_failed;
-    match engine.carry_out(&mut plan, vec![true; faces], most)? {
+    match engine.carry_out(&mut plan, Dirty::all(faces), most)? {
         true => Ok(plan),
         false => Err(ReplayError::TooMany { frame: 0, most }.into()),
     }

@@ -32,6 +32,7 @@ mod coarser;
 mod control;
 mod decide;
 mod demands;
+mod dirty;
 mod emit;
 mod emitted;
 mod flat;
@@ -71,7 +72,8 @@ use backs::BackFaces;
 use control::Control;
 use decide::decide;
 use demands::{Demands, Functions, surfaces_of};
-use emit::{Emission, Scope};
+use dirty::Dirty;
+use emit::{Emission, Last, Scope};
 use flat::{FlatRegions, Net};
 pub(super) use frames::frames;
 use judge::Goal;
@@ -360,7 +362,7 @@ impl Engine<'_> {
         };
         let faces = self.control.mesh.face_count();
         let mut plan = Plan::of(goal, decision, faces);
-        let fits = self.carry_out(&mut plan, vec![true; faces], most)?
+        let fits = self.carry_out(&mut plan, Dirty::all(faces), most)?
             && (self.is_settled_later() || self.settle(&mut plan, most)?);
         Ok(fits.then_some(plan))
     }
@@ -393,7 +395,7 @@ impl Engine<'_> {
             return Ok(None);
         }
         finer.decision.begin_again();
-        let mut is_dirty = vec![false; plan.closed.len()];
+        let mut dirty = Dirty::none(plan.closed.len());
         for &face in wanting {
             let closed = &mut finer.closed[face as usize];
             match finer.goal.is_near(&plan.goal, face) {
@@ -401,8 +403,8 @@ impl Engine<'_> {
                 false => closed.forget(),
             }
         }
-        wanting.iter().for_each(|&face| self.mark_replaced(face, &mut is_dirty));
-        Ok(self.carry_out(&mut finer, is_dirty, most)?.then_some(finer))
+        wanting.iter().for_each(|&face| dirty.replace(&self.edges, face));
+        Ok(self.carry_out(&mut finer, dirty, most)?.then_some(finer))
     }
 
     /// Emits a plan, dividing what fails among its neighbours; `None` if there are too many triangles.
@@ -424,9 +426,25 @@ impl Engine<'_> {
         }
     }
 
-    /// Emits a plan, or so much of it, but for what was emitted before and is the same.
+    /// Emits so much of a plan, beside what was emitted before, of which is copied what is the same.
     fn emit_some(&self, plan: &Plan, scope: Scope<'_>) -> Result<Emission, RefineError> {
-        let before = plan.emission.as_ref().map(|emission| (emission, &plan.is_touched[..]));
+        let before = plan.emission.as_ref().map(|emission| (Last::Kept(emission), &plan.is_touched[..]));
+        self.emit_after(plan, scope, before)
+    }
+
+    /// The same in place of what was emitted before.
+    fn emit_instead(&self, plan: &mut Plan, scope: Scope<'_>) -> Result<Emission, RefineError> {
+        let before = plan.emission.take().map(|emission| Last::Taken(Box::new(emission)));
+        let before = before.map(|last| (last, &plan.is_touched[..]));
+        self.emit_after(plan, scope, before)
+    }
+
+    fn emit_after(
+        &self,
+        plan: &Plan,
+        scope: Scope<'_>,
+        before: Option<(Last<'_>, &[bool])>,
+    ) -> Result<Emission, RefineError> {
         let chains = (&plan.decision, &plan.chains);
         let has_origins = self.has_origins && !matches!(scope, Scope::Areas(_));
         let extend = (scope, has_origins);
@@ -438,9 +456,8 @@ impl Engine<'_> {
         self.watch.stage(Stage::Assembling, None)?;
         let mut emission = match plan.emission.take_if(|emission| emission.is_complete(&plan.is_touched)) {
             Some(emission) => emission,
-            None => self.emit_some(plan, Scope::All)?,
+            None => self.emit_instead(plan, Scope::All)?,
         };
-        plan.emission = None;
         plan.is_touched.fill(false);
         let junctions = sides::junctions((self.control, self.watch), &self.edges, &plan.chains, &emission)?;
         join_copies(&mut emission.positions, &junctions.vertices);
@@ -455,7 +472,10 @@ impl Engine<'_> {
         if !flat.has_strips() {
             return Ok(count);
         }
-        let emission = self.emit_some(plan, Scope::All)?;
+        let emission = match self.is_settled_later() {
+            true => self.emit_some(plan, Scope::All)?,
+            false => self.emit_instead(plan, Scope::All)?,
+        };
         let sharp = settle::sharp_edges(&emission, self.watch)?;
         let Emission { positions, triangles, twins, parents, starts, .. } = &emission;
         let corners = self.control.mesh.vertex_count();

@@ -24,8 +24,6 @@ pub(super) struct Plan {
     pub(super) is_touched: Vec<bool>,
     /// What was emitted last, as far as it was.
     pub(super) emission: Option<Emission>,
-    /// Whether what is said of leaves is kept from the first walk on, for finer plans.
-    pub(super) is_kept: bool,
 }
 
 impl Plan {
@@ -41,7 +39,6 @@ impl Plan {
             settled: vec![None; faces],
             is_touched: vec![true; faces],
             emission: None,
-            is_kept: false,
         }
     }
 
@@ -57,7 +54,6 @@ impl Plan {
             settled: self.settled.clone(),
             is_touched: vec![true; self.closed.len()],
             emission: None,
-            is_kept: true,
         }
     }
 

@@ -148,15 +148,21 @@ impl Trees {
 
     /// Whether there is a node at `place`.
     pub(super) fn has(&self, place: Place) -> bool {
+        self.word_at(place).is_some()
+    }
+
+    /// The word of the node at a place, if there is one.
+    pub(super) fn word_at(&self, place: Place) -> Option<u32> {
         let mut at = place.face as usize;
         for level in 0..place.level {
             let word = self.words[at];
             if word & LEAF != 0 {
-                return even_depth(word).is_some_and(|depth| depth >= place.level - level);
+                let below = place.level - level;
+                return even_depth(word).filter(|&depth| depth >= below).map(|_| word - below);
             }
             at = word as usize + place.digit(level);
         }
-        true
+        Some(self.words[at])
     }
 
     /// Splits whatever must be for the node at `place` to exist; `fresh` is told the places that were split. `false` if there

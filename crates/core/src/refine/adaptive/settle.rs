@@ -6,6 +6,7 @@
 use std::collections::HashSet;
 
 use super::area::Areas;
+use super::dirty::Dirty;
 use super::emit::{Emission, Scope};
 use super::judge::{Condition, Goal};
 use super::quadtree::Place;
@@ -44,7 +45,7 @@ impl Engine<'_> {
                 return Ok(true);
             }
             let found = self.failing(plan, &areas)?;
-            let mut is_dirty = vec![false; plan.closed.len()];
+            let mut dirty = Dirty::none(plan.closed.len());
             let mut is_split = false;
             for (place, bound) in found {
                 self.watch.poll()?;
@@ -62,12 +63,12 @@ impl Engine<'_> {
                 }
                 let up = (round.saturating_sub(PATIENT_ROUNDS)).min(MOST_UP);
                 let around = (0..up).fold(place, |around, _| around.parent().unwrap_or(around));
-                self.split_around(plan, (around, place.level), &mut is_dirty)?;
+                self.split_around(plan, (around, place.level), &mut dirty)?;
             }
             if !is_split {
                 return Ok(true);
             }
-            if !self.carry_out(plan, is_dirty, most)? {
+            if !self.carry_out(plan, dirty, most)? {
                 return Ok(false);
             }
         }
@@ -78,15 +79,15 @@ impl Engine<'_> {
         &self,
         plan: &mut Plan,
         (around, level): (Place, u32),
-        is_dirty: &mut [bool],
+        dirty: &mut Dirty,
     ) -> Result<(), RefineError> {
         if !plan.decision.trees.has(around) {
             return Ok(());
         }
         if around.level == level {
-            return self.split(&mut plan.decision.trees, around, |place| self.mark_split(place, is_dirty));
+            return self.split(&mut plan.decision.trees, around, dirty);
         }
-        (0..4).try_for_each(|child| self.split_around(plan, (around.child(child), level), is_dirty))
+        (0..4).try_for_each(|child| self.split_around(plan, (around.child(child), level), dirty))
     }
 
     /// Settles the faces whose conditions hold whatever is beside, by what triangles there came to after all.
@@ -144,12 +145,14 @@ impl Engine<'_> {
 
     /// The same by so much of the plan. Keeps what was emitted but areas.
     fn failing_in(&self, plan: &mut Plan, scope: Scope<'_>) -> Result<Vec<(Place, f64)>, RefineError> {
-        let emission = self.emit_some(plan, scope)?;
-        let found = failing(&emission, &plan.goal, &mut plan.settled, self.watch)?;
-        if !matches!(scope, Scope::Areas(_)) {
-            plan.emission = Some(emission);
-            plan.is_touched.fill(false);
+        if matches!(scope, Scope::Areas(_)) {
+            let emission = self.emit_some(plan, scope)?;
+            return Ok(failing(&emission, &plan.goal, &mut plan.settled, self.watch)?);
         }
+        let emission = self.emit_instead(plan, scope)?;
+        let found = failing(&emission, &plan.goal, &mut plan.settled, self.watch)?;
+        plan.emission = Some(emission);
+        plan.is_touched.fill(false);
         Ok(found)
     }
 }
@@ -318,7 +321,7 @@ mod tests {
                 )?;
                 let faces = mesh.face_count();
                 let mut plan = Plan::of(goal, decision.unwrap(), faces);
-                engine.carry_out(&mut plan, vec![true; faces], usize::MAX)?;
+                engine.carry_out(&mut plan, Dirty::all(faces), usize::MAX)?;
                 plan.settled.fill(None);
                 run(engine, plan, &format!("{name}, seed {seed}"));
                 Ok(())
@@ -495,10 +498,9 @@ mod tests {
                 while is_split(word) {
                     (word, place) = (plan.decision.trees.child(word, 1), place.child(1));
                 }
-                let mut is_dirty = vec![false; plan.closed.len()];
-                let split = |place: Place| engine.mark_split(place, &mut is_dirty);
-                engine.split(&mut plan.decision.trees, place, split).unwrap();
-                assert!(engine.carry_out(&mut plan, is_dirty, usize::MAX).unwrap());
+                let mut dirty = Dirty::none(plan.closed.len());
+                engine.split(&mut plan.decision.trees, place, &mut dirty).unwrap();
+                assert!(engine.carry_out(&mut plan, dirty, usize::MAX).unwrap());
                 let all: Vec<u32> = (0..plan.closed.len() as u32).collect();
                 let (edges, trees) = (&engine.edges, &plan.decision.trees);
                 let known = (&Chains::default(), &all[..]);

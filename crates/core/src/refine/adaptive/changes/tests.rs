@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use super::super::carry_out::marked;
 use super::super::demands::Demands;
+use super::super::dirty::Dirty;
 use super::super::emit::Scope;
 use super::super::emitted::{Beholder, Emitted, Over, Sources};
 use super::super::judge::Goal;
@@ -90,7 +91,7 @@ fn listed(sources: &Sources<'_>, sharp: &HashSet<u32>, face: u32) -> Listed {
 
 /// Divides a leaf of each of some control faces.
 fn divide(engine: &Engine<'_>, plan: &mut Plan, next: &mut impl FnMut(usize) -> usize) {
-    let mut is_dirty = vec![false; plan.closed.len()];
+    let mut dirty = Dirty::none(plan.closed.len());
     for _ in 0..1 + plan.closed.len() / 40 {
         let mut place = Place::root(next(plan.closed.len()) as u32);
         let mut word = plan.decision.trees.root(place.face);
@@ -98,10 +99,9 @@ fn divide(engine: &Engine<'_>, plan: &mut Plan, next: &mut impl FnMut(usize) -> 
             let child = next(4);
             (word, place) = (plan.decision.trees.child(word, child), place.child(child));
         }
-        let split = |place: Place| engine.mark_split(place, &mut is_dirty);
-        engine.split(&mut plan.decision.trees, place, split).unwrap();
+        engine.split(&mut plan.decision.trees, place, &mut dirty).unwrap();
     }
-    assert!(engine.carry_out(plan, is_dirty, usize::MAX).unwrap());
+    assert!(engine.carry_out(plan, dirty, usize::MAX).unwrap());
 }
 
 /// What was found with nothing but changes measured holds what is found with all measured anew.

@@ -1,4 +1,7 @@
 //! Control faces as they were emitted before: what is on their edges and inside them has only other numbers.
+//!
+//! Where the arrays are those of the emission before ([`super::arrays`]) everything lies where it belongs by now, and is numbered
+//! anew; into others it is copied.
 
 use super::super::chains::{Chains, first_of};
 use super::super::close::Closed;
@@ -10,7 +13,7 @@ use crate::mesh::{Mesh, NONE};
 use crate::parallel::IsStopped;
 
 /// Vertices and triangles that are copied between two questions whether that is still of use.
-const COPIED: usize = 1 << 16;
+pub(super) const COPIED: usize = 1 << 16;
 
 /// What was emitted before.
 pub(super) struct Kept<'a> {
@@ -18,6 +21,8 @@ pub(super) struct Kept<'a> {
     pub(super) mesh: &'a Mesh,
     pub(super) edges: &'a Edges<'a>,
     pub(super) chains: &'a Chains,
+    /// Whether the arrays are its own.
+    pub(super) is_in_place: bool,
 }
 
 /// Some vertices with consecutive numbers, and the first of their numbers now.
@@ -29,9 +34,14 @@ struct Run {
 }
 
 impl Run {
+    #[inline]
     fn renumbered(self, vertex: u32) -> Option<u32> {
-        let at = vertex.checked_sub(self.before).filter(|&at| at < self.count)?;
-        Some(self.now + at)
+        let at = vertex.wrapping_sub(self.before);
+        (at < self.count).then(|| self.now + at)
+    }
+
+    fn is_same(&self) -> bool {
+        self.count == 0 || self.before == self.now
     }
 }
 
@@ -82,8 +92,11 @@ impl Kept<'_> {
         (edges.map(run), edges.map(|h| run(first_of(self.edges, h))))
     }
 
-    /// Copies vertices.
+    /// Copies vertices that are not there yet.
     fn vertices(&self, run: Run, to: &mut Vertices<'_>, is_stopped: &IsStopped<'_>) {
+        if self.is_in_place {
+            return;
+        }
         let Emission { positions, feet, normals, origins, .. } = self.before;
         let positions = if feet.is_empty() { positions } else { feet };
         let first = (run.now - to.first) as usize;
@@ -103,7 +116,7 @@ impl Kept<'_> {
         }
     }
 
-    /// Copies the triangles of a face, their first one now being given, and what hangs on them; gives their number.
+    /// Numbers the triangles of a face anew, their first one now being given, and what hangs on them; gives how many there are.
     fn triangles(
         &self,
         face: u32,
@@ -119,21 +132,27 @@ impl Kept<'_> {
             let run = || runs.iter().find_map(|run| run.renumbered(vertex));
             if vertex < corners { vertex } else { run().unwrap_or(NONE) }
         };
-        let half_edges = 3 * before.start as u32..3 * before.end as u32;
+        let own = 3 * count as u32;
+        let start = 3 * before.start as u32;
         // Those of other faces are joined later.
-        let moved = |h: u32| if half_edges.contains(&h) { h - half_edges.start + 3 * first } else { NONE };
+        let moved = |h: u32| if h.wrapping_sub(start) < own { h - start + 3 * first } else { NONE };
+        let is_same = self.is_in_place && before.start as u32 == first && runs.iter().all(Run::is_same);
         for start in (0..count).step_by(COPIED) {
             if start > 0 && is_stopped() {
                 return count as u32;
             }
             let copied = COPIED.min(count - start);
             let (from, at) = (before.start + start, at + start);
-            let triangles = &self.before.triangles[from..from + copied];
-            let now = &mut job.triangles[at..at + copied];
-            now.iter_mut().zip(triangles).for_each(|(now, triangle)| *now = triangle.map(renumbered));
-            let twins = &self.before.twins[3 * from..3 * (from + copied)];
-            let now = &mut job.twins[3 * at..3 * (at + copied)];
-            now.iter_mut().zip(twins).for_each(|(now, &twin)| *now = moved(twin));
+            let triangles = &mut job.triangles[at..at + copied];
+            let twins = &mut job.twins[3 * at..3 * (at + copied)];
+            if !self.is_in_place {
+                triangles.copy_from_slice(&self.before.triangles[from..from + copied]);
+                twins.copy_from_slice(&self.before.twins[3 * from..3 * (from + copied)]);
+            }
+            if !is_same {
+                triangles.iter_mut().for_each(|triangle| *triangle = triangle.map(renumbered));
+            }
+            twins.iter_mut().for_each(|twin| *twin = moved(*twin));
         }
         job.parents[at..at + count].fill(face);
         for h in 3 * face..3 * face + 3 {

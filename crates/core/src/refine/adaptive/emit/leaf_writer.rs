@@ -80,6 +80,8 @@ pub(super) struct Writer<'a> {
     /// By column, the half-edge that waits for the row above.
     pub(super) below: Vec<u32>,
     pub(super) places: Vec<f64>,
+    /// Vertices of a row and of the one above.
+    pub(super) rows: [Vec<u32>; 2],
     pub(super) is_stopped: &'a IsStopped<'a>,
 }
 
@@ -106,6 +108,9 @@ impl Visitor for Writer<'_> {
             return self.pass_over(node, knots);
         }
         self.interior(node);
+        if node.is_plain() && !node.is_conditional && !node.is_unjudged {
+            return self.cover_plain(node, knots);
+        }
         self.rim.set(node, knots);
         self.cover(node, knots);
     }
@@ -178,6 +183,71 @@ impl Writer<'_> {
             knots[self.rim.corner(1, j)].vertex
         } else {
             node.inside(i, j)
+        }
+    }
+
+    /// [`Self::cover`] where no leaf has split edges or conditions: what stands where, and what is beyond inner edges, follows from the numbers
+    /// of rows and columns.
+    fn cover_plain(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+        let n = 1usize << node.depth;
+        let [bottom, right, left] = &node.sides;
+        let mut at = (self.next_triangle - self.first_triangle) as usize;
+        let [mut lower, mut upper] = core::mem::take(&mut self.rows);
+        lower.clear();
+        lower.extend((0..=n).map(|i| knots[bottom.knot(i)].vertex));
+        for j in 0..n {
+            let count = n - j;
+            upper.clear();
+            upper.push(knots[left.knot(count - 1)].vertex);
+            if count > 2 {
+                let inside = node.inside(1, j + 1);
+                upper.extend(inside..inside + count as u32 - 2);
+            }
+            if count > 1 {
+                upper.push(knots[right.knot(j + 1)].vertex);
+            }
+            let own = 3 * self.next_triangle;
+            self.write_row(&lower, &upper, own, at);
+            if j == 0 {
+                (0..count).for_each(|i| self.meet(knots, bottom.stretch(i), own + 6 * i as u32));
+            } else {
+                // The row below has two triangles more.
+                let beneath = own - 3 * (2 * count as u32 + 1);
+                (0..count as u32).for_each(|i| self.pair(own + 6 * i, beneath + 6 * i + 4));
+            }
+            self.meet(knots, left.stretch(count - 1), own + 2);
+            self.meet(knots, right.stretch(j), own + 6 * (count as u32 - 1) + 1);
+            at += 2 * count - 1;
+            self.next_triangle += 2 * count as u32 - 1;
+            core::mem::swap(&mut lower, &mut upper);
+            if self.is_over(j) {
+                break;
+            }
+        }
+        self.rows = [lower, upper];
+    }
+
+    /// A row of triangles between two rows of vertices, and what is beyond the edges between two of them; from a half-edge and a place on.
+    fn write_row(&mut self, lower: &[u32], upper: &[u32], own: u32, at: usize) {
+        let count = upper.len();
+        let triangles = &mut self.triangles[at..at + 2 * count - 1];
+        let twins = &mut self.twins[3 * at..3 * (at + 2 * count - 1)];
+        let (pairs, last) = triangles.as_chunks_mut::<2>();
+        let corners = lower.windows(2).zip(upper.windows(2));
+        for (pair, (below, above)) in pairs.iter_mut().zip(corners) {
+            let ([a, b], [c, d]) = ([below[0], below[1]], [above[0], above[1]]);
+            *pair = [[a, b, c], [b, d, c]];
+        }
+        if let [last] = last {
+            *last = [lower[count - 1], lower[count], upper[count - 1]];
+        }
+        let (pairs, _) = twins.as_chunks_mut::<6>();
+        for (h, pair) in (own..).step_by(6).zip(pairs) {
+            // The upright one's edge to the right, and that one's first, which the next upright one's left edge meets.
+            (pair[1], pair[5], pair[3]) = (h + 5, h + 1, h + 8);
+        }
+        for i in 1..count {
+            twins[6 * i + 2] = own + 6 * i as u32 - 3;
         }
     }
 

@@ -1,0 +1,232 @@
+//! The arrays that an emission is written into: fresh ones, or those of the emission before, in which what is kept of it is moved to
+//! where it belongs now, so that no second ones stand beside them.
+
+use core::ops::Range;
+
+use super::kept::COPIED;
+use super::{Emission, NOWHERE};
+use crate::parallel::{self, IsStopped};
+use crate::progress::{Cancelled, SharedWatch};
+use crate::refine::exact_result::Origin;
+
+/// Origins that are written together: some milliseconds.
+const FILLED: usize = 1 << 17;
+
+/// The part of arrays (one in so many) that is kept free behind them, for what is divided later.
+const SPARE: usize = 32;
+
+/// What is written of each vertex and triangle.
+#[derive(Default)]
+pub(super) struct Arrays {
+    pub(super) positions: Vec<[f64; 3]>,
+    pub(super) normals: Vec<[f64; 3]>,
+    pub(super) origins: Vec<Origin>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) twins: Vec<u32>,
+    pub(super) parents: Vec<u32>,
+}
+
+/// How many vertices and triangles there are.
+#[derive(Clone, Copy)]
+pub(super) struct Lengths {
+    pub(super) vertices: usize,
+    pub(super) triangles: usize,
+}
+
+/// Elements that are kept, and where they begin now.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Move {
+    pub(super) before: Range<usize>,
+    pub(super) now: usize,
+}
+
+/// Moves in the order of the elements, which is the same before and now.
+#[derive(Default)]
+pub(super) struct Moves(Vec<Move>);
+
+impl Moves {
+    /// Adds elements that come after all others.
+    pub(super) fn push(&mut self, before: Range<usize>, now: usize) {
+        if before.is_empty() {
+            return;
+        }
+        match self.0.last_mut() {
+            // Together with those that they follow.
+            Some(last) if last.before.end == before.start && last.now + last.before.len() == now => {
+                last.before.end = before.end;
+            }
+            _ => self.0.push(Move { before, now }),
+        }
+    }
+
+    /// The same for elements of which there are `times` as many.
+    fn times(&self, times: usize) -> Self {
+        let multiplied = |one: &Move| Move {
+            before: times * one.before.start..times * one.before.end,
+            now: times * one.now,
+        };
+        Self(self.0.iter().map(multiplied).collect())
+    }
+}
+
+impl Arrays {
+    /// Fresh ones, with room for so much more.
+    pub(super) fn fresh(
+        length: Lengths,
+        room: Lengths,
+        has_origins: bool,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Self, Cancelled> {
+        let vertices = (length.vertices, room.vertices);
+        let triangles = (length.triangles, room.triangles);
+        let mut origins = Vec::with_capacity(if has_origins { with_spare(room.vertices) } else { 0 });
+        if has_origins {
+            extend_origins(&mut origins, length.vertices, watch)?;
+        }
+        Ok(Self {
+            positions: zeros([0.0; 3], vertices),
+            normals: zeros([0.0; 3], vertices),
+            origins,
+            triangles: zeros([0; 3], triangles),
+            twins: zeros(0, (3 * triangles.0, 3 * triangles.1)),
+            parents: zeros(0, triangles),
+        })
+    }
+
+    /// Those of an emission, which keeps none of them.
+    pub(super) fn taken(emission: &mut Emission) -> Self {
+        let take = core::mem::take::<Vec<[f64; 3]>>;
+        let (positions, feet) = (take(&mut emission.positions), take(&mut emission.feet));
+        Self {
+            // Where the vertices lay before they were moved.
+            positions: if feet.is_empty() { positions } else { feet },
+            normals: take(&mut emission.normals),
+            origins: core::mem::take(&mut emission.origins),
+            triangles: core::mem::take(&mut emission.triangles),
+            twins: core::mem::take(&mut emission.twins),
+            parents: core::mem::take(&mut emission.parents),
+        }
+    }
+
+    /// Moves what is kept to where it belongs; what lies between is left as it may be.
+    pub(super) fn rearrange(
+        &mut self,
+        length: Lengths,
+        (vertices, triangles): (&Moves, &Moves),
+        watch: &SharedWatch<'_>,
+    ) -> Result<(), Cancelled> {
+        let twins = triangles.times(3);
+        let Self { positions, normals, origins, triangles: corners, twins: beyond, parents } = self;
+        type Task<'a> = Box<dyn FnOnce(&IsStopped<'_>) + Send + 'a>;
+        let mut tasks: Vec<Task<'_>> = vec![
+            Box::new(|is_stopped| rearrange(positions, ([0.0; 3], length.vertices), vertices, is_stopped)),
+            Box::new(|is_stopped| rearrange(normals, ([0.0; 3], length.vertices), vertices, is_stopped)),
+            Box::new(|is_stopped| rearrange(corners, ([0; 3], length.triangles), triangles, is_stopped)),
+            Box::new(|is_stopped| rearrange(beyond, (0, 3 * length.triangles), &twins, is_stopped)),
+            // These are written anew.
+            Box::new(|is_stopped| rearrange(parents, (0, length.triangles), &Moves::default(), is_stopped)),
+        ];
+        if !origins.is_empty() {
+            tasks.push(Box::new(|is_stopped| {
+                rearrange(origins, (NOWHERE, length.vertices), vertices, is_stopped);
+            }));
+        }
+        parallel::each_long_polled(tasks, &mut |_| watch.poll(), |task, is_stopped| task(is_stopped))?;
+        Ok(())
+    }
+}
+
+fn with_spare(count: usize) -> usize {
+    count + count / SPARE
+}
+
+/// So many zeros, with room for more; nobody touches what is not used.
+fn zeros<T: Copy>(zero: T, (count, room): (usize, usize)) -> Vec<T> {
+    let mut all = vec![zero; with_spare(room.max(count))];
+    all.truncate(count);
+    all
+}
+
+/// Adds origins of vertices that are not known yet: piece by piece, since they are no zeros, which cost nothing.
+fn extend_origins(origins: &mut Vec<Origin>, count: usize, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
+    while origins.len() < count {
+        origins.resize(count.min(origins.len() + FILLED), NOWHERE);
+        watch.poll()?;
+    }
+    Ok(())
+}
+
+/// Makes an array so long, its elements moved; what is of no use any more is left unfinished.
+fn rearrange<T: Copy>(
+    array: &mut Vec<T>,
+    (filling, length): (T, usize),
+    moves: &Moves,
+    is_stopped: &IsStopped<'_>,
+) {
+    array.reserve_exact(length.saturating_sub(array.len()));
+    while array.len() < length {
+        array.resize(length.min(array.len() + FILLED), filling);
+        if is_stopped() {
+            return;
+        }
+    }
+    // The order stays: what moves up, the last first, does not meet what moves down, and that, the first first, finds its place free.
+    let (up, down) = (|one: &&Move| one.now > one.before.start, |one: &&Move| one.now < one.before.start);
+    for one in moves.0.iter().rev().filter(up) {
+        for end in (0..one.before.len()).rev().step_by(COPIED).map(|last| last + 1) {
+            let start = end.saturating_sub(COPIED);
+            array.copy_within(one.before.start + start..one.before.start + end, one.now + start);
+            if is_stopped() {
+                return;
+            }
+        }
+    }
+    for one in moves.0.iter().filter(down) {
+        for start in (0..one.before.len()).step_by(COPIED) {
+            let end = (start + COPIED).min(one.before.len());
+            array.copy_within(one.before.start + start..one.before.start + end, one.now + start);
+            if is_stopped() {
+                return;
+            }
+        }
+    }
+    array.truncate(length);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against a copy.
+    #[test]
+    fn elements_are_moved_to_where_they_belong() {
+        let mut state = 9u64;
+        let mut below = |limit: u64| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            ((state >> 33) % limit) as usize
+        };
+        let (mut up, mut down) = (0, 0);
+        for _ in 0..200 {
+            let (mut moves, mut all) = (Moves::default(), Vec::new());
+            let (mut before, mut now) = (0, 0);
+            for _ in 0..below(8) {
+                (before, now) = (before + below(3000), now + below(3000));
+                let count = [below(50), below(3 * COPIED as u64)][below(2)];
+                moves.push(before..before + count, now);
+                all.push((before, now, count));
+                (before, now) = (before + count, now + count);
+                up += usize::from(now > before);
+                down += usize::from(now < before);
+            }
+            let array: Vec<u32> = (0..(before + below(100)) as u32).collect();
+            let mut moved = array.clone();
+            let length = now + below(100);
+            rearrange(&mut moved, (u32::MAX, length), &moves, &|| false);
+            assert_eq!(moved.len(), length);
+            for (before, now, count) in all {
+                assert_eq!(moved[now..now + count], array[before..before + count]);
+            }
+        }
+        assert!(up > 100 && down > 100, "{up}, {down}");
+    }
+}
