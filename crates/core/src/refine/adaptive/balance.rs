@@ -36,8 +36,8 @@ impl Pending {
         match even_depth(word) {
             Some(0) => {}
             Some(depth) => {
-                // Inside, neighbours are equally deep.
-                for edge in 0..3 {
+                // Inside, neighbours are equally deep, and so they mostly are beside it.
+                for edge in (0..3).filter(|&edge| !is_as_deep(trees, edges, (place, depth), edge)) {
                     for index in 0..1 << (depth - 1) {
                         let lowest = place.along(edge, depth - 1, index);
                         if lacks(trees, edges, lowest, edge) {
@@ -64,6 +64,16 @@ impl Pending {
         }
         self.0.iter_mut().zip(other.0).for_each(|(own, mut list)| own.append(&mut list));
     }
+}
+
+/// Whether the node beyond an edge of an even one is even, too, and at most a level less deep.
+fn is_as_deep(trees: &Trees, edges: &Edges<'_>, (place, depth): (Place, u32), edge: usize) -> bool {
+    let other = match beyond(place, edge) {
+        Beyond::Same(other) => Some(other),
+        Beyond::Control(along) => edges.twin(along.half_edge).map(|twin| along.node_at(twin, true).0),
+    };
+    let below = other.and_then(|other| trees.word_at(other)).and_then(even_depth);
+    below.is_some_and(|below| below + 1 >= depth)
 }
 
 /// Whether the node of the same level beyond an edge may be missing.

@@ -1,13 +1,20 @@
 //! Carries a plan out: neighbouring leaves at most one level apart, closed where these differ, divided where what closes them fails, and
 //! all again for the control faces that see a division, until everything holds.
 
+use std::collections::HashMap;
+
 use super::balance::{Pending, balance};
 use super::chains::{Chains, first_of};
 use super::close::Closing;
 use super::dirty::Dirty;
 use super::quadtree::{Place, Trees};
+use super::surface::SurfacePiece;
 use super::{BLOCK, Engine, Plan, block};
+use crate::parallel;
 use crate::refine::RefineError;
+
+/// The surface over control faces that were closed again, by face.
+type Pieces = HashMap<u32, Box<SurfacePiece>>;
 
 impl Engine<'_> {
     /// Restricts and closes until everything holds, beginning with what is dirty; `false` if there are too many triangles.
@@ -66,8 +73,9 @@ impl Engine<'_> {
 
     /// Closes what is dirty, splitting what fails, until nothing does; `false` if there are too many triangles.
     fn close(&self, plan: &mut Plan, mut dirty: Dirty, most: usize) -> Result<bool, RefineError> {
+        let mut pieces = Pieces::new();
         loop {
-            self.close_once(plan, &dirty)?;
+            self.close_once(plan, &dirty, &mut pieces)?;
             plan.triangles = self.triangles(plan)?;
             self.watch.round(plan.triangles)?;
             if plan.triangles > most {
@@ -92,8 +100,8 @@ impl Engine<'_> {
         }
     }
 
-    /// Closes the faces that are dirty.
-    fn close_once(&self, plan: &mut Plan, dirty: &Dirty) -> Result<(), RefineError> {
+    /// Closes the faces that are dirty, over pieces of the surface that are kept where it is not for the first time.
+    fn close_once(&self, plan: &mut Plan, dirty: &Dirty, pieces: &mut Pieces) -> Result<(), RefineError> {
         let Self { control, ref edges, max_levels, .. } = *self;
         let faces = dirty.faces();
         let Plan { goal, decision, closed, .. } = &*plan;
@@ -103,18 +111,26 @@ impl Engine<'_> {
         let seen = dirty.leaves(&decision.trees, edges, self.watch)?;
         let mut split = dirty.split().to_vec();
         split.sort_unstable_by(Place::in_order);
-        let found = self.watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
+        let of_block =
+            |block: &[u32]| block.iter().map(|&face| (face, pieces.remove(&face))).collect::<Vec<_>>();
+        let blocks: Vec<_> = faces.chunks(BLOCK).map(of_block).collect();
+        let poll = &mut |_| self.watch.poll();
+        let found = parallel::each_long_polled(blocks, poll, |block, is_stopped| {
             let mut knots = Vec::new();
-            let closed = faces[block].iter().map(|&face| {
+            let closed = block.into_iter().map(|(face, mut piece)| {
                 let known = (decision.allowance(face), &closed[face as usize]);
                 if dirty.is_replaced(face) {
-                    return closing.close(face, known, is_stopped, &mut knots);
+                    return (closing.close(face, known, is_stopped, &mut knots), None);
                 }
-                closing.close_again(face, known, (of_face(&split, face), of_face(&seen, face)), is_stopped)
+                let places = (of_face(&split, face), of_face(&seen, face));
+                (closing.close_again(face, known, places, &mut piece, is_stopped), piece)
             });
             closed.collect::<Vec<_>>()
         })?;
-        self.watch.each(faces.iter().zip(found.into_iter().flatten()), |(&face, found)| {
+        self.watch.each(faces.iter().zip(found.into_iter().flatten()), |(&face, (found, piece))| {
+            piece.into_iter().for_each(|piece| {
+                pieces.insert(face, piece);
+            });
             let known = core::mem::replace(&mut plan.closed[face as usize], found);
             let found = &plan.closed[face as usize];
             let is_same = known.is_as(found)

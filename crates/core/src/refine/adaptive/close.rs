@@ -13,7 +13,7 @@ use super::judge::{Allowance, Goal, Judge, Verdict};
 use super::leaf::leaf_triangles;
 use super::quadtree::{Edges, Place, STRICT, Trees, UNJUDGED, is_split, is_unjudged};
 use super::rim::Rim;
-use super::surface::{GeneralPiece, Ground, Surface};
+use super::surface::{GeneralPiece, Ground, Surface, SurfacePiece};
 use super::walk::{Knot, Node, Visitor, Walk};
 use core::iter::Peekable;
 
@@ -107,16 +107,17 @@ impl Closing<'_> {
         recall(known.known(), &mut leaves);
         let counted =
             Closed { vertices: walk.next, triangles: triangles as u32, leaves: count, judged: None };
-        self.judged(face, counted, (leaves, allowance), is_stopped)
+        self.judged(face, counted, (leaves, allowance), &mut None, is_stopped)
     }
 
     /// Closes a face again, of which leaves were `split` since, by looking at the leaves that see these: `seen`. Both are in the order of a
-    /// walk.
+    /// walk. The surface over it is kept for the next time.
     pub(super) fn close_again(
         &self,
         face: u32,
         (allowance, known): (&Allowance, &Closed),
         (split, seen): (&[Place], &[Place]),
+        piece: &mut Option<Box<SurfacePiece>>,
         is_stopped: &IsStopped<'_>,
     ) -> Closed {
         let leaves = self.listed_again(face, known.known(), (split, seen));
@@ -128,7 +129,7 @@ impl Closing<'_> {
         let vertices = (triangles + 2).saturating_sub(on_rim) / 2;
         let counted =
             Closed { vertices: vertices as u32, triangles: triangles as u32, leaves: count, judged: None };
-        self.judged(face, counted, (leaves, allowance), is_stopped)
+        self.judged(face, counted, (leaves, allowance), piece, is_stopped)
     }
 
     /// The leaves of a face that have to be judged, in the order of a walk: those known but for the ones that were split, and the ones that are
@@ -159,6 +160,7 @@ impl Closing<'_> {
         face: u32,
         mut closed: Closed,
         (mut leaves, allowance): (Vec<Judged>, &Allowance),
+        piece: &mut Option<Box<SurfacePiece>>,
         is_stopped: &IsStopped<'_>,
     ) -> Closed {
         if leaves.is_empty() {
@@ -168,7 +170,8 @@ impl Closing<'_> {
         if !leaves.iter().all(Judged::is_said) {
             let closer = Closer { judge: goal.judge(control, max_levels, face), allowance };
             let mut wanting: Vec<&mut Judged> = leaves.iter_mut().filter(|leaf| !leaf.is_said()).collect();
-            closer.judge(control.piece(face).surface(control.rules), 0, &mut wanting, is_stopped);
+            let piece = piece.get_or_insert_with(|| Box::new(control.piece(face)));
+            closer.judge(piece.surface(control.rules), 0, &mut wanting, is_stopped);
         }
         closed.judged = Some(Box::new(JudgedLeaves::of(leaves, max_levels)));
         closed

@@ -7,8 +7,9 @@ use super::super::chains::{Chains, first_of};
 use super::super::close::Closed;
 use super::super::judge::Condition;
 use super::super::quadtree::Edges;
+use super::Emission;
+use super::jobs::Job;
 use super::leaf_writer::{Vertices, split_off};
-use super::{Emission, Job};
 use crate::mesh::{Mesh, NONE};
 use crate::parallel::IsStopped;
 
