@@ -76,10 +76,14 @@ impl Engine<'_> {
         let mut pieces = Pieces::new();
         loop {
             self.close_once(plan, &dirty, &mut pieces)?;
-            plan.triangles = self.triangles(plan)?;
+            plan.triangles = self.triangles_at_most(plan);
             self.watch.round(plan.triangles)?;
+            // What strips leave takes an emission.
             if plan.triangles > most {
-                return Ok(false);
+                plan.triangles = self.triangles(plan)?;
+                if plan.triangles > most {
+                    return Ok(false);
+                }
             }
             let mut next = Dirty::none(plan.closed.len());
             for face in dirty.faces() {
@@ -93,6 +97,7 @@ impl Engine<'_> {
                 }
             }
             if next.split().is_empty() {
+                plan.triangles = self.triangles(plan)?;
                 return Ok(true);
             }
             dirty = next;

@@ -465,10 +465,15 @@ impl Engine<'_> {
         Ok(emission)
     }
 
+    /// Triangles that a plan comes to at most: strips may be put together.
+    fn triangles_at_most(&self, plan: &Plan) -> usize {
+        let own = |face: u32| plan.closed[face as usize].triangles as usize;
+        self.control.flat.count((self.control, &self.edges), &plan.chains, own)
+    }
+
     /// Triangles that a plan comes to.
     fn triangles(&self, plan: &mut Plan) -> Result<usize, RefineError> {
-        let (own, flat) = (|face: u32| plan.closed[face as usize].triangles as usize, &self.control.flat);
-        let count = flat.count((self.control, &self.edges), &plan.chains, own);
+        let (count, flat) = (self.triangles_at_most(plan), &self.control.flat);
         if !flat.has_strips() {
             return Ok(count);
         }
