@@ -40,7 +40,8 @@
 //! Inside the surface, at a vertex of valence k with the characteristic map χ ([`crate::patch::characteristic`]), the control
 //! points are Pᵢ = p + t₁χᵢ₁ + t₂χᵢ₂ + rᵢ, p being the limit position and t₁, t₂ = (2/k) Σ cos(2πj/k) rⱼ, (2/k) Σ
 //! sin(2πj/k) rⱼ the tangents. Weights of control points are at least 0 and their sum is 1, so Ŝ = p + t₁χ₁ + t₂χ₂ and
-//! R = max |rᵢ|, which falls by about four from level to level. Ŝ is an affine image, its hull points those of χ: a
+//! R = max |rᵢ|, which falls by about four from level to level. The five points beyond the ring are farthest away, but weigh no more than
+//! w together: with A = max |rᵢ| of the others and B that of the five it is R = A + w max(0, B − A). Ŝ is an affine image, its hull points those of χ: a
 //! cone at the vertex, so that slopes stay bounded there. (Any p and t would do.)
 //!
 //! Beside sharp edges that fade, Ŝ is the piece where they last, and R how far that is away (`lasting_twin` in [`crate::patch`]). As its
@@ -53,7 +54,7 @@
 //! So the greatest of the least of both bounds over all triangles bounds the distance of mesh and surface, both
 //! ways. θ and the neighbours' angles are those of the mesh as it is emitted.
 
-use super::borders::ALL;
+use super::borders::{ALL, Borders};
 use super::deviation::Deviation;
 use super::effort::Effort;
 use super::hull_points::{DeviationBound, HullPoint};
@@ -165,18 +166,38 @@ impl<'a> Pieces<'a> {
     }
 }
 
+/// The deviation that the points of a triangle's own net tell, without halving it, and a height that the piece attains.
+pub(crate) fn at_a_glance(net: &BezierTriangle, frame: &TriangleFrame, open: [bool; 3]) -> (Deviation, f64) {
+    glance(net, ALL, frame, open)
+}
+
+fn glance(
+    net: &BezierTriangle,
+    borders: Borders,
+    frame: &TriangleFrame,
+    open: [bool; 3],
+) -> (Deviation, f64) {
+    fn of<P: HullPoint>(
+        net: &BezierTriangle,
+        borders: Borders,
+        frame: &P::Frame,
+        open: [bool; 3],
+    ) -> (Deviation, f64) {
+        let mut seen = BezierTriangle([P::default(); 15]);
+        seen.0.iter_mut().zip(&net.0).for_each(|(seen, &point)| *seen = P::of(frame, point));
+        DeviationBound::<P> { frame, open, rim_alone: false }.net(&seen, borders)
+    }
+    let has_neighbours = open == [false; 3];
+    match has_neighbours.then(|| TrilinearFrame::of(frame)).flatten() {
+        Some(frame) => of::<Trilinear>(net, borders, &frame, open),
+        None => of::<DVec3>(net, borders, frame, open),
+    }
+}
+
 impl NetPart {
     /// The deviation that the points of the net tell, without halving it, and a height that the piece attains.
     pub(crate) fn at_a_glance(&self, frame: &TriangleFrame, open: [bool; 3]) -> (Deviation, f64) {
-        fn glance<P: HullPoint>(part: &NetPart, frame: &P::Frame, open: [bool; 3]) -> (Deviation, f64) {
-            let bound = DeviationBound::<P> { frame, open, rim_alone: false };
-            bound.net(&part.seen::<P>(frame), part.borders)
-        }
-        let has_neighbours = open == [false; 3];
-        match has_neighbours.then(|| TrilinearFrame::of(frame)).flatten() {
-            Some(frame) => glance::<Trilinear>(self, &frame, open),
-            None => glance::<DVec3>(self, frame, open),
-        }
+        glance(&self.net, self.borders, frame, open)
     }
 
     /// The deviation where the net is halved as often as it helps.

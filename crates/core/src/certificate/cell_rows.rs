@@ -11,7 +11,7 @@ mod part_bounds;
 
 use core::array::from_fn;
 
-use super::quartic_cell::{CUBIC, CURVE_CUBIC, Domain, QUARTIC, QuarticJet, quadratic};
+use super::quartic_cell::{CUBIC, CURVE_CUBIC, Domain, QUARTIC, QUARTIC_SLOPE, QuarticJet, quadratic};
 use crate::patch::{Quartic, reciprocal_power};
 use crate::vector::DVec3;
 use crate::vector::Extremes;
@@ -228,7 +228,7 @@ impl<'a> RowBlock<'a> {
             self.rest(step),
             CURVE_CUBIC * third + fourth / 384.0,
             third / 12.0 + fourth / 48.0,
-            0.5 * third + fourth,
+            0.5 * third + QUARTIC_SLOPE * fourth,
         ];
         let [height, curve, steep, first] = bounds.map(|bound| above(scale * bound));
         Remainder { height, curve, steep, first }

@@ -23,7 +23,7 @@ mod sub_triangle;
 mod triangle_frame;
 mod trilinear;
 
-pub(crate) use bounds::Pieces;
+pub(crate) use bounds::{Pieces, at_a_glance};
 pub(crate) use cell_rows::{CellRows, MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, RowTarget};
 pub(crate) use deviation::Deviation;
 pub(crate) use dihedral::{STEEP, around};

@@ -25,12 +25,11 @@
 //!
 //! * the part of q is linear over D: greatest in a corner. There it is ½Wᵢ and −½Wⱼ along the edges that end and start
 //!   in the corner, so ‖A‖² ≤ ⅔ · ¼(|Wᵢ|² + |Wⱼ|² + |Wᵢ − Wⱼ|²) ≤ max |W|², ⅔ Σ|Aeᵢ|² being the square of the Frobenius norm;
-//! * along an edge the derivative of c is at most 3 · 1/12 + ¼|B|, and |B| ≤ 11/12, times the greatest third derivative: less than ½;
-//! * with fourth derivatives up to F, third ones of r are at most ⅔F, second ones along edges ⅔F and on their edges ⅓F, first
-//!   ones on their edges F/6, being 0 on the average, and as much more as second derivatives ½|Wⱼ − Wₖ| on the way from the
-//!   edge along its median come to: less than F in all;
-//! * a unit vector is the sum of two edges times factors of 2/√3 together, so c and r add 2/√3 (½T + F) times what the metric
-//!   stretches lengths by at most.
+//! * along an edge the derivative of c is at most Σ |tᵢ|/12 + ¼|B|, and |B| ≤ 11/12 times the greatest third derivative T: less than ½T;
+//! * that of r is linear in the fourth derivatives: at most [`QUARTIC_SLOPE`] times the greatest F of the six along pairs of edges, for
+//!   vectors, too, as each of their components obeys it;
+//! * a unit vector is the sum of two edges times factors of 2/√3 together, so c and r add 2/√3 times these, either with lengths in that
+//!   metric or, by bounds of T and F, times what the metric stretches lengths by at most.
 //!
 //! Otherwise all that is known is |S − T| ≤ ½ Σ λᵢλⱼ M ≤ M/6, M bounding second derivatives along edges all over D.
 
@@ -50,6 +49,10 @@ pub(super) const CUBIC: f64 = 0.00985;
 /// Bounds |r| where the six fourth derivatives along pairs of edges are at most 1: linear in the fourth derivatives, it is
 /// greatest at a vertex of that polytope, 0.00505 by Bernstein coefficients over small parts (`the_quartic_constant_holds`).
 pub(super) const QUARTIC: f64 = 0.0052;
+
+/// Bounds the derivative of r along an edge where the six fourth derivatives along pairs of edges are at most 1: linear in them again, and
+/// 5/72 at a vertex of that polytope (`the_quartic_constant_holds`).
+pub(super) const QUARTIC_SLOPE: f64 = 0.0695;
 
 /// The greatest of |x³ − x/4|/6 for |x| ≤ 1/2, √3/216, rounded up.
 pub(super) const CURVE_CUBIC: f64 = 0.00802;
@@ -146,44 +149,73 @@ impl QuarticJet {
         Heights::of(&Jet::of(heights, thirds, fourths), cell)
     }
 
-    /// What a part of the surface does beside the edges of the triangle of its corners; `open` edges have no neighbour.
+    /// What a part of the surface does beside the edges of the triangle of its corners; `open` edges have no neighbour. Third and fourth
+    /// derivatives count by what they come to all over the piece.
     pub(crate) fn beside(&self, cell: &Cell, frame: &TriangleFrame, open: [bool; 3]) -> BesideEdges {
-        let Cell(corners) = *cell;
-        let mut reach = 0.0f64;
+        let bends = self.bends(cell);
+        let (third, fourth) = self.most(reach(cell));
+        let is_folding = is_folding(frame, &bends, frame.stretch() * (0.5 * third + QUARTIC_SLOPE * fourth));
+        let steep = third / 12.0 + fourth / 48.0;
+        let rest = EdgeRest { off: CURVE_CUBIC * third + fourth / 384.0, outward: steep, along: steep };
+        BesideEdges::of(frame, &bends, [rest; 3], open, is_folding, third + fourth)
+    }
+
+    /// The same by the part's own third and fourth derivatives, where the first is known.
+    pub(crate) fn beside_closely(
+        &self,
+        known: &BesideEdges,
+        cell: &Cell,
+        frame: &TriangleFrame,
+        open: [bool; 3],
+    ) -> BesideEdges {
+        let BesideEdges { bends, rest, .. } = known;
+        let part = self.part(cell);
+        let rests = [0, 1, 2].map(|edge| part.rest(edge, frame));
+        BesideEdges::of(frame, bends, rests, open, part.is_folding(frame, bends), *rest)
+    }
+
+    /// Third and fourth derivatives of a part.
+    fn part(&self, &Cell([first, second, last]): &Cell) -> PartDerivatives {
+        let (s, r) = (minus(second, first), minus(last, first));
+        let centroid = [0, 1].map(|axis| (first[axis] + second[axis] + last[axis]) / 3.0);
+        let thirds = self.third_at(centroid);
+        let (by_ss, by_rr) = (
+            contracted::<3, 2>(&contracted::<4, 3>(&thirds, s), s),
+            contracted::<3, 2>(&contracted::<4, 3>(&thirds, r), r),
+        );
+        let [[a], [b]] = [s, r].map(|way| contracted::<2, 1>(&by_ss, way));
+        let [[c], [d]] = [s, r].map(|way| contracted::<2, 1>(&by_rr, way));
+        let by_ss = contracted::<4, 3>(&contracted::<5, 4>(&self.jet.fourth, s), s);
+        let by_rr = contracted::<4, 3>(&contracted::<5, 4>(&self.jet.fourth, r), r);
+        let [by_sss, by_ssr] = [s, r].map(|way| contracted::<3, 2>(&by_ss, way));
+        let by_rrr = contracted::<3, 2>(&by_rr, r);
+        let [[ssss], [sssr]] = [s, r].map(|way| contracted::<2, 1>(&by_sss, way));
+        let [ssrr] = contracted::<2, 1>(&by_ssr, r);
+        let [[srrr], [rrrr]] = [s, r].map(|way| contracted::<2, 1>(&by_rrr, way));
+        let across = d - a + 3.0 * (b - c);
+        let both = ssss - 4.0 * (sssr + srrr) + 6.0 * ssrr + rrrr;
+        PartDerivatives {
+            thirds: [a, across, d],
+            bubble: -0.25 * (2.0 * b - a) + (across + d) / 12.0,
+            pairs: [ssss, both, rrrr, ssrr, ssss - 2.0 * sssr + ssrr, rrrr - 2.0 * srrr + ssrr],
+            // A sixth and a third of the way from the centroid.
+            middles: [
+                a + ssss / 6.0 - sssr / 3.0,
+                across + (rrrr - ssss + 2.0 * (sssr - srrr)) / 6.0,
+                d + rrrr / 6.0 - srrr / 3.0,
+            ],
+        }
+    }
+
+    /// The second derivatives along the edges of a part in their middles.
+    #[inline]
+    fn bends(&self, &Cell(corners): &Cell) -> [DVec3; 3] {
         let mut bends = [DVec3::ZERO; 3];
-        for edge in 0..3 {
+        for (edge, bend) in bends.iter_mut().enumerate() {
             let (from, to) = (corners[edge], corners[(edge + 1) % 3]);
-            let direction = minus(to, from);
-            reach = reach.larger(direction[0].abs()).larger(direction[1].abs());
-            bends[edge] = self.bend(halfway(from, to), direction);
+            *bend = self.bend(halfway(from, to), minus(to, from));
         }
-        let (third, fourth) = self.most(reach);
-        let most = bends.iter().map(|bend| bend.length_squared()).fold(0.0, f64::max).sqrt();
-        let most = most + third + fourth;
-        let mut found = BesideEdges { side: 0.0, open: 0.0, drift: 0.0, slopes: [0.0; 3], loose: None };
-        let mut is_plain = !frame.is_flat() && !is_folding(frame, &bends, 0.5 * third + fourth);
-        for edge in 0..3 {
-            // Outwards where the derivative points inwards.
-            let outward = -bends[edge].dot(frame.outward(edge));
-            let along = bends[edge].dot(frame.along(edge)).abs();
-            let rest = CURVE_CUBIC * third + fourth / 384.0;
-            let steep = third / 12.0 + fourth / 48.0;
-            let room = frame.length(edge) - (0.5 * along + steep);
-            let swing = (0.5 * outward.abs() + steep) / room;
-            is_plain &= room > 0.0 && swing <= frame.slope_at(edge);
-            let off = 0.125 * outward.abs() + rest;
-            found.side = found.side.larger(off);
-            if open[edge] {
-                found.open = found.open.larger(off);
-            } else {
-                found.drift = found.drift.larger((0.125 * outward + rest).larger(0.0));
-                found.slopes[edge] = (0.5 * outward + steep).larger(0.0) / room;
-            }
-        }
-        if !is_plain {
-            found.loose = Some(most / 6.0);
-        }
-        found
+        bends
     }
 
     /// The second derivatives, as coefficients of 1, u, v, u², uv, v².
@@ -215,6 +247,13 @@ impl QuarticJet {
     #[inline]
     fn bend(&self, at: Domain, [du, dv]: Domain) -> DVec3 {
         let [uu, uv, vv] = &self.jet.second;
+        // Two edges of nearly all parts are parallel to the domain's.
+        if dv == 0.0 {
+            return quadratic(uu, at) * (du * du);
+        }
+        if du == 0.0 {
+            return quadratic(vv, at) * (dv * dv);
+        }
         quadratic(uu, at) * (du * du) + quadratic(uv, at) * (2.0 * du * dv) + quadratic(vv, at) * (dv * dv)
     }
 }
@@ -232,9 +271,98 @@ pub(crate) struct BesideEdges {
     slopes: [f64; 3],
     /// Where none of that tells how far the surface reaches: how far it is from the triangle.
     loose: Option<f64>,
+    /// Second derivatives along the edges in their middles, and what they may be off at most anywhere.
+    bends: [DVec3; 3],
+    rest: f64,
+}
+
+/// The third and fourth derivatives of a part, along its edges: from the first corner to the second, on to the third, and from the first to
+/// the third.
+struct PartDerivatives {
+    /// Third ones at the centroid.
+    thirds: [DVec3; 3],
+    /// B of the module's page.
+    bubble: DVec3,
+    /// Fourth ones along the edges, then along pairs of two.
+    pairs: [DVec3; 6],
+    /// Third ones in the middles of the edges.
+    middles: [DVec3; 3],
+}
+
+impl PartDerivatives {
+    /// What they add along an edge.
+    #[inline]
+    fn rest(&self, edge: usize, frame: &TriangleFrame) -> EdgeRest {
+        let (third, fourth) = (self.middles[edge], self.pairs[edge]);
+        let (outward, along) = (frame.outward(edge), frame.along(edge));
+        let steep = |way: DVec3| third.dot(way).abs() / 12.0 + fourth.dot(way).abs() / 48.0;
+        let off = CURVE_CUBIC * third.dot(outward).abs() + fourth.dot(outward).abs() / 384.0;
+        EdgeRest { off, outward: steep(outward), along: steep(along) }
+    }
+
+    /// [`is_folding`] by them.
+    #[inline]
+    fn is_folding(&self, frame: &TriangleFrame, bends: &[DVec3; 3]) -> bool {
+        let length = |vector: DVec3| frame.stretched_squared(vector).sqrt();
+        let thirds = self.thirds.map(length).iter().sum::<f64>();
+        let fourth =
+            self.pairs.iter().map(|&pair| frame.stretched_squared(pair)).fold(0.0, f64::larger).sqrt();
+        let rest = thirds / 12.0 + 0.25 * length(self.bubble) + QUARTIC_SLOPE * fourth;
+        is_folding(frame, bends, rest)
+    }
+}
+
+/// What third and fourth derivatives add along an edge.
+#[derive(Clone, Copy, Debug)]
+struct EdgeRest {
+    /// To the distance of the curve from the edge's line within the triangle's plane.
+    off: f64,
+    /// To the curve's slope towards the ends: outwards, and along the edge.
+    outward: f64,
+    along: f64,
 }
 
 impl BesideEdges {
+    /// By the second derivatives along the edges in their middles, what third and fourth ones add to the curves, whether the surface may
+    /// fold, and what second derivatives along edges may be off at most anywhere.
+    #[inline]
+    fn of(
+        frame: &TriangleFrame,
+        bends: &[DVec3; 3],
+        rests: [EdgeRest; 3],
+        open: [bool; 3],
+        is_folding: bool,
+        rest: f64,
+    ) -> Self {
+        let slopes = [0.0; 3];
+        let mut found = Self { side: 0.0, open: 0.0, drift: 0.0, slopes, loose: None, bends: *bends, rest };
+        let mut is_plain = !frame.is_flat() && !is_folding;
+        for edge in 0..3 {
+            // Outwards where the derivative points inwards.
+            let outward = -bends[edge].dot(frame.outward(edge));
+            let along = bends[edge].dot(frame.along(edge)).abs();
+            let by_rest = rests[edge];
+            let room = frame.length(edge) - (0.5 * along + by_rest.along);
+            let swing = (0.5 * outward.abs() + by_rest.outward) / room;
+            is_plain &= room > 0.0 && swing <= frame.slope_at(edge);
+            let off = 0.125 * outward.abs() + by_rest.off;
+            // A curve that bends inwards may reach outwards by the rest alone, nearer to an end.
+            let outward = outward.larger(0.0);
+            found.side = found.side.larger(off);
+            if open[edge] {
+                found.open = found.open.larger(off);
+            } else {
+                found.drift = found.drift.larger(0.125 * outward + by_rest.off);
+                found.slopes[edge] = (0.5 * outward + by_rest.outward) / room;
+            }
+        }
+        if !is_plain {
+            let most = bends.iter().map(|bend| bend.length_squared()).fold(0.0, f64::max).sqrt();
+            found.loose = Some((most + rest) / 6.0);
+        }
+        found
+    }
+
     /// Whether the derivatives tell nothing of how far the surface reaches.
     pub(crate) fn is_loose(&self) -> bool {
         self.loose.is_some()
@@ -261,14 +389,30 @@ impl BesideEdges {
 }
 
 /// Whether a map over the triangle may take two points to one place, by its second derivatives along the edges in their middles,
-/// and what third and fourth ones may change in the first derivatives along edges.
+/// and what third and fourth ones may change in the first derivatives along edges, in the metric of the triangle.
 #[inline]
 fn is_folding(frame: &TriangleFrame, bends: &[DVec3; 3], rest: f64) -> bool {
     let most = bends.iter().map(|&bend| frame.stretched_squared(bend)).fold(0.0, f64::max).sqrt();
-    let difference = most + DIRECTIONS * rest * frame.stretch();
     // Fails for what is not a number.
-    let is_apart = difference < NEARLY_ONE;
+    let is_apart = most + DIRECTIONS * rest < NEARLY_ONE;
     !is_apart
+}
+
+/// The greatest coordinate of an edge's direction.
+#[inline]
+fn reach(&Cell([a, b, c]): &Cell) -> f64 {
+    let edges = [minus(b, a), minus(c, b), minus(a, c)];
+    edges.as_flattened().iter().fold(0.0, |most, x| most.larger(x.abs()))
+}
+
+/// A symmetric form with one direction put in: N − 1 = M.
+#[inline]
+fn contracted<const N: usize, const M: usize>(form: &[DVec3; N], [u, v]: Domain) -> [DVec3; M] {
+    let mut found = [DVec3::ZERO; M];
+    for (i, found) in found.iter_mut().enumerate() {
+        *found = form[i] * u + form[i + 1] * v;
+    }
+    found
 }
 
 /// The value of a quadratic polynomial.

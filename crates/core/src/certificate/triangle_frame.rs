@@ -52,6 +52,16 @@ pub(crate) fn least_slope([a, b, c]: [DVec3; 3]) -> f64 {
     edges[0].cross(edges[1]).length() / product(0).larger(product(1)).larger(product(2))
 }
 
+/// The greatest size of a coordinate.
+#[inline]
+fn greatest_coordinate<'a>(vectors: impl Iterator<Item = &'a DVec3>) -> f64 {
+    let larger = |most: DVec3, v: &DVec3| {
+        DVec3::new(most.x.larger(v.x.abs()), most.y.larger(v.y.abs()), most.z.larger(v.z.abs()))
+    };
+    let most = vectors.fold(DVec3::ZERO, larger);
+    most.x.larger(most.y).larger(most.z)
+}
+
 impl TriangleFrame {
     /// Distances below this part of the coordinates' size are what rounding leaves of zero where points coincide.
     pub(crate) const ROUNDING: f64 = 5e-14;
@@ -92,8 +102,7 @@ impl TriangleFrame {
             along,
             lengths,
             normal,
-            on_edge: Self::ROUNDING
-                * edges.iter().chain(&corners).map(|v| v.abs().max_element()).fold(0.0, f64::max),
+            on_edge: Self::ROUNDING * greatest_coordinate(edges.iter().chain(&corners)),
             outward,
             offsets: [0, 1, 2].map(|edge| outward[edge].dot(from_first[edge])),
             // What is not a number allows nothing.

@@ -62,7 +62,7 @@ fn place(cell: &Cell, weights: [f64; 3]) -> Domain {
 #[test]
 fn dense_samples_lie_within_the_bounds() {
     let mut numbers = Numbers(3);
-    let (mut tight, mut counted) = (0, 0);
+    let (mut tight, mut counted, mut closer) = (0, 0, 0);
     for round in 0..3000 {
         let piece = numbers.piece([0.002, 0.02, 0.1, 0.4][round % 4]);
         let (jet, cell) = (QuarticJet::of(&piece), numbers.cell());
@@ -73,7 +73,11 @@ fn dense_samples_lie_within_the_bounds() {
         let heights = jet.heights(&cell, frame.normal());
         let (low, high) = heights.range();
         let refined = heights.refined(2, 0.0);
-        let deviation = jet.beside(&cell, &frame, [false, true, false]).deviation(high.min(refined));
+        let open = [false, true, false];
+        let at_first = jet.beside(&cell, &frame, open);
+        let beside = [at_first, jet.beside_closely(&at_first, &cell, &frame, open)];
+        closer += usize::from(beside[0].is_loose() && !beside[1].is_loose());
+        let deviation = beside[usize::from(round % 3 > 0)].deviation(high.min(refined));
         let (mut highest, mut farthest, mut outside) = (0.0f64, 0.0f64, [0.0f64; 3]);
         for weights in grid(GRID) {
             let [u, v] = place(&cell, weights);
@@ -104,6 +108,7 @@ fn dense_samples_lie_within_the_bounds() {
         tight += usize::from(refined.min(high) <= 1.06 * highest + 1e-9);
     }
     assert!(counted > 2500 && tight * 10 > counted * 9, "{tight} of {counted}");
+    assert!(closer > 100, "{closer}");
 }
 
 /// Where a part is said not to fold, its projection on the triangle's plane keeps its orientation everywhere, for slim triangles too;
@@ -142,8 +147,10 @@ fn parts_that_do_not_fold_keep_their_orientation() {
         let bends = edges.map(|(from, to)| jet.bend(halfway(from, to), minus(to, from)));
         let reach = s.iter().chain(&r).fold(0.0f64, |reach, x| reach.max(x.abs()));
         let (third, fourth) = jet.most(reach.max((s[0] - r[0]).abs()).max((s[1] - r[1]).abs()));
-        let is_plain = !is_folding(&frame, &bends, 0.5 * third + fourth);
+        let rest = frame.stretch() * (0.5 * third + QUARTIC_SLOPE * fourth);
+        let is_plain = !jet.part(&cell).is_folding(&frame, &bends);
         assert!(!is_plain || least > 0.0, "round {round}: {least}");
+        assert!(is_plain || is_folding(&frame, &bends, rest), "round {round}: closer, but less sure");
         plain += usize::from(is_plain);
         folding += usize::from(least <= 0.0);
         let [a, b, c] = cell.0.map(|[u, v]| piece.point(u, v));
@@ -320,13 +327,22 @@ fn the_quartic_constant_holds() {
         }
     }
     assert!(vertices.len() >= 20, "{}", vertices.len());
-    let (mut most, mut greatest) = (0.0f64, 0.0f64);
+    let (mut most, mut greatest, mut steepest) = (0.0f64, 0.0f64, 0.0f64);
     for &f in &vertices {
+        // The derivative along an edge: differences like these are those of quartics.
+        for [x, y] in [[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]] {
+            let slope = |[_, s, r]: [f64; 3]| {
+                let at = |step: f64| rest(f, [0.0, s + step * x, r + step * y]);
+                (8.0 * (at(0.5) - at(-0.5)) - (at(1.0) - at(-1.0))) / 6.0
+            };
+            steepest = steepest.max(halved(&net(slope), 2 * DIVISIONS, 0.0));
+        }
         most = most.max(halved(&net(|place| rest(f, place)), 2 * DIVISIONS, 0.0));
         greatest = grid(60).map(|place| rest(f, place).abs()).fold(greatest, f64::max);
     }
     assert!(greatest <= most + SLACK && most + SLACK <= QUARTIC, "{greatest} {most}");
     assert!(greatest > 0.9 * QUARTIC, "{greatest}");
+    assert!(steepest + SLACK <= QUARTIC_SLOPE && steepest > 0.99 * QUARTIC_SLOPE, "{steepest}");
 }
 
 /// Coefficients from values are those of the polynomial: cut finer, they close in on its greatest size.

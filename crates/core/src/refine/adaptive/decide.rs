@@ -205,10 +205,11 @@ impl<'a> Decider<'a> {
         let (open, place) = (self.control.open(face), Place::root(face));
         let word = if let Patch::Regular(points) = &patch {
             let net = BezierTriangle::of(points);
-            let middles = net.middles().map(|position| LimitPoint { position, normal: DVec3::ZERO });
+            let middles = net.middles();
+            let points = middles.map(|position| LimitPoint { position, normal: DVec3::ZERO });
             let seen = Seen::of(&corners, 0);
-            self.allowance = allowance.unwrap_or_else(|| self.guess(face, &seen, &middles));
-            self.regular(&net, (corners, &seen), open, place)
+            self.allowance = allowance.unwrap_or_else(|| self.guess(face, &seen, &points));
+            self.regular(&net, &middles, (corners, &seen), open, place)
         } else {
             let refined = patch.refined(self.control.rules);
             let middles = [0, 1, 2].map(|edge| refined.middle(edge));
@@ -267,8 +268,8 @@ impl<'a> Decider<'a> {
 
     fn node(&mut self, patch: &Patch, corners: [LimitPoint; 3], open: [bool; 3], place: Place) -> u32 {
         if let Patch::Regular(points) = patch {
-            let seen = Seen::of(&corners, place.level);
-            return self.regular(&BezierTriangle::of(points), (corners, &seen), open, place);
+            let (net, seen) = (BezierTriangle::of(points), Seen::of(&corners, place.level));
+            return self.regular(&net, &net.middles(), (corners, &seen), open, place);
         }
         let refined = patch.refined(self.control.rules);
         let middles = [0, 1, 2].map(|edge| refined.middle(edge));
@@ -310,25 +311,37 @@ impl<'a> Decider<'a> {
         self.piece.irregular_node(children)
     }
 
-    /// A regular piece: most of those beside irregular vertices are not divided any more.
+    /// A regular piece, with its points in the middles of its edges: those beside irregular vertices are small.
     fn regular(
         &mut self,
         net: &BezierTriangle,
+        middles: &[DVec3; 3],
         (corners, seen): ([LimitPoint; 3], &Seen),
         open: [bool; 3],
         place: Place,
     ) -> u32 {
-        let verdict = self.judge.at_a_glance(net, seen, open, &self.allowance);
-        let may_stay = !self.control.demands.divides(place);
-        match verdict {
-            Some(verdict) if may_stay && !verdict.fails() || place.level >= self.max_levels => {
-                self.leaf(place, &verdict)
+        let may_stay = !self.control.demands.divides(place) && !self.judge.surely_fails(seen, middles);
+        if may_stay || place.level >= self.max_levels {
+            let verdict = self.judge.at_a_glance(net, seen, open, &self.allowance);
+            match verdict {
+                Some(verdict) if !verdict.fails() || place.level >= self.max_levels => {
+                    return self.leaf(place, &verdict);
+                }
+                _ => {}
             }
-            _ => self.part(&Ground::of(net), Spot::WHOLE, corners, open, (place, self.judge.has_rows())),
         }
+        self.part(
+            &Ground::with_jet(net),
+            Spot::WHOLE,
+            corners,
+            open,
+            (place, self.judge.has_rows()),
+            !may_stay,
+        )
     }
 
-    /// A part of a regular piece; `has_rows` as long as whole rows may be worth while below.
+    /// A part of a regular piece; `has_rows` as long as whole rows may be worth while below. One that is divided in any case need not be
+    /// judged.
     fn part(
         &mut self,
         ground: &Ground,
@@ -336,6 +349,7 @@ impl<'a> Decider<'a> {
         corners: [LimitPoint; 3],
         open: [bool; 3],
         (place, has_rows): (Place, bool),
+        surely_fails: bool,
     ) -> u32 {
         if self.is_too_much() {
             return LEAF;
@@ -343,12 +357,15 @@ impl<'a> Decider<'a> {
         if self.judge.is_inside(open) {
             return self.leaf(place, &Verdict::NONE);
         }
-        let mut has_rows = has_rows;
-        let mut surely_fails = self.control.demands.divides(place);
-        if has_rows && !surely_fails && open == [false; 3] {
+        let (mut has_rows, mut surely_fails) = (has_rows, surely_fails);
+        let is_demanded = self.control.demands.divides(place);
+        surely_fails |= is_demanded;
+        if has_rows && !is_demanded && open == [false; 3] {
             match self.rows(ground, spot, place) {
                 AtOnce::Decided(word) => return word,
-                AtOnce::NotHere { fails, may_be_below } => (surely_fails, has_rows) = (fails, may_be_below),
+                AtOnce::NotHere { fails, may_be_below } => {
+                    (surely_fails, has_rows) = (surely_fails | fails, may_be_below)
+                }
             }
         }
         if !surely_fails || place.level >= self.max_levels {
@@ -363,7 +380,7 @@ impl<'a> Decider<'a> {
         let children = [0, 1, 2, 3].map(|child| {
             let own = child_corners(corners, middles, child);
             let at = (place.child(child), has_rows);
-            self.part(ground, spot.child(child), own, child_open(open, child), at)
+            self.part(ground, spot.child(child), own, child_open(open, child), at, false)
         });
         self.piece.node(children)
     }

@@ -12,7 +12,8 @@ use super::quadtree::Place;
 use super::surface::Ground;
 use super::trial::Trial;
 use crate::certificate::{
-    Cell, Deviation, Effort, NetPart, Pieces, RowTarget, SubTriangle, TriangleFrame, exceeds,
+    Cell, Deviation, Effort, Heights, NetPart, Pieces, RowTarget, SubTriangle, TriangleFrame, at_a_glance,
+    exceeds,
 };
 use crate::criterion::Criteria;
 use crate::patch::bezier_triangle::BezierTriangle;
@@ -292,26 +293,16 @@ impl Judge<'_> {
             return Verdict { outcome: Outcome::Fails, extent: Extent { bound: low, ..seen.extent() } };
         }
         let beside = ground.jet().beside(cell, &seen.frame, open);
+        if !beside.is_loose() {
+            let verdict = self.decided(&seen, beside.deviation(high), allowance);
+            if verdict.passes() {
+                return verdict;
+            }
+        }
+        // By what the part itself comes to, not all of its piece.
+        let beside = ground.jet().beside_closely(&beside, cell, &seen.frame, open);
         if beside.is_loose() {
-            // Drifts by the net, heights by the derivatives: those of a net are a third too great.
-            let net = net();
-            if open != [false; 3] {
-                return self.by_net(&seen, &net, open, allowance);
-            }
-            let (mut deviation, _) = net.at_a_glance(&seen.frame, open);
-            deviation.height = deviation.height.min(high);
-            let at_once = self.decided(&seen, deviation, allowance);
-            if at_once.passes() {
-                return at_once;
-            }
-            let enough = deviation.height_within(self.limit, seen.allowed(allowance).0);
-            deviation.height = deviation.height.min(heights.refined(DIVISIONS, enough));
-            let refined = self.decided(&seen, deviation, allowance);
-            if refined.passes() {
-                return refined;
-            }
-            let halved = self.by_net(&seen, &net, open, allowance);
-            return if halved.fails() { refined } else { halved };
+            return self.by_net_and_heights(&seen, &net(), (&heights, high), open, allowance);
         }
         let verdict = self.decided(&seen, beside.deviation(high), allowance);
         if !verdict.fails() {
@@ -324,8 +315,47 @@ impl Judge<'_> {
             let high = heights.refined(DIVISIONS, enough).min(high);
             return self.decided(&seen, beside.deviation(high), allowance);
         }
-        // Wide parts are better seen by their points.
-        self.by_net(&seen, &net(), open, allowance)
+        // Wide parts are better seen by their points; of others hardly any passes.
+        if level < FEW_LEVELS || self.is_kept(&seen) {
+            return self.by_net(&seen, &net(), open, allowance);
+        }
+        least
+    }
+
+    /// A triangle over a part of a regular piece whose derivatives do not tell how far points drift: drifts by the net, heights by the
+    /// derivatives, since those of a net are a third too great.
+    fn by_net_and_heights(
+        &self,
+        seen: &Seen,
+        net: &NetPart,
+        (heights, high): (&Heights, f64),
+        open: [bool; 3],
+        allowance: &Allowance,
+    ) -> Verdict {
+        if open != [false; 3] {
+            return self.by_net(seen, net, open, allowance);
+        }
+        let (mut deviation, _) = net.at_a_glance(&seen.frame, open);
+        deviation.height = deviation.height.min(high);
+        let at_once = self.decided(seen, deviation, allowance);
+        if at_once.passes() {
+            return at_once;
+        }
+        let enough = deviation.height_within(self.limit, seen.allowed(allowance).0);
+        deviation.height = deviation.height.min(heights.refined(DIVISIONS, enough));
+        let refined = self.decided(seen, deviation, allowance);
+        if refined.passes() {
+            return refined;
+        }
+        let halved = self.by_net(seen, net, open, allowance);
+        if halved.fails() { refined } else { halved }
+    }
+
+    /// Whether a triangle is to be divided whatever else its piece is, since some of its points stand too high.
+    pub(super) fn surely_fails(&self, seen: &Seen, points: &[DVec3]) -> bool {
+        let height = || points.iter().map(|&point| seen.frame.height(point).abs()).fold(0.0, f64::larger);
+        let has_limit = self.criteria.is_none() && !self.rim_alone && !self.is_kept(seen);
+        has_limit && exceeds(height(), self.limit)
     }
 
     /// A triangle over a regular piece, as far as its net decides at a glance.
@@ -339,7 +369,7 @@ impl Judge<'_> {
         if self.is_lenient || self.rim_alone || self.criteria.is_some() {
             return None;
         }
-        let (deviation, attained) = NetPart::own(net, SubTriangle::Whole).at_a_glance(&seen.frame, open);
+        let (deviation, attained) = at_a_glance(net, &seen.frame, open);
         if exceeds(attained, self.limit) && !self.is_kept(seen) {
             let extent = Extent { bound: attained, ..seen.extent() };
             return Some(Verdict { outcome: Outcome::Fails, extent });

@@ -24,6 +24,12 @@ impl Ground {
         Self { piece: Quartic::of(net, 0), jet: OnceCell::new() }
     }
 
+    /// The same where parts are bounded for sure.
+    pub(super) fn with_jet(net: &BezierTriangle) -> Self {
+        let piece = Quartic::of(net, 0);
+        Self { jet: OnceCell::from(QuarticJet::of(&piece)), piece }
+    }
+
     /// What bounds parts of it.
     #[inline]
     pub(super) fn jet(&self) -> &QuarticJet {

@@ -113,7 +113,7 @@ impl Decider<'_> {
         }
         // Where all are equally deep, and some are not good enough, most will not be.
         if even_depth(word).is_some() || !before.is_divided(word) {
-            return self.part(ground, spot, corners, open, (place, self.judge.has_rows()));
+            return self.part(ground, spot, corners, open, (place, self.judge.has_rows()), false);
         }
         let middles = ground.at([0, 1, 2].map(|edge| spot.along(edge, 0.5)));
         let mut children = [LEAF; 4];

@@ -90,7 +90,7 @@ impl Decider<'_> {
                 let place = rows.place.leaf(level, (i, j), is_headlong);
                 let corners = rows.ground.at(spot.corners());
                 if is_last {
-                    return self.part(rows.ground, spot, corners, [false; 3], (place, false));
+                    return self.part(rows.ground, spot, corners, [false; 3], (place, false), false);
                 }
                 let at = (spot, place.level, SubTriangle::Whole);
                 let verdict = self.judge.regular(
