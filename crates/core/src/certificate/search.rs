@@ -52,8 +52,12 @@ impl<P: HullPoint> Parts<P> for RefinedExtraordinary<P> {
     }
 
     fn look(&self, search: &mut Search<'_, P>, (part, of_part, borders): PartOf, depth: usize) {
-        match self.points(part) {
-            Some(points) => search.regular(&points, of_part, borders),
+        match self.places(part) {
+            // In place: copies of so many are not free.
+            Some(places) => {
+                let points: [P; 12] = core::array::from_fn(|i| self.near(places[i]));
+                search.regular(&points, of_part, borders);
+            }
             None => search.extraordinary(self.own(), of_part, borders, depth),
         }
     }
@@ -138,10 +142,15 @@ impl<'a, P: HullPoint> Search<'a, P> {
         self.effort.target.max(self.value(&self.found))
     }
 
-    fn add(&mut self, deviation: Deviation) {
+    /// What was found so far together with one more.
+    fn with(&self, deviation: Deviation) -> Deviation {
         // A slope that is too great must not spoil what others are good for.
         let counts = deviation.is_within(self.effort.slopes);
-        self.found = self.found.max(if counts { deviation } else { Deviation::alone(deviation.own) });
+        self.found.max(if counts { deviation } else { Deviation::alone(deviation.own) })
+    }
+
+    fn add(&mut self, deviation: Deviation) {
+        self.found = self.with(deviation);
         if let Some(chord) = self.effort.least_chord
             && exceeds(self.found.bound(chord, self.effort.slopes), self.effort.target)
         {

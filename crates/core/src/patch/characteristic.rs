@@ -20,6 +20,8 @@ pub(crate) struct Characteristic {
     pub(crate) control: ExtraordinaryPatch,
     /// The face's sector, and its halves on either side of the bisector.
     pub(crate) sectors: [MapSector; 3],
+    /// What the five control points beyond the ring weigh together at most, anywhere over the face.
+    pub(crate) outer_share: f64,
     /// The least coefficient of the Jacobian of its three regular pieces, by differences of their nets.
     pub(crate) least_jacobian: f64,
     /// The greatest coordinates of these differences.
@@ -88,9 +90,25 @@ impl Characteristic {
             sector(&[&first, &middle.half(1, true)], rim(&first).to_vec(), directions[0], directions[1]),
             sector(&[&middle.half(1, false), &second], rim(&second).to_vec(), directions[1], directions[2]),
         ];
-        Self { control, sectors, least_jacobian, steepest: [steepest.x, steepest.y] }
+        let outer_share = outer_share(valence);
+        Self { control, sectors, outer_share, least_jacobian, steepest: [steepest.x, steepest.y] }
     }
 }
+
+/// A bound of what the five control points beyond the ring weigh together. Their weights are the function with control points of 1 there
+/// and 0 elsewhere: no more than the net points of the three regular pieces, nor than the control points of what is left at the vertex,
+/// whatever the weights of the vertex are, as all of its ring are 0.
+fn outer_share(valence: usize) -> f64 {
+    let ring = (0..valence).map(|_| DVec3::ZERO).collect();
+    let weights = ExtraordinaryPatch { corner: 0, at: DVec3::ZERO, ring, outer: [DVec3::X; 5] };
+    let refined = weights.refined(0.0);
+    let nets = [1, 2, 3].map(|part| BezierTriangle::of(&refined.regular(part)));
+    let points = nets.iter().flat_map(|net| net.0).chain(refined.own().points());
+    ROUNDED_UP * points.map(|point| point.x).fold(0.0, f64::max)
+}
+
+/// More than rounding takes away.
+const ROUNDED_UP: f64 = 1.0 + 1e-12;
 
 /// Points of the map within this of a line through 0 lie on it, but for rounding.
 const ON_LINE: f64 = 1e-9;
@@ -147,6 +165,29 @@ mod tests {
             angle(a).total_cmp(&angle(b))
         });
         (0..n).all(|i| (turned[(i + 1) % n] - turned[i]).cross(point - turned[i]).z > -1e-9)
+    }
+
+    /// Brute force: what the outer points weigh at dense places, by refinement alone.
+    #[test]
+    fn outer_points_weigh_no_more_than_their_share() {
+        let rules = crate::patch::Rules::of(&crate::scheme::Loop);
+        for valence in (3..32).filter(|&valence| valence != 6) {
+            let share = Characteristic::of(valence).outer_share;
+            let ring = (0..valence).map(|_| DVec3::ZERO).collect();
+            let weights = ExtraordinaryPatch { corner: 0, at: DVec3::ZERO, ring, outer: [DVec3::X; 5] };
+            let mut pieces = vec![Patch::Extraordinary(Box::new(weights))];
+            let mut greatest = 0.0f64;
+            for _ in 0..5 {
+                let mut next = Vec::new();
+                for piece in &pieces {
+                    let refined = piece.refined(&rules);
+                    (0..3).for_each(|edge| greatest = greatest.max(refined.middle(edge).position.x));
+                    next.extend((0..4).map(|part| refined.part(part)));
+                }
+                pieces = next;
+            }
+            assert!(greatest <= share && greatest > 0.8 * share, "valence {valence}: {greatest} {share}");
+        }
     }
 
     #[test]

@@ -150,8 +150,21 @@ impl<V: Blend> RefinedExtraordinary<V> {
     pub(crate) fn regular(&self, local: usize) -> [V; 12] {
         let mut points = [V::default(); 12];
         let list = &near::PARTS[self.own.corner % 3][(local - 1) % 3];
-        points.iter_mut().zip(list).for_each(|(point, &at)| *point = self.near[usize::from(at) % 16]);
+        points.iter_mut().zip(list).for_each(|(point, &at)| *point = self.near(at));
         points
+    }
+
+    /// Which of the points near the face are those of one of the parts, if it is regular.
+    #[inline]
+    pub(crate) fn places(&self, part: usize) -> Option<&'static [u8; 12]> {
+        let local = self.local(part);
+        (local != 0).then(|| &near::PARTS[self.own.corner % 3][(local - 1) % 3])
+    }
+
+    /// One of the points near the face.
+    #[inline]
+    pub(crate) fn near(&self, at: u8) -> V {
+        self.near[usize::from(at) % 16]
     }
 
     /// The new vertex on the edge from corner `edge` of the face, with its ring.

@@ -17,6 +17,9 @@ const DEEPEST: usize = 40;
 /// taken to be too far as well.
 const CERTAIN: f64 = 3.0;
 
+/// Down to this level pieces must be good enough together with others.
+const TOGETHER: usize = 3;
+
 /// Lengths and squares that are so many times too great are too great, whatever rounding does.
 const CLEARLY: f64 = 1.0 + 1e-9;
 
@@ -58,8 +61,10 @@ impl<P: HullPoint> Search<'_, P> {
             return true;
         }
         let frame = self.bound.frame;
-        let each_point =
-            |visit: &mut dyn FnMut(P)| patch.for_each_hull_point(|point| visit(P::of(frame, point)));
+        let each_point = |visit: &mut dyn FnMut(P) -> bool| {
+            let mut goes_on = true;
+            patch.for_each_hull_point(|point| goes_on = goes_on && visit(P::of(frame, point)));
+        };
         let held = self.hull(each_point, borders, depth);
         self.is_enough(held, depth)
     }
@@ -99,15 +104,24 @@ impl<P: HullPoint> Search<'_, P> {
                 };
                 sector.and_then(|sector| self.affine(piece, map, sector, borders))
             }
-            None => self.hull(|visit| piece.points().for_each(visit), borders, depth),
+            None => self.hull(|visit| _ = piece.points().all(visit), borders, depth),
         };
         self.is_enough(held, depth)
     }
 
     /// Takes what a piece is good for as it is, if that is enough; says whether it did.
     fn is_enough(&mut self, held: Option<Deviation>, depth: usize) -> bool {
-        let held = held.filter(|held| depth >= DEEPEST || self.value(held) <= self.aim());
+        let held = held.filter(|held| depth >= DEEPEST || self.is_good(held, depth));
         held.inspect(|&held| self.add(held)).is_some()
+    }
+
+    /// Whether what a piece is good for is enough: at first also together with what was found elsewhere, as heights here and drifts there
+    /// may be too much though neither is.
+    fn is_good(&self, held: &Deviation, depth: usize) -> bool {
+        let target = self.effort.target;
+        let is_enough = self.value(held) <= self.aim();
+        let is_alone = depth >= TOGETHER || exceeds(self.value(&self.found), target);
+        is_enough && (is_alone || self.value(&self.with(*held)) <= target)
     }
 
     /// The bound by an affine image of the characteristic map's sector, if what the piece differs from it is little.
@@ -127,17 +141,23 @@ impl<P: HullPoint> Search<'_, P> {
         let tangents = [1, 2].map(|i| sums[i] * (2.0 / valence as f64));
         let image = |at: DVec3| limit + tangents[0] * at.x + tangents[1] * at.y;
         let aim = self.aim();
-        let (mut rest, enough) = (0.0, CLEARLY * aim * aim);
-        // Those beyond the ring first: they are farthest away, and most pieces are refined because of them.
-        let outer = piece.outer.iter().zip(&map.control.outer);
-        let near = piece.ring.iter().zip(&map.control.ring).chain([(&piece.at, &map.control.at)]);
-        for (&point, &at) in outer.chain(near) {
-            rest = greater(rest, (point - image(at)).length_squared(self.bound.frame));
-            if exceeds(rest, enough) {
-                return None;
+        // The greatest square of what points differ by, as long as that helps.
+        let farthest = |points: &mut dyn Iterator<Item = (&P, &DVec3)>, most: f64| {
+            let (mut farthest, most) = (0.0, CLEARLY * most * most);
+            for (&point, &at) in points {
+                farthest = greater(farthest, (point - image(at)).length_squared(self.bound.frame));
+                if exceeds(farthest, most) {
+                    return None;
+                }
             }
-        }
-        let rest = CLEARLY * rest.sqrt();
+            Some(CLEARLY * farthest.sqrt())
+        };
+        // Those beyond the ring first: they are farthest away, and most pieces are refined because of them.
+        let share = map.outer_share;
+        let outer = farthest(&mut piece.outer.iter().zip(&map.control.outer), aim / share)?;
+        let near = piece.ring.iter().zip(&map.control.ring).chain([(&piece.at, &map.control.at)]);
+        let near = farthest(&mut { near }, aim)?;
+        let rest = near + share * (outer - near).max(0.0);
         if exceeds(rest, aim) {
             return None;
         }
@@ -164,10 +184,10 @@ impl<P: HullPoint> Search<'_, P> {
     }
 
     /// The greatest distance of the control points from the triangle, and from the edges in `borders`; `None` as soon as
-    /// one is farther away than helps.
+    /// one is farther away than helps. Points are given as long as the answer to the last one is yes.
     fn hull(
         &self,
-        each_point: impl FnOnce(&mut dyn FnMut(P)),
+        each_point: impl FnOnce(&mut dyn FnMut(P) -> bool),
         borders: Borders,
         depth: usize,
     ) -> Option<Deviation> {
@@ -175,9 +195,6 @@ impl<P: HullPoint> Search<'_, P> {
         let limit = if depth < DEEPEST { self.aim() } else { f64::INFINITY };
         let (mut greatest, limit) = (0.0f64, limit * limit);
         each_point(&mut |point| {
-            if exceeds(greatest, limit) {
-                return;
-            }
             if !self.effort.rim_alone {
                 greatest = greater(greatest, point.squared(frame));
             }
@@ -186,6 +203,7 @@ impl<P: HullPoint> Search<'_, P> {
             for border in borders.into_iter().filter(counts) {
                 greatest = greater(greatest, point.squared_to_edge(frame, border as usize));
             }
+            !exceeds(greatest, limit)
         });
         (!exceeds(greatest, limit)).then(|| Deviation::alone(greatest.sqrt()))
     }
