@@ -5,7 +5,7 @@ use crate::criterion::Apart;
 
 /// The square of the greatest chord of the angle between neighbours that help each other, 2√3: 137°. Where they meet in
 /// a sharper fold, both may reach beyond the surface (see [`super::bounds`]).
-const SHARPEST: f64 = 3.464;
+pub(super) const SHARPEST: f64 = 3.464;
 
 /// How far a triangle and its piece of the surface can be from each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,12 +54,8 @@ impl Deviation {
         Self { own: greater(self.own, moved), height, drift: self.drift + aside, across, ..self }
     }
 
-    /// That of a piece each of whose points is within `distance` of one of the piece that this is for, and the other way round.
-    ///
-    /// So pieces at irregular vertices are bounded ([`super::bounds`]), and triangles whose corners were moved off the surface:
-    /// let the piece be moved within the triangle's plane so that each corner stands over that of the triangle, points between as
-    /// barycentric coordinates say. Its curves stand to the triangle's edges as those of the surface stand to its own chords, its
-    /// heights over the plane are what they were; and no point was moved farther than a corner.
+    /// That of a piece each of whose points is within `distance` of one of the piece that this is for, and the other way round: so pieces
+    /// at irregular vertices are bounded ([`super::bounds`]).
     pub(crate) fn grown(self, distance: f64) -> Self {
         let Self { own, height, across, .. } = self;
         Self { own: own + distance, height: height + distance, across: across + distance, ..self }

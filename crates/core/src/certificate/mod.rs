@@ -5,6 +5,7 @@
 //!
 //! What is not a number fails: wherever something is compared with a limit, it must be known to be below it.
 
+mod bent_parts;
 mod borders;
 mod bounds;
 mod cell_rows;
@@ -23,6 +24,7 @@ mod sub_triangle;
 mod triangle_frame;
 mod trilinear;
 
+pub(crate) use bent_parts::{Bender, Bent, BentFour, FOUR, MovedFour, normals};
 pub(crate) use bounds::{Pieces, at_a_glance};
 pub(crate) use cell_rows::{CellRows, MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, RowTarget};
 pub(crate) use deviation::Deviation;
@@ -31,7 +33,7 @@ pub(crate) use effort::Effort;
 pub(crate) use interpolation::Sheet;
 pub(crate) use net_part::NetPart;
 pub(crate) use parametric::SecondDerivatives;
-pub(crate) use quartic_cell::{Cell, Heights, QuarticJet};
+pub(crate) use quartic_cell::{BesideEdges, Cell, Heights, QuarticJet};
 pub(crate) use sub_triangle::SubTriangle;
 pub(crate) use triangle_frame::{TriangleFrame, least_slope};
 

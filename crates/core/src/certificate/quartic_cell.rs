@@ -232,6 +232,11 @@ impl QuarticJet {
         found
     }
 
+    /// The third derivatives: by u three times to v three times, as coefficients of 1, u, v.
+    pub(super) fn third(&self) -> &[[DVec3; 3]; 4] {
+        &self.jet.third
+    }
+
     /// The fourth derivatives.
     pub(super) fn fourth(&self) -> &[DVec3; 5] {
         &self.jet.fourth
@@ -382,9 +387,19 @@ impl BesideEdges {
     }
 
     /// The same for a triangle whose corners were moved off the surface by up to `moved`, up to `aside` of that within its
-    /// plane, over which the surface is so high ([`Deviation::grown`]).
+    /// plane, over which the surface is so high.
+    ///
+    /// Let the piece be moved within the plane so that each corner stands over that of the triangle, points between as barycentric
+    /// coordinates say. Its curves stand to the triangle's edges as those of the surface stand to its own chords; its heights are what
+    /// they were; and no point was moved farther than a corner. So the surface's own curves are no more than `aside` farther from the
+    /// edges, at right angles to heights, and [`Deviation::off`] says what that leaves at the corners.
     pub(crate) fn deviation_off(&self, height: f64, moved: f64, aside: f64) -> Deviation {
-        self.deviation(height).grown(if self.loose.is_some() { moved } else { aside })
+        if self.loose.is_some() {
+            return self.deviation(height).grown(moved);
+        }
+        let farther = |distance: f64| if distance > 0.0 { distance + aside } else { 0.0 };
+        let moved_piece = Self { side: self.side + aside, open: farther(self.open), ..*self };
+        moved_piece.deviation(height).off(moved, aside)
     }
 }
 

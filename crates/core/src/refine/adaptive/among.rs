@@ -1,6 +1,7 @@
 //! Emission where triangles are looked at among their neighbours, all of them: for goals beside distances, and for vertices
 //! that are moved off the surface.
 
+use super::bulges::Bulges;
 use super::carry_out::marked;
 use super::changes::{Changes, Moves};
 use super::dirty::Dirty;
@@ -8,7 +9,6 @@ use super::emit::Emission;
 use super::emitted::Sources;
 use super::judge::Goal;
 use super::measure::{Measured, measure};
-use super::offsets::Bulges;
 use super::quadtree::Place;
 use super::result::Outcome;
 use super::{ADDED, Engine, Plan};
@@ -73,8 +73,10 @@ impl Engine<'_> {
             let edges = (&self.edges, &plan.chains);
             let changes = Changes::since(before.as_ref(), is_touched, &emission, edges, self.watch)?;
             let sources = self.sources(&plan, &emission);
-            let faces = changes.faces(&emission, self.watch)?;
-            let found = measure(&sources, self.watch, (goal, f64::INFINITY), (&faces, Some(&changes)))?;
+            let faces = changes.faces(&emission, &self.edges, self.watch)?;
+            let bulges = self.is_balanced.then_some(&bulges);
+            let found =
+                measure(&sources, self.watch, (goal, f64::INFINITY), (&faces, Some(&changes), bulges))?;
             if measured.is_empty() {
                 measured = found;
             } else {

@@ -72,24 +72,46 @@ impl Changes {
     /// Whether a triangle may come to something else.
     pub(super) fn concern(&self, emission: &Emission, triangle: u32) -> bool {
         let meet = |triangle: u32| {
-            let is_moved = |&vertex: &u32| self.is_moved.get(vertex as usize).is_some_and(|&moved| moved);
             let triangle = triangle as usize;
-            self.is_touched(emission.parents[triangle]) || emission.triangles[triangle].iter().any(is_moved)
+            let corners = emission.triangles[triangle];
+            self.is_touched(emission.parents[triangle]) || corners.iter().any(|&vertex| self.is_moved(vertex))
         };
         let twins = &emission.twins[3 * triangle as usize..3 * triangle as usize + 3];
         meet(triangle) || twins.iter().any(|&twin| twin != NONE && meet(twin / 3))
     }
 
     /// The control faces some of whose triangles may.
-    pub(super) fn faces(&self, emission: &Emission, watch: &SharedWatch<'_>) -> Result<Vec<u32>, Cancelled> {
+    pub(super) fn faces(
+        &self,
+        emission: &Emission,
+        edges: &Edges<'_>,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Vec<u32>, Cancelled> {
+        let count = self.is_touched.len() as u32;
+        // What has not changed itself and only meets others that have not, has no such triangles.
+        let mut has_changed = vec![false; count as usize];
+        watch.each(0..count, |face| {
+            let is_moved = |&h: &u32| self.is_moved(emission.triangles[h as usize / 3][h as usize % 3]);
+            let mut half_edges = 3 * face..3 * face + 3;
+            has_changed[face as usize] =
+                self.is_touched(face) || half_edges.any(|h| emission.borders.along(h).iter().any(is_moved));
+        })?;
         let mut faces = Vec::new();
-        watch.each(0..self.is_touched.len() as u32, |face| {
+        watch.each(0..count, |face| {
+            let mut beyond = (3 * face..3 * face + 3).filter_map(|h| edges.twin(h)).map(|twin| twin / 3);
+            let may_be = has_changed[face as usize] || beyond.any(|face| has_changed[face as usize]);
             let mut triangles = emission.triangles_of(face);
-            if self.is_touched(face) || triangles.any(|triangle| self.concern(emission, triangle as u32)) {
+            if self.is_touched(face)
+                || may_be && triangles.any(|triangle| self.concern(emission, triangle as u32))
+            {
                 faces.push(face);
             }
         })?;
         Ok(faces)
+    }
+
+    fn is_moved(&self, vertex: u32) -> bool {
+        self.is_moved.get(vertex as usize).is_some_and(|&moved| moved)
     }
 }
 

@@ -142,6 +142,9 @@ impl<B: Beholder> Leaves<'_, B> {
         let open = [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && node.place.lies_along(edge));
         let split = if on_side == [false; 3] { [None; 3] } else { self.rim.split(n, i, j) };
         let bits = bits(&split);
+        if bits == 0 {
+            return self.whole(node, (i, j), (place, open));
+        }
         let mut from_end = false;
         if bits.count_ones() == 2
             && let [first, rest @ ..] = self.diagonals
@@ -184,13 +187,33 @@ impl<B: Beholder> Leaves<'_, B> {
             Surface::General(piece, rules) => {
                 let mut pieces = Pieces::of(&piece.patch);
                 let [a, b, c] = piece.corners;
-                let [d, e, f] = if bits == 0 { piece.corners } else { piece.middles(rules) };
+                let [d, e, f] = piece.middles(rules);
                 let points = [a, b, c, d, e, f];
                 for triangle in triangles {
                     let emitted = emitted(triangle.part, triangle.corners, triangle.borders);
                     let limits = triangle.corners.map(|label| points[label]);
                     self.beholder.triangle(&emitted, Over::General(&mut pieces, limits), self.rules);
                 }
+            }
+        }
+    }
+
+    /// An upright leaf none of whose edges is split.
+    fn whole(&mut self, node: &Node<'_>, (i, j): (usize, usize), (place, open): (Place, [bool; 3])) {
+        let number = self.next;
+        self.next += 1;
+        let vertices = self.triangles[number as usize];
+        let emitted = Emitted { number, vertices, place, part: SubTriangle::Whole, open };
+        match node.surface {
+            Surface::Unknown => {}
+            Surface::Regular(piece, spot) => {
+                let spot = spot.leaf(node.depth, i, j);
+                let over = Over::Regular(piece.ground(), Cell(spot.corners()), spot);
+                self.beholder.triangle(&emitted, over, self.rules);
+            }
+            Surface::General(piece, _) => {
+                let over = Over::General(&mut Pieces::of(&piece.patch), piece.corners);
+                self.beholder.triangle(&emitted, over, self.rules);
             }
         }
     }

@@ -143,7 +143,8 @@ fn proven(
     let floor = engine.floor(options.tolerance);
     let all: Vec<u32> = (0..plan.closed.len() as u32).collect();
     let sources = engine.sources(plan, &emission);
-    let measured = measure(&sources, engine.watch, (&Goal::Within(floor), f64::INFINITY), (&all, None))?;
+    let measured =
+        measure(&sources, engine.watch, (&Goal::Within(floor), f64::INFINITY), (&all, None, None))?;
     let greatest = |of: fn(&Measured) -> f64| measured.iter().map(of).fold(0.0, f64::max);
     let value = greatest(|face| face.value);
     let is_met = options.tolerance.is_some() && value <= floor;

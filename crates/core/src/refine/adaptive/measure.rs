@@ -2,20 +2,26 @@
 //!
 //! Takes what was emitted, its vertices moved off the surface or not ([`super::offsets`]); gives, by control face, the
 //! greatest bound of a distance and where it is, and the leaves whose values are too much. Distances to moved triangles are
-//! bounded as [`crate::certificate::Deviation::grown`] says.
+//! bounded as [`crate::certificate::Deviation::off`] and [`BesideEdges::deviation_off`] say.
 
+mod at_once;
+
+use core::ops::Range;
 use std::collections::HashSet;
 
 use smallvec::SmallVec;
 
 use super::backs::{BackFaces, Behind, looks_away};
+use super::bulges::Bulges;
 use super::changes::Changes;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
 use super::judge::{DIVISIONS, Goal, HALVINGS};
 use super::quadtree::Place;
 use super::settle::{Neighbours, beside, neighbours, sharp_edges};
-use crate::certificate::{Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds};
+use crate::certificate::{
+    BesideEdges, Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
+};
 use crate::criterion::{Apart, Backs, Criteria, Region, Viewpoint};
 use crate::patch::{LimitPoint, Rules};
 use crate::progress::{Cancelled, SharedWatch};
@@ -46,32 +52,29 @@ pub(super) struct Measured {
 }
 
 /// Looks at the triangles of some control faces, or those of them that changes concern. Bounds of distances below `length`, of
-/// triangles that do not fail, need not be tight.
+/// triangles that do not fail, need not be tight. Where it is known how the surface bulges over them as they are emitted, most
+/// need nothing else.
 pub(super) fn measure(
     sources: &Sources<'_>,
     watch: &SharedWatch<'_>,
     (goal, length): (&Goal, f64),
-    (faces, changes): (&[u32], Option<&Changes>),
+    (faces, changes, bulges): (&[u32], Option<&Changes>, Option<&Bulges>),
 ) -> Result<Vec<Measured>, Cancelled> {
     let sharp = sharp_edges(sources.emission, watch)?;
     let measured = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
         let measured = faces[block].iter().map(|&face| {
-            let nowhere = (0.0, Place::root(face));
-            let none =
-                Measured { worst: nowhere, highest: nowhere, value: 0.0, pixels: 0.0, failing: Vec::new() };
-            let mut measuring = Measuring {
-                emission: sources.emission,
-                criteria: sources.control.criteria.as_ref(),
-                back_faces: &sources.control.back_faces,
-                rim_alone: sources.control.flat.is_its_rim(face),
-                sharp: &sharp,
-                changes: changes.filter(|changes| !changes.is_touched(face)),
-                limit: goal.allowed(face),
-                length,
-                found: none,
-            };
+            let mut measuring = Measuring::of(sources, (face, &sharp), (goal, length), changes);
+            let bulge = bulges.filter(|_| measuring.criteria.is_none() && !measuring.rim_alone);
+            if let Some(Bulges(bulges)) = bulge {
+                let is_left = measuring.at_once(face, &bulges[face as usize]);
+                let is_done = !is_left.contains(&true);
+                measuring.is_left = Some(is_left);
+                if is_done {
+                    return measuring.found();
+                }
+            }
             sources.show(face, is_stopped, &mut measuring);
-            measuring.found
+            measuring.found()
         });
         measured.collect::<Vec<_>>()
     })?;
@@ -89,15 +92,29 @@ struct Measuring<'a> {
     sharp: &'a HashSet<u32>,
     /// Others need not be looked at.
     changes: Option<&'a Changes>,
+    /// The number of the face's first triangle, and which of its triangles are left to be looked at; `None` if all those are.
+    first: u32,
+    is_left: Option<Vec<bool>>,
     /// Greatest value.
     limit: f64,
     length: f64,
     found: Measured,
+    /// The triangles that fail, their leaves, and what they come to.
+    failing: Vec<(u32, Place, f64)>,
 }
 
 impl Beholder for Measuring<'_> {
+    fn wants(&self, _: Place, triangles: Range<u32>) -> bool {
+        let own = (triangles.start - self.first) as usize..(triangles.end - self.first) as usize;
+        self.is_left.as_ref().is_none_or(|is_left| is_left[own].contains(&true))
+    }
+
     fn triangle<'p>(&mut self, emitted: &Emitted, mut over: Over<'_, 'p>, rules: &'p Rules<'p>) {
-        if self.changes.is_some_and(|changes| !changes.concern(self.emission, emitted.number)) {
+        let is_wanted = match &self.is_left {
+            Some(is_left) => is_left[(emitted.number - self.first) as usize],
+            None => self.changes.is_none_or(|changes| changes.concern(self.emission, emitted.number)),
+        };
+        if !is_wanted {
             return;
         }
         if self.rim_alone {
@@ -123,7 +140,7 @@ impl Beholder for Measuring<'_> {
         };
         if self.fails_for_sure(height.least()) {
             let value = Value { bound: f64::INFINITY, value: height.least(), pixels: 0.0 };
-            return self.found.fail(emitted.place, value);
+            return self.fail(emitted.number, emitted.place, value);
         }
         let mut best: Option<Value> = None;
         let mut is_enough = |deviation: Deviation| {
@@ -137,7 +154,9 @@ impl Beholder for Measuring<'_> {
                 let beside = ground.jet().beside(&cell, &among.frame, emitted.open);
                 let off = |height| beside.deviation_off(height, among.moved, among.aside);
                 let refined = || heights.lifted(among.lifts, DIVISIONS, self.high_enough(&among, &off(0.0)));
-                if !is_enough(off(height + rest)) && !is_enough(off(refined())) {
+                // Nothing that is loose depends on heights.
+                let is_met = is_enough(off(height + rest)) || !beside.is_loose() && is_enough(off(refined()));
+                if !is_met && !self.is_too_high(&among, &beside, &off(height - rest)) {
                     let net = ground.net(spot, emitted.part);
                     let deviation = net.deviation(&among.frame, rules, self.effort(&among, emitted));
                     is_enough(deviation.off(among.moved, among.aside));
@@ -159,7 +178,7 @@ impl Beholder for Measuring<'_> {
         let value = Value { value: if exceeds(value.value, cone) { value.value } else { cone }, ..value };
         self.found.add(emitted.place, &value);
         if exceeds(value.value, self.limit) {
-            self.found.fail(emitted.place, value);
+            self.fail(emitted.number, emitted.place, value);
         }
     }
 }
@@ -190,11 +209,6 @@ impl Measured {
         (self.value, self.pixels) = (self.value.max(found.value), self.pixels.max(found.pixels));
         self.failing.extend(found.failing);
     }
-
-    fn fail(&mut self, place: Place, value: Value) {
-        self.add(place, &value);
-        fail(&mut self.failing, place, value.value);
-    }
 }
 
 /// Adds a leaf that fails to a list in the order of the walk, or what another triangle of the last one comes to.
@@ -205,7 +219,51 @@ pub(super) fn fail(failing: &mut Vec<(Place, f64)>, place: Place, value: f64) {
     }
 }
 
-impl Measuring<'_> {
+impl<'a> Measuring<'a> {
+    fn of(
+        sources: &Sources<'a>,
+        (face, sharp): (u32, &'a HashSet<u32>),
+        (goal, length): (&Goal, f64),
+        changes: Option<&'a Changes>,
+    ) -> Self {
+        let (control, emission, nowhere) = (sources.control, sources.emission, (0.0, Place::root(face)));
+        Self {
+            emission,
+            criteria: control.criteria.as_ref(),
+            back_faces: &control.back_faces,
+            rim_alone: control.flat.is_its_rim(face),
+            sharp,
+            changes: changes.filter(|changes| !changes.is_touched(face)),
+            first: emission.triangles_of(face).start as u32,
+            is_left: None,
+            limit: goal.allowed(face),
+            length,
+            found: Measured {
+                worst: nowhere,
+                highest: nowhere,
+                value: 0.0,
+                pixels: 0.0,
+                failing: Vec::new(),
+            },
+            failing: Vec::new(),
+        }
+    }
+
+    /// What all come to.
+    fn found(mut self) -> Measured {
+        // Triangles of a leaf stand together.
+        self.failing.sort_by_key(|&(number, ..)| number);
+        for (_, place, value) in self.failing {
+            fail(&mut self.found.failing, place, value);
+        }
+        self.found
+    }
+
+    fn fail(&mut self, number: u32, place: Place, value: Value) {
+        self.found.add(place, &value);
+        self.failing.push((number, place, value.value));
+    }
+
     /// A triangle of a flat region, of whose edges those on the rim count alone.
     fn along_rim<'p>(&mut self, emitted: &Emitted, over: Over<'_, 'p>, rules: &'p Rules<'p>) {
         if emitted.open == [false; 3] {
@@ -224,7 +282,7 @@ impl Measuring<'_> {
         }
         let value = Value { bound, value: bound, pixels: 0.0 };
         match exceeds(bound, self.limit) {
-            true => self.found.fail(emitted.place, value),
+            true => self.fail(emitted.number, emitted.place, value),
             false => self.found.add(emitted.place, &value),
         }
     }
@@ -233,6 +291,13 @@ impl Measuring<'_> {
     /// divided. Nobody who asks for tight bounds or for more than distances is told that.
     fn fails_for_sure(&self, height: f64) -> bool {
         self.length.is_infinite() && self.criteria.is_none() && height > self.limit
+    }
+
+    /// Whether a triangle fails by its height, which is at least as given: then a bound by other means is not better. As above nobody
+    /// else is told that.
+    fn is_too_high(&self, among: &Among, beside: &BesideEdges, least: &Deviation) -> bool {
+        let counts_alone = self.length.is_infinite() && self.criteria.is_none();
+        counts_alone && !beside.is_loose() && least.bound(among.chord, among.slopes) <= self.limit
     }
 
     /// The greatest height of a few points of a piece that is not regular.
@@ -256,8 +321,9 @@ impl Measuring<'_> {
     fn high_enough(&self, among: &Among, flat: &Deviation) -> f64 {
         let target = self.limit.min(self.length);
         let can_be = self.criteria.is_none() && target.is_finite() && flat.is_within(among.slopes);
-        let height = flat.height_within(target, among.chord) - flat.height;
-        if can_be { (ROUNDED * height).max(0.0) } else { 0.0 }
+        let (within, aside) = (flat.height_within(target, among.chord), 2.0 * among.aside);
+        // As far as `Deviation::off` lets it be.
+        if can_be && within > aside { ROUNDED * (within * within - aside * aside).sqrt() } else { 0.0 }
     }
 
     fn by_pieces<'p>(

@@ -24,6 +24,7 @@ mod area;
 mod backs;
 mod balance;
 mod budget;
+mod bulges;
 mod carry_out;
 mod chains;
 mod changes;

@@ -100,7 +100,7 @@ pub(super) fn probe(
     let mut tightened: Vec<Option<f64>> = vec![None; worst.len()];
     let again = |length: f64, faces: &[u32], worst: &mut [(f64, Place)], is_known: &mut [bool]| {
         let nothing = Goal::Within(f64::INFINITY);
-        let found = measure(&engine.sources(plan, emission), watch, (&nothing, length), (faces, None))?;
+        let found = measure(&engine.sources(plan, emission), watch, (&nothing, length), (faces, None, None))?;
         for (&face, found) in faces.iter().zip(found) {
             let known = &mut worst[face as usize];
             if found.worst.0 < known.0 {

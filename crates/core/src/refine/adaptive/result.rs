@@ -37,7 +37,8 @@ impl Outcome {
             let all: Vec<u32> = (0..self.plan.closed.len() as u32).collect();
             let sources = engine.sources(&self.plan, &self.emission);
             let nothing = Goal::Within(f64::INFINITY);
-            self.measured = Some(measure(&sources, engine.watch, (&nothing, f64::INFINITY), (&all, None))?);
+            self.measured =
+                Some(measure(&sources, engine.watch, (&nothing, f64::INFINITY), (&all, None, None))?);
         }
         Ok(self)
     }

@@ -1,0 +1,172 @@
+//! How the surface bulges over the emitted triangles while their corners lie on it: the least and the greatest height over each, for
+//! [`super::offsets`], and what is kept of each part of the surface so that triangles are bounded after their corners were moved
+//! ([`super::measure`]).
+//!
+//! Parts of regular pieces are looked at four at a time, those of a piece together ([`waiting`]).
+
+mod waiting;
+
+use super::backs::{Behind, looks_away};
+use super::control::Control;
+use super::emit::Emission;
+use super::emitted::{Beholder, Emitted, Over, Sources};
+use super::measure::fail;
+use super::quadtree::Place;
+use crate::certificate::{BentFour, FOUR, TriangleFrame};
+use crate::criterion::Region;
+use crate::patch::{Rules, reciprocal_power};
+use crate::progress::{Cancelled, SharedWatch};
+use crate::vector::{DVec3, vector};
+use waiting::Waiting;
+
+/// Levels below a leaf whose vertices are sampled where a piece is not regular.
+const SAMPLED_LEVELS: usize = 2;
+
+/// Control faces that one call takes together.
+const BLOCK: usize = 64;
+
+/// Heights in a range of so many times what is allowed on either side are too much, wherever the corners are.
+const HOPELESS: f64 = 2.0;
+
+/// What is known of the triangles, by control face.
+#[derive(Default)]
+pub(super) struct Bulges(pub(super) Vec<Bulge>);
+
+/// Those of a control face.
+#[derive(Clone, Default)]
+pub(super) struct Bulge {
+    /// The least and the greatest height of the surface over each; not numbers where nobody looks.
+    pub(super) ranges: Vec<[f64; 2]>,
+    /// Leaves whose triangles bulge too far, and half of that.
+    failing: Vec<(Place, f64)>,
+    /// Codes of the leaves whose triangles they are.
+    places: Vec<u64>,
+    /// What their parts of the surface are like, in a unit that makes so much of lengths.
+    pub(super) parts: Vec<BentFour>,
+    pub(super) scale: f64,
+}
+
+impl Bulges {
+    /// Looks at the triangles of some control faces; heights of `allowed` on either side are good enough.
+    pub(super) fn look(
+        &mut self,
+        sources: &Sources<'_>,
+        watch: &SharedWatch<'_>,
+        faces: &[u32],
+        allowed: f64,
+    ) -> Result<(), Cancelled> {
+        let hopeless = HOPELESS * allowed;
+        let emission = sources.emission;
+        self.0.resize_with(emission.starts.len() - 1, Bulge::default);
+        let found = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
+            let found = faces[block].iter().map(|&face| {
+                let triangles = emission.triangles_of(face);
+                let found = Bulge::unknown(triangles.len(), scale(sources.control, face));
+                let (control, first) = (sources.control, triangles.start as u32);
+                let mut looking = Looking { control, emission, first, waiting: Waiting::default(), found };
+                sources.show(face, is_stopped, &mut looking);
+                looking.end(face, hopeless)
+            });
+            found.collect::<Vec<_>>()
+        })?;
+        watch.each(faces.iter().zip(found.into_iter().flatten()), |(&face, found)| {
+            self.0[face as usize] = found;
+        })
+    }
+
+    /// The leaves that fail wherever their corners are moved, and what they come to at best.
+    pub(super) fn failing(&self) -> Vec<(Place, f64)> {
+        self.0.iter().flat_map(|face| &face.failing).copied().collect()
+    }
+}
+
+impl Bulge {
+    fn unknown(triangles: usize, scale: f64) -> Self {
+        Self {
+            ranges: vec![[f64::NAN; 2]; triangles],
+            failing: Vec::new(),
+            places: vec![0; triangles],
+            parts: vec![BentFour::UNKNOWN; triangles.div_ceil(FOUR)],
+            scale,
+        }
+    }
+
+    /// The leaf whose triangle has this number in the control face.
+    pub(super) fn place(&self, face: u32, number: usize) -> Place {
+        let code = self.places[number];
+        let level = (u64::BITS - 1 - code.leading_zeros().min(u64::BITS - 1)) / 2;
+        Place { face, level, path: code & !(1 << (2 * level)) }
+    }
+}
+
+/// What makes the edges of a control face about 1.
+fn scale(control: &Control<'_>, face: u32) -> f64 {
+    let [a, b, c] = control.mesh.triangles()[face as usize].map(|v| vector(control.positions[v as usize]));
+    reciprocal_power((b - a).abs().max((c - a).abs()).max_element())
+}
+
+/// Looks at the triangles of a control face.
+struct Looking<'a> {
+    control: &'a Control<'a>,
+    emission: &'a Emission,
+    first: u32,
+    waiting: Waiting,
+    found: Bulge,
+}
+
+impl Beholder for Looking<'_> {
+    fn triangle<'p>(&mut self, emitted: &Emitted, over: Over<'_, 'p>, rules: &'p Rules<'p>) {
+        let number = (emitted.number - self.first) as usize;
+        self.found.places[number] = 1 << (2 * emitted.place.level) | emitted.place.path;
+        if self.control.criteria.is_some() && self.is_unseen(emitted, &over, rules) {
+            return;
+        }
+        match over {
+            Over::Regular(ground, cell, spot) => {
+                if self.waiting.is_full(ground) {
+                    self.waiting.look(self.emission, self.first, &mut self.found);
+                }
+                self.waiting.push(ground, (emitted, self.emission), (cell, spot));
+            }
+            Over::General(pieces, _) => {
+                let frame = TriangleFrame::new(self.corners(emitted));
+                let points = pieces.points(SAMPLED_LEVELS, rules).into_iter();
+                let inside =
+                    points.filter(|&point| (0..3).all(|edge| frame.beside(edge, point).outside <= 0.0));
+                let heights = inside.map(|point| frame.height(point));
+                let range =
+                    heights.fold((0.0f64, 0.0f64), |(low, high), height| (low.min(height), high.max(height)));
+                self.found.ranges[number] = range.into();
+            }
+        }
+    }
+}
+
+impl Looking<'_> {
+    fn corners(&self, emitted: &Emitted) -> [DVec3; 3] {
+        emitted.vertices.map(|vertex| vector(self.emission.positions[vertex as usize]))
+    }
+
+    /// What was found, with the leaves over which heights are in a greater range than this.
+    fn end(mut self, face: u32, hopeless: f64) -> Bulge {
+        self.waiting.look(self.emission, self.first, &mut self.found);
+        let mut failing = Vec::new();
+        for (number, [low, high]) in self.found.ranges.iter().enumerate() {
+            if hopeless > 0.0 && high - low > hopeless {
+                fail(&mut failing, self.found.place(face, number), 0.5 * (high - low));
+            }
+        }
+        Bulge { failing, ..self.found }
+    }
+
+    /// Whether no camera sees more of a triangle than its back, as far as the triangle and its piece tell.
+    fn is_unseen(&self, emitted: &Emitted, over: &Over<'_, '_>, rules: &Rules<'_>) -> bool {
+        let Control { criteria: Some(criteria), back_faces, .. } = self.control else { return false };
+        let corners = self.corners(emitted);
+        let region = Region::around(corners, DVec3::ZERO);
+        let backs = looks_away(criteria, &region, (&[corners], 0.0), |viewer, rest| {
+            Behind::of(back_faces, emitted, over, rules).is_back(&over.corners(), viewer, rest)
+        });
+        criteria.is_unseen(&region, &backs)
+    }
+}
