@@ -12,7 +12,8 @@
 //! 4. `balance`: neighbouring leaves at most one level apart;
 //! 5. `chains`: the vertices on control edges;
 //! 6. `walk` and `close`: the closing triangles, judged and counted; what fails is split, and `carry_out` does 4 to 6 again there;
-//! 7. `emit`: vertices, triangles and their connections, written at once, or updated where they lie; `offsets` moves vertices where asked;
+//! 7. `emit`: vertices, triangles and their connections, written at once, or updated where they lie; `bulges` and `offsets` move vertices
+//!    where asked;
 //! 8. `settle`, or `measure` for goals beside distances: the triangles among their neighbours; what fails is split, and
 //!    4 to 7 are done again;
 //! 9. `budget`: for a number of triangles, the least distance whose plan fits: 2 to 8 for each that is tried;
