@@ -410,7 +410,7 @@ fn budgets_see_that_levels_are_used_up() {
 /// Faces that pass by themselves and fail among their neighbours are left as they are where the budget has no triangles for that.
 #[test]
 fn budgets_may_leave_nothing_for_neighbours() {
-    for (name, tolerance) in [("sphere", 0.0075), ("cup", 0.024), ("cup", 0.0174)] {
+    for (name, tolerance) in [("sphere", 0.006), ("cup", 0.02), ("cup", 0.015)] {
         let control = model(name);
         let faces = control.face_count();
         // Any angle goes: a goal for which triangles are looked at among their neighbours.
@@ -434,7 +434,7 @@ fn results_are_the_same_bytes_in_every_build() {
     let golden = [
         ("tetrahedron", 0x574c_a5e1_4f74_ead2u64),
         ("cube", 0x46fd_a326_f783_4813),
-        ("bumpy", 0x95f4_13f5_17f2_5154),
+        ("bumpy", 0xb83f_8f53_1260_0ca6),
     ];
     let found = golden.map(|(name, _)| {
         let control = model(name);

@@ -150,8 +150,9 @@ impl Triangle {
                 (half.abs() + steep).simd_le(room * tangents[edge].fast_min(tangents[(edge + 1) % 3]));
             is_plain = is_plain & room.simd_gt(zero) & stays;
             side = side.fast_max(0.125 * outward.abs() + curve);
-            drift = drift.fast_max(0.125 * outward + curve);
-            slopes[edge] = (half + steep).fast_max(zero) / room;
+            // A curve that bends inwards may reach outwards by the rest alone, nearer to an end.
+            drift = drift.fast_max(0.125 * outward.fast_max(zero) + curve);
+            slopes[edge] = (half.fast_max(zero) + steep) / room;
         }
         Beside { side, drift, slopes, is_plain }
     }

@@ -292,19 +292,21 @@ impl Judge<'_> {
         if exceeds(low, self.limit) && !self.is_kept(&seen) {
             return Verdict { outcome: Outcome::Fails, extent: Extent { bound: low, ..seen.extent() } };
         }
-        let beside = ground.jet().beside(cell, &seen.frame, open);
-        if !beside.is_loose() {
-            let verdict = self.decided(&seen, beside.deviation(high), allowance);
+        let by_piece = ground.jet().beside(cell, &seen.frame, open);
+        if !by_piece.is_loose() {
+            let verdict = self.decided(&seen, by_piece.deviation(high), allowance);
             if verdict.passes() {
                 return verdict;
             }
         }
-        // By what the part itself comes to, not all of its piece.
-        let beside = ground.jet().beside_closely(&beside, cell, &seen.frame, open);
-        if beside.is_loose() {
+        // By what the part itself comes to, not all of its piece. Drifts along edges that nobody is beyond, and those that the piece does not
+        // tell, are better seen by points.
+        let closely = || ground.jet().beside_closely(&by_piece, cell, &seen.frame, open);
+        let beside = if open == [false; 3] { closely() } else { by_piece };
+        let verdict = self.decided(&seen, beside.deviation(high), allowance);
+        if beside.is_loose() || by_piece.is_loose() && !verdict.passes() {
             return self.by_net_and_heights(&seen, &net(), (&heights, high), open, allowance);
         }
-        let verdict = self.decided(&seen, beside.deviation(high), allowance);
         if !verdict.fails() {
             return verdict;
         }
@@ -316,7 +318,7 @@ impl Judge<'_> {
             return self.decided(&seen, beside.deviation(high), allowance);
         }
         // Wide parts are better seen by their points; of others hardly any passes.
-        if level < FEW_LEVELS || self.is_kept(&seen) {
+        if level < FEW_LEVELS || open != [false; 3] || self.is_kept(&seen) {
             return self.by_net(&seen, &net(), open, allowance);
         }
         least
