@@ -23,7 +23,7 @@ use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
 use crate::refine::exact_result::Origin;
 use crate::vector::{DVec3, unit_or_zero, vector};
-use arrays::{Arrays, Lengths, Moves};
+use arrays::{Arrays, Lengths, Shifts};
 use jobs::{jobs, on_edge, write};
 use kept::Kept;
 
@@ -220,8 +220,8 @@ pub(super) fn emit(
     let arrays = match &mut before {
         Some(Last::Taken(before)) => {
             let mut arrays = Arrays::taken(before);
-            let moves = moves(control, (before, &extend), (&numbers, &first_triangles), watch)?;
-            arrays.rearrange(length, (&moves.0, &moves.1), watch)?;
+            let shifts = shifts(control, (before, &extend), (&numbers, &first_triangles), watch)?;
+            arrays.rearrange(length, (&shifts.0, &shifts.1), watch)?;
             arrays
         }
         _ => Arrays::fresh(length, room(control, chains, (closed, scope), length), has_origins, watch)?,
@@ -279,13 +279,13 @@ fn room(
 }
 
 /// Where the vertices and triangles of control faces that are kept stood before, and where they stand now.
-fn moves(
+fn shifts(
     control: &Control<'_>,
     (before, extend): (&Emission, &[Extend]),
     (now, starts): (&Numbers, &[u32]),
     watch: &SharedWatch<'_>,
-) -> Result<(Moves, Moves), Cancelled> {
-    let (mut vertices, mut triangles) = (Moves::default(), Moves::default());
+) -> Result<(Shifts, Shifts), Cancelled> {
+    let (mut vertices, mut triangles) = (Shifts::default(), Shifts::default());
     let is_kept = |face: usize| extend[face] == Extend::Kept;
     vertices.push(0..control.mesh.vertex_count(), 0);
     let was = &before.numbers;

@@ -6,9 +6,10 @@
 //! [`Allowance`]: how far the triangles in it and beside it may be tilted, and how acute they may be. What is let pass is checked
 //! against it face by face, so no triangle has to look at its neighbours.
 
+mod verdict;
+
 use super::backs::{BackFaces, Behind, Leaf};
 use super::control::Control;
-use super::quadtree::Place;
 use super::surface::Ground;
 use super::trial::Trial;
 use crate::certificate::{
@@ -19,6 +20,7 @@ use crate::criterion::Criteria;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{LimitPoint, Patch, Rules, Spot};
 use crate::vector::{DVec3, Extremes};
+pub(super) use verdict::{Condition, Extent, Outcome, Verdict};
 
 /// Halvings of a net before a triangle is given up: the bound is within some per cent of the truth then.
 pub(super) const HALVINGS: usize = 2;
@@ -67,41 +69,6 @@ pub(super) struct Allowance {
 impl Allowance {
     /// Nothing is expected of those beside.
     pub(super) const NOTHING: Self = Self { tilt: 2.0 * ANY_TILT, slope: 0.0 };
-}
-
-/// What the triangles that were let pass come to.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Extent {
-    /// The greatest tilt.
-    pub(super) tilt: f64,
-    /// The least tangent of an angle.
-    pub(super) slope: f64,
-    /// The greatest slope of a drift that was counted on.
-    pub(super) drift_slope: f64,
-    /// The greatest bound of a distance, or value by the criteria where more than distances count.
-    pub(super) bound: f64,
-    /// The leaf that has it.
-    pub(super) worst: Option<Place>,
-}
-
-impl Default for Extent {
-    fn default() -> Self {
-        Self::NONE
-    }
-}
-
-impl Extent {
-    pub(super) const NONE: Self =
-        Self { tilt: 0.0, slope: f64::INFINITY, drift_slope: 0.0, bound: 0.0, worst: None };
-
-    pub(super) fn add(&mut self, other: &Self) {
-        self.tilt = self.tilt.larger(other.tilt);
-        self.slope = self.slope.smaller(other.slope);
-        self.drift_slope = self.drift_slope.larger(other.drift_slope);
-        if other.bound > self.bound {
-            (self.bound, self.worst) = (other.bound, other.worst);
-        }
-    }
 }
 
 /// What is asked of the triangles of each control face. Values are distances between a triangle and its part of the surface
@@ -164,95 +131,6 @@ pub(super) struct Judge<'a> {
     pub(super) limit: f64,
     /// Everything passes, and all that counts is how far it is off among its neighbours.
     is_lenient: bool,
-}
-
-/// What becomes of a triangle.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Outcome {
-    /// Good enough, as long as allowances hold.
-    Passes,
-    /// To be divided.
-    Fails,
-    /// Good enough if this deviation, with the neighbours as they are emitted, comes to no more than the greatest distance; or
-    /// not to be divided in any case, and what it comes to is known then.
-    Depends {
-        /// How far the triangle is from its part of the surface.
-        deviation: Deviation,
-        /// Its tilt.
-        tilt: f64,
-        /// By edge, the slopes that its own angles allow.
-        slopes: [f64; 3],
-    },
-}
-
-/// A leaf that passes if its neighbours turn out as expected.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Condition {
-    pub(super) place: Place,
-    pub(super) deviation: Deviation,
-    pub(super) tilt: f64,
-    pub(super) slopes: [f64; 3],
-}
-
-impl Condition {
-    /// That of a leaf of which nothing is known any more: it never holds.
-    pub(super) fn unknown(place: Place) -> Self {
-        Self { place, deviation: Deviation::alone(f64::INFINITY), tilt: ANY_TILT, slopes: [0.0; 3] }
-    }
-
-    /// What it comes to beside triangles of these tilts and angles at most.
-    pub(super) fn bound(&self, around: &Allowance) -> f64 {
-        let slopes = self.slopes.map(|slope| slope.min(around.slope));
-        self.deviation.bound(self.tilt + around.tilt, slopes)
-    }
-}
-
-/// What becomes of a triangle, and what it comes to.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Verdict {
-    pub(super) outcome: Outcome,
-    pub(super) extent: Extent,
-}
-
-impl Verdict {
-    /// That of no triangle.
-    pub(super) const NONE: Self = Self { outcome: Outcome::Passes, extent: Extent::NONE };
-
-    pub(super) fn passes(&self) -> bool {
-        matches!(self.outcome, Outcome::Passes)
-    }
-
-    pub(super) fn fails(&self) -> bool {
-        matches!(self.outcome, Outcome::Fails)
-    }
-
-    /// That of two triangles together.
-    pub(super) fn and(mut self, other: &Self) -> Self {
-        self.extent.add(&other.extent);
-        self.outcome = match (self.outcome, other.outcome) {
-            (Outcome::Fails, _) | (_, Outcome::Fails) => Outcome::Fails,
-            (Outcome::Passes, other) => other,
-            (own, Outcome::Passes) => own,
-            (
-                Outcome::Depends { deviation, tilt, slopes },
-                Outcome::Depends { deviation: second, tilt: other, slopes: least },
-            ) => Outcome::Depends {
-                deviation: deviation.max(second),
-                tilt: tilt.max(other),
-                slopes: [0, 1, 2].map(|edge| slopes[edge].min(least[edge])),
-            },
-        };
-        self
-    }
-
-    /// The same where nobody knows which edge is which any more.
-    pub(super) fn spread(mut self) -> Self {
-        if let Outcome::Depends { deviation, slopes, .. } = &mut self.outcome {
-            deviation.slopes = [deviation.steepest(); 3];
-            *slopes = [slopes.iter().copied().fold(f64::INFINITY, f64::min); 3];
-        }
-        self
-    }
 }
 
 impl Judge<'_> {

@@ -35,16 +35,16 @@ pub(super) struct Lengths {
 
 /// Elements that are kept, and where they begin now.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Move {
+pub(super) struct Shift {
     pub(super) before: Range<usize>,
     pub(super) now: usize,
 }
 
-/// Moves in the order of the elements, which is the same before and now.
+/// Shifts in the order of the elements, which is the same before and now.
 #[derive(Default)]
-pub(super) struct Moves(Vec<Move>);
+pub(super) struct Shifts(Vec<Shift>);
 
-impl Moves {
+impl Shifts {
     /// Adds elements that come after all others.
     pub(super) fn push(&mut self, before: Range<usize>, now: usize) {
         if before.is_empty() {
@@ -55,13 +55,13 @@ impl Moves {
             Some(last) if last.before.end == before.start && last.now + last.before.len() == now => {
                 last.before.end = before.end;
             }
-            _ => self.0.push(Move { before, now }),
+            _ => self.0.push(Shift { before, now }),
         }
     }
 
     /// The same for elements of which there are `times` as many.
     fn times(&self, times: usize) -> Self {
-        let multiplied = |one: &Move| Move {
+        let multiplied = |one: &Shift| Shift {
             before: times * one.before.start..times * one.before.end,
             now: times * one.now,
         };
@@ -112,7 +112,7 @@ impl Arrays {
     pub(super) fn rearrange(
         &mut self,
         length: Lengths,
-        (vertices, triangles): (&Moves, &Moves),
+        (vertices, triangles): (&Shifts, &Shifts),
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
         let twins = triangles.times(3);
@@ -124,7 +124,7 @@ impl Arrays {
             Box::new(|is_stopped| rearrange(corners, ([0; 3], length.triangles), triangles, is_stopped)),
             Box::new(|is_stopped| rearrange(beyond, (0, 3 * length.triangles), &twins, is_stopped)),
             // These are written anew.
-            Box::new(|is_stopped| rearrange(parents, (0, length.triangles), &Moves::default(), is_stopped)),
+            Box::new(|is_stopped| rearrange(parents, (0, length.triangles), &Shifts::default(), is_stopped)),
         ];
         if !origins.is_empty() {
             tasks.push(Box::new(|is_stopped| {
@@ -160,7 +160,7 @@ fn extend_origins(origins: &mut Vec<Origin>, count: usize, watch: &SharedWatch<'
 fn rearrange<T: Copy>(
     array: &mut Vec<T>,
     (filling, length): (T, usize),
-    moves: &Moves,
+    moves: &Shifts,
     is_stopped: &IsStopped<'_>,
 ) {
     array.reserve_exact(length.saturating_sub(array.len()));
@@ -171,7 +171,7 @@ fn rearrange<T: Copy>(
         }
     }
     // The order stays: what moves up, the last first, does not meet what moves down, and that, the first first, finds its place free.
-    let (up, down) = (|one: &&Move| one.now > one.before.start, |one: &&Move| one.now < one.before.start);
+    let (up, down) = (|one: &&Shift| one.now > one.before.start, |one: &&Shift| one.now < one.before.start);
     for one in moves.0.iter().rev().filter(up) {
         for end in (0..one.before.len()).rev().step_by(COPIED).map(|last| last + 1) {
             let start = end.saturating_sub(COPIED);
@@ -207,7 +207,7 @@ mod tests {
         };
         let (mut up, mut down) = (0, 0);
         for _ in 0..200 {
-            let (mut moves, mut all) = (Moves::default(), Vec::new());
+            let (mut moves, mut all) = (Shifts::default(), Vec::new());
             let (mut before, mut now) = (0, 0);
             for _ in 0..below(8) {
                 (before, now) = (before + below(3000), now + below(3000));
