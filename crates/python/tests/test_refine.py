@@ -190,9 +190,9 @@ def test_the_environment_says_how_many_threads(monkeypatch, octahedron):
 def test_goals(octahedron):
     assert len(limitmesh.refine(*octahedron, triangles=500).faces) <= 500
     assert len(limitmesh.refine(*octahedron, triangles=2e2).faces) <= 200
-    optimised = limitmesh.refine(*octahedron, tolerance=0.02, optimize=True)
-    plain = limitmesh.refine(*octahedron, tolerance=0.02)
-    assert len(optimised.faces) < len(plain.faces) and optimised.error.upper <= 0.02
+    optimised = limitmesh.refine(*octahedron, tolerance=0.01, optimize=True)
+    plain = limitmesh.refine(*octahedron, tolerance=0.01)
+    assert len(optimised.faces) < len(plain.faces) and optimised.error.upper <= 0.01
     assert set(optimised.parent_face.tolist()) <= set(range(8))
     angle = limitmesh.refine(*octahedron, angle=10)
     sides = angle.vertices[angle.faces]

@@ -52,7 +52,7 @@ pub(in crate::refine) fn nested(
         divide_as(mesh, &coarser.exact, &mut demands, &SharedWatch::new(observer, Stage::Refining))?;
     }
     loop {
-        let exact = once(mesh, scheme, (options, &demands), observer)?;
+        let mut exact = once(mesh, scheme, (options, &demands), observer)?;
         let watch = SharedWatch::new(observer, Stage::Bounding);
         watch.triangles(exact.mesh.face_count());
         let rounding = probe::rounding(mesh, options.max_levels, &watch)?;
@@ -71,6 +71,10 @@ pub(in crate::refine) fn nested(
             morph.start = off.greatest[1] + rounding;
         }
         let parametric = off.greatest[0] + rounding;
+        if exact.error.certified {
+            // Points are no farther from each other than those of the same place.
+            exact.error.upper = exact.error.upper.min(parametric);
+        }
         let mut level = Level { exact, tolerance, parametric, geomorph: morph.map(|(morph, _)| morph) };
         if !with_geomorph || off.failing.is_empty() || level.exact.stop != ExactStop::Met {
             return Ok(level);
