@@ -323,11 +323,8 @@ impl<'a> Decider<'a> {
         let may_stay = !self.control.demands.divides(place) && !self.judge.surely_fails(seen, middles);
         if may_stay || place.level >= self.max_levels {
             let verdict = self.judge.at_a_glance(net, seen, open, &self.allowance);
-            match verdict {
-                Some(verdict) if !verdict.fails() || place.level >= self.max_levels => {
-                    return self.leaf(place, &verdict);
-                }
-                _ => {}
+            if let Some(verdict) = verdict.filter(|known| !known.fails() || place.level >= self.max_levels) {
+                return self.leaf(place, &verdict);
             }
         }
         self.part(
@@ -357,9 +354,8 @@ impl<'a> Decider<'a> {
         if self.judge.is_inside(open) {
             return self.leaf(place, &Verdict::NONE);
         }
-        let (mut has_rows, mut surely_fails) = (has_rows, surely_fails);
         let is_demanded = self.control.demands.divides(place);
-        surely_fails |= is_demanded;
+        let (mut has_rows, mut surely_fails) = (has_rows, surely_fails || is_demanded);
         if has_rows && !is_demanded && open == [false; 3] {
             match self.rows(ground, spot, place) {
                 AtOnce::Decided(word) => return word,

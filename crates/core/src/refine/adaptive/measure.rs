@@ -156,7 +156,7 @@ impl Beholder for Measuring<'_> {
                 let refined = || heights.lifted(among.lifts, DIVISIONS, self.high_enough(&among, &off(0.0)));
                 // Nothing that is loose depends on heights.
                 let is_met = is_enough(off(height + rest)) || !beside.is_loose() && is_enough(off(refined()));
-                if !is_met && !self.is_too_high(&among, &beside, &off(height - rest)) {
+                if !is_met && !self.fails_by_height(&among, &beside, &off(height - rest)) {
                     let net = ground.net(spot, emitted.part);
                     let deviation = net.deviation(&among.frame, rules, self.effort(&among, emitted));
                     is_enough(deviation.off(among.moved, among.aside));
@@ -293,9 +293,9 @@ impl<'a> Measuring<'a> {
         self.length.is_infinite() && self.criteria.is_none() && height > self.limit
     }
 
-    /// Whether a triangle fails by its height, which is at least as given: then a bound by other means is not better. As above nobody
-    /// else is told that.
-    fn is_too_high(&self, among: &Among, beside: &BesideEdges, least: &Deviation) -> bool {
+    /// Whether it is by its height alone that a triangle fails: it would pass with the least that this can be, so its drifts are good enough,
+    /// and nets tell heights no better than derivatives do. As above nobody else is told that.
+    fn fails_by_height(&self, among: &Among, beside: &BesideEdges, least: &Deviation) -> bool {
         let counts_alone = self.length.is_infinite() && self.criteria.is_none();
         counts_alone && !beside.is_loose() && least.bound(among.chord, among.slopes) <= self.limit
     }
