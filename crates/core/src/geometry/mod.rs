@@ -10,7 +10,7 @@ mod triangle;
 pub(crate) use disjoint_sets::DisjointSets;
 pub(crate) use edges::{EdgeSide, every_edge, for_each_edge};
 pub(crate) use surface_frame::SurfaceFrame;
-pub(crate) use triangle::{Foot, closest_to_origin};
+pub(crate) use triangle::{Foot, closest_to_origin, nearer};
 
 /// Stands for "no element" among indices.
 pub(crate) const NONE: u32 = u32::MAX;

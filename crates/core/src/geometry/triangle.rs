@@ -76,7 +76,18 @@ pub(crate) fn closest_to_origin(a: DVec3, b: DVec3, c: DVec3) -> Foot {
     }
 }
 
-/// The same for triangles whose region tests cannot be trusted: the best of the three sides and the inside.
+/// The lesser of a squared distance and that of triangle `a`, `b`, `c` from the origin; most triangles are too far away for their box
+/// already.
+#[inline]
+pub(crate) fn nearer(least: f64, [a, b, c]: [DVec3; 3]) -> f64 {
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    if low.max(-high).max(DVec3::ZERO).length_squared() < least {
+        return least.min(closest_to_origin(a, b, c).squared);
+    }
+    least
+}
+
+/// The closest point of triangles whose region tests cannot be trusted: the best of the three sides and the inside.
 #[cold]
 fn closest_by_parts(a: DVec3, b: DVec3, c: DVec3) -> Foot {
     let mut best = foot([1.0, 0.0, 0.0], a);

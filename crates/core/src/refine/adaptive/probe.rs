@@ -14,7 +14,7 @@ use super::quadtree::Place;
 use super::{Engine, Plan, block};
 use crate::certificate::TriangleFrame;
 use crate::geometry::box_tree::{Bounds, NO_BOUNDS, distance_squared_to, grown};
-use crate::geometry::closest_to_origin;
+use crate::geometry::nearer;
 use crate::index::VertexId;
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, SharedWatch};
@@ -55,6 +55,9 @@ const MET_SHARE: usize = 64;
 
 /// How many of them may be in any case.
 const MET_AT_LEAST: usize = 6_000;
+
+/// Bounds are taken again only if the greatest that there is no room for is below this part of the upper bound.
+const WORTH_WHILE: f64 = 0.95;
 
 /// Boxes that are looked at together: control faces with consecutive numbers are often near each other.
 const GROUP: usize = 64;
@@ -126,21 +129,25 @@ pub(super) fn probe(
             break;
         }
         // Bounds that are good enough for the goals need not be tight.
-        let loose = order.iter().take_while(|&&(bound, _)| bound > best.lower).map(|(_, place)| place.face);
+        let loose = order.iter().take_while(|&&(bound, _)| bound > best.lower);
         let loose = loose
-            .filter(|&face| tightened[face as usize].is_none_or(|known| WIDE * known < best.lower))
+            .filter(|(_, place)| tightened[place.face as usize].is_none_or(|known| WIDE * known < best.lower))
             .take(TIGHTENED << round);
-        let loose: Vec<u32> = loose
-            .take_while(|&face| {
-                let count = emission.triangles_of(face).len();
-                let fits = count <= room;
-                room = room.saturating_sub(count);
-                fits
-            })
-            .collect();
-        if loose.is_empty() {
+        let (mut faces, mut stays) = (Vec::new(), 0.0);
+        for &(bound, place) in loose {
+            let count = emission.triangles_of(place.face).len();
+            if count > room {
+                (room, stays) = (0, bound);
+                break;
+            }
+            room -= count;
+            faces.push(place.face);
+        }
+        // Beside one that stays as it is the others are of no use.
+        if faces.is_empty() || stays > WORTH_WHILE * best.upper {
             break;
         }
+        let loose = faces;
         again(NARROW * best.lower, &loose, &mut worst, &mut is_known)?;
         loose.iter().for_each(|&face| tightened[face as usize] = Some(best.lower));
     }
@@ -310,11 +317,8 @@ impl<'a, 'w> Nearest<'a, 'w> {
             if i.is_multiple_of(LOOKED_AT) {
                 self.watch.poll()?;
             }
-            let [a, b, c] = triangle.map(|vertex| vector(self.emission.positions[vertex as usize]) - point);
-            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-            if low.max(-high).max(DVec3::ZERO).length_squared() < *least {
-                *least = least.min(closest_to_origin(a, b, c).squared);
-            }
+            let corners = triangle.map(|vertex| vector(self.emission.positions[vertex as usize]) - point);
+            *least = nearer(*least, corners);
         }
         Ok(())
     }

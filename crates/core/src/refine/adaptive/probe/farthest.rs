@@ -12,7 +12,7 @@ use super::super::quadtree::Place;
 use super::super::surface::Surface;
 use super::super::{Engine, Plan};
 use crate::certificate::TriangleFrame;
-use crate::geometry::closest_to_origin;
+use crate::geometry::nearer;
 use crate::parallel::IsStopped;
 use crate::patch::Rules;
 use crate::patch::child_corners;
@@ -75,14 +75,21 @@ pub(super) fn farthest(
         let corners = corners.map(|corner| corner.position);
         return Ok(ends.into_iter().flatten().copied().chain(corners).collect());
     }
-    let squared = |point: DVec3| {
-        let to = |triangle: &[u32; 3]| {
-            let [a, b, c] = triangle.map(|vertex| vector(emission.positions[vertex as usize]) - point);
-            closest_to_origin(a, b, c).squared
-        };
-        triangles.iter().map(to).fold(f64::INFINITY, f64::min)
-    };
-    let farthest = points.into_iter().map(|point| (squared(point), point)).max_by(|a, b| a.0.total_cmp(&b.0));
+    let corners = |triangle: [u32; 3]| triangle.map(|vertex| vector(emission.positions[vertex as usize]));
+    let triangles: Vec<[DVec3; 3]> = triangles.into_iter().map(corners).collect();
+    let mut farthest: Option<(f64, DVec3)> = None;
+    for point in points {
+        let most = farthest.map_or(-1.0, |(squared, _)| squared);
+        let mut least = f64::INFINITY;
+        // One that is near enough tells that the point is not the farthest.
+        let mut to_each = triangles.iter().map(|corners| corners.map(|corner| corner - point));
+        while let Some(corners) = to_each.next().filter(|_| least > most) {
+            least = nearer(least, corners);
+        }
+        if least > most {
+            farthest = Some((least, point));
+        }
+    }
     Ok(farthest.map(|(_, point)| point).into_iter().collect())
 }
 
