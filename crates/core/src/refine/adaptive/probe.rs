@@ -45,7 +45,7 @@ const NARROW: f64 = 0.99;
 const MET_NARROW: f64 = 0.9;
 
 /// Upper bounds so many times the lower one are taken again.
-const WIDE: f64 = 1.2;
+const WIDE: f64 = 1.12;
 
 /// Control faces that are looked at together for tighter bounds at first, then twice as many each time.
 const TIGHTENED: usize = 64;
