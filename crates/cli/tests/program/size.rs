@@ -37,7 +37,7 @@ fn the_distance_to_the_input_is_what_measuring_both_finds() {
         ("builtin:head", ""),
         ("builtin:sphere", "--tolerance 1%"),
         ("builtin:cube", "--crease-angle 30"),
-        ("builtin:cube", "--scheme butterfly"),
+        ("builtin:cube", "--scheme butterfly --tolerance 1%"),
         ("builtin:bunny", "--balance"),
         ("builtin:bumpy", "--optimize --tolerance 0.3%"),
         ("builtin:shoe", "--angle 20"),

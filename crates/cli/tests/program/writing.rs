@@ -157,17 +157,17 @@ fn lines_of_results_are_short() {
     let folder = folder();
     let output = Path::new("out.ply");
     let long = [
-        "--tolerance 0.001% --max-triangles 20000",
-        "--tolerance 1e-9 --max-triangles 2000",
-        "--scheme butterfly",
-        "--angle 3",
-        "--angle 40",
-        "--triangles 3000 --optimize",
-        "--pixels 0.5 --camera 0,-4,2,0,0,0,0,0,1,40,1920x1080",
-        "--method uniform",
+        "builtin:head --tolerance 0.001% --max-triangles 20000",
+        "builtin:head --tolerance 1e-9 --max-triangles 2000",
+        "builtin:bumpy --scheme butterfly",
+        "builtin:head --angle 3",
+        "builtin:head --angle 40",
+        "builtin:head --triangles 3000 --optimize",
+        "builtin:head --pixels 0.5 --camera 0,-4,2,0,0,0,0,0,1,40,1920x1080",
+        "builtin:head --method uniform",
     ];
     for options in long {
-        let told = command(&format!("refine builtin:head -o {{}} {options}"), &[output])
+        let told = command(&format!("refine -o {{}} {options}"), &[output])
             .current_dir(folder.path())
             .output()
             .expect("it runs");

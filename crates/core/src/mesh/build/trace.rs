@@ -15,13 +15,19 @@ pub(super) fn corners(
 ) -> Vec<u32> {
     let mut elsewhere: Option<Vec<u32>> = None;
     let mut corners = Vec::with_capacity(3 * triangles.len());
+    let mut places = Places::default();
+    let mut listed = None;
     for (triangle, &input) in triangles.iter().zip(inputs) {
-        let polygon = soup.faces.get(input as usize);
+        // Those of a polygon follow each other.
+        if listed != Some(input) {
+            places.list(soup.faces.get(input as usize), maps);
+            listed = Some(input);
+        }
         let first = soup.faces.first_corner(input as usize);
         let vertices = triangle.map(|v| before_cutting(maps, v));
         for (corner, &vertex) in vertices.iter().enumerate() {
             let beside = [1, 2].map(|step| vertices[(corner + step) % 3]);
-            let own = place(polygon, vertex, beside, maps).map(|place| first + place as u32);
+            let own = places.of(vertex, beside).map(|place| first + place as u32);
             corners.push(own.unwrap_or_else(|| {
                 let all = elsewhere.get_or_insert_with(|| first_corners(soup, maps));
                 all.get(vertex as usize).copied().filter(|&corner| corner != NONE).unwrap_or(first)
@@ -42,16 +48,38 @@ fn before_cutting(maps: &VertexMaps<'_>, v: u32) -> u32 {
     }
 }
 
-/// Where a polygon comes to a vertex; where it does several times, between these two if it can be told.
-fn place(polygon: &[u32], vertex: u32, [next, previous]: [u32; 2], maps: &VertexMaps<'_>) -> Option<usize> {
-    let at = |place: usize| maps.vertex(polygon[place % polygon.len()]);
-    let mut places = (0..polygon.len()).filter(|&place| at(place) == Some(vertex));
-    let first = places.next()?;
-    let beside = |place: &usize| {
-        let around = [at(place + 1), at(place + polygon.len() - 1)];
-        around.contains(&Some(next)) || around.contains(&Some(previous))
-    };
-    if beside(&first) { Some(first) } else { places.find(beside).or(Some(first)) }
+/// Where a polygon comes to which vertex.
+#[derive(Default)]
+struct Places {
+    /// Its vertices, where they are still there.
+    vertices: Vec<Option<u32>>,
+    /// They and their places, by vertex.
+    by_vertex: Vec<(u32, usize)>,
+}
+
+impl Places {
+    fn list(&mut self, polygon: &[u32], maps: &VertexMaps<'_>) {
+        self.vertices.clear();
+        self.vertices.extend(polygon.iter().map(|&vertex| maps.vertex(vertex)));
+        self.by_vertex.clear();
+        let places = self.vertices.iter().enumerate();
+        self.by_vertex.extend(places.filter_map(|(place, vertex)| Some(((*vertex)?, place))));
+        self.by_vertex.sort_unstable();
+    }
+
+    /// Where the polygon comes to a vertex; where it does several times, between these two if it can be told.
+    fn of(&self, vertex: u32, [next, previous]: [u32; 2]) -> Option<usize> {
+        let start = self.by_vertex.partition_point(|&(other, _)| other < vertex);
+        let places = self.by_vertex[start..].iter().take_while(|&&(other, _)| other == vertex);
+        let mut places = places.map(|&(_, place)| place);
+        let first = places.next()?;
+        let count = self.vertices.len();
+        let beside = |place: &usize| {
+            let around = [1, count - 1].map(|step| self.vertices[(place + step) % count]);
+            around.contains(&Some(next)) || around.contains(&Some(previous))
+        };
+        if beside(&first) { Some(first) } else { places.find(beside).or(Some(first)) }
+    }
 }
 
 /// By vertex before cutting, the first corner there.

@@ -5,14 +5,18 @@
 //! down from coarse ones, which cost little, and narrows what is left. What a budget below [`EXACT`] leaves even then is spent
 //! on the worst faces. Beside that stands the even division of all faces, which is nearer where these are curved alike.
 
+mod expected;
+mod leftovers;
+
 use super::judge::Goal;
-use super::{Engine, Plan, block};
-use crate::certificate::{TriangleFrame, exceeds};
+use super::{Engine, Plan};
+use crate::certificate::exceeds;
 use crate::mesh::MeshError;
-use crate::parallel;
-use crate::progress::Cancelled;
 use crate::refine::RefineError;
 use crate::refine::exact_result::ExactStop;
+use expected::expected;
+pub(super) use leftovers::even;
+use leftovers::{EXACT, fill};
 
 /// From one plan to the next the triangles grow by this much at most while none has passed the budget.
 const STEP: f64 = 6.0;
@@ -47,9 +51,6 @@ const AIM: f64 = 0.993;
 /// The part of the budget that the first plan aims at: it has somewhat more, mostly.
 const FIRST_AIM: f64 = 0.85;
 
-/// Triangles that a face takes for each time that it is too high, about: some are less high than need be, others close gaps.
-const FOR_ONE: f64 = 2.9;
-
 /// From one guess to the next distances fall by this much at most.
 const MOST_APART: f64 = 8.0;
 
@@ -76,23 +77,11 @@ const FAR: usize = 20;
 const MOST_EVENER: usize = 10;
 const EVENER: f64 = 0.93;
 
-/// Plans that are made to spend what is left.
-const MOST_FILLS: usize = 9;
-
 /// Faces on which that is spent come within a distance that is less by this at least: a difference that takes triangles.
 const FILLED_APART: f64 = 1.03;
 
-/// Triangles that a division brings about at least, about.
-const LEAST_GAIN: f64 = 2.0;
-
 /// How many times as many triangles there are, about, once a plan was looked at among its neighbours, as long as none was: measured 1.00 to 1.017.
 const SETTLING: f64 = 1.012;
-
-/// Budgets below this are spent to the last face.
-const EXACT: usize = 20_000;
-
-/// Greater ones are divided evenly only where that takes all of them but for so many (one in so many).
-const NEARLY_ALL: usize = 16;
 
 /// How triangles grow: those beyond the undivided faces with a power of the reciprocal of the distance.
 struct Growth {
@@ -361,169 +350,5 @@ impl<'e, 'a> Search<'e, 'a> {
             }
         }
         Ok(())
-    }
-}
-
-/// A plan for a goal that asks more of these faces than another: from that, where it knows what its triangles come to.
-fn plan(
-    engine: &Engine<'_>,
-    coarser: &Plan,
-    goal: Goal,
-    wanting: &[u32],
-    most: usize,
-) -> Result<Option<Plan>, RefineError> {
-    if engine.is_settled_later() {
-        engine.plan(goal, most)
-    } else {
-        engine.finer(coarser, goal, wanting, most)
-    }
-}
-
-/// The distance within which so many triangles are expected, by [`heights`]; `None` where all is flat.
-///
-/// Triangles' heights fall with the square of their size, so a face of height h takes about h/d triangles within d, and at least one:
-/// with the k highest faces divided d = Σh/(wanted − others).
-fn expected(engine: &Engine<'_>, wanted: f64) -> Result<Option<f64>, RefineError> {
-    let mut heights = heights(engine)?;
-    parallel::sort_polled(&mut heights, &mut |_| engine.watch.poll(), |a, b| b.total_cmp(a))?;
-    let (mut sum, mut others) = (0.0, heights.len() as f64);
-    for (at, &height) in heights.iter().enumerate() {
-        (sum, others) = (sum + FOR_ONE * height, others - 1.0);
-        let distance = sum / (wanted - others);
-        let next = heights.get(at + 1).map_or(0.0, |next| FOR_ONE * next);
-        if wanted > others && distance >= next {
-            return Ok(Some(distance).filter(|distance| *distance > 0.0 && distance.is_finite()));
-        }
-    }
-    Ok(None)
-}
-
-/// How high the surface stands over the triangles of the control faces' corners, in the middles of their edges.
-fn heights(engine: &Engine<'_>) -> Result<Vec<f64>, Cancelled> {
-    let control = engine.control;
-    let faces = control.mesh.face_count();
-    let height = |face: usize| {
-        let piece = control.piece(face as u32);
-        let frame = TriangleFrame::new(control.corners(face as u32).map(|corner| corner.position));
-        let middles = piece.surface(control.rules).middles();
-        middles.iter().map(|middle| frame.height(middle.position).abs()).fold(0.0, f64::max)
-    };
-    engine.watch.map(faces, block(faces), height)
-}
-
-/// Spends what is left of a budget on the worst faces, as many as fit: they come within the lesser of two distances, the
-/// others within the greater.
-fn fill(engine: &Engine<'_>, plan: Plan, (high, low): (f64, f64), most: usize) -> Result<Plan, RefineError> {
-    // Triangles grow with the reciprocal of the distance.
-    filled(engine, plan, most, high / low - 1.0, |is_finer| Goal::Partly(high, low, is_finer))
-}
-
-/// The finest plan whose worst faces, as many as fit, are marked in the goal. A marked face has so many times its triangles more,
-/// about.
-fn filled(
-    engine: &Engine<'_>,
-    coarsest: Plan,
-    most: usize,
-    gain: f64,
-    goal: impl Fn(Vec<bool>) -> Goal,
-) -> Result<Plan, RefineError> {
-    // Undivided faces are kept also where they are more.
-    let Some(left) = most.checked_sub(coarsest.triangles) else { return Ok(coarsest) };
-    let mut left = left as f64;
-    let order = coarsest.faces_by_bound();
-    let costs = order
-        .iter()
-        .map(|&(_, face)| (gain * f64::from(coarsest.closed[face as usize].triangles)).max(LEAST_GAIN));
-    let guess = costs.take_while(|cost| {
-        left -= cost;
-        left >= 0.0
-    });
-    let mut next = guess.count();
-    let (mut best, mut fits, mut fails) = (coarsest, 0, order.len() + 1);
-    for _ in 0..MOST_FILLS {
-        if fits + 1 >= fails {
-            break;
-        }
-        let middle = next.clamp(fits + 1, fails - 1);
-        let mut is_finer = vec![false; best.closed.len()];
-        order[..middle].iter().for_each(|&(_, face)| is_finer[face as usize] = true);
-        let wanting: Vec<u32> = order[fits..middle].iter().map(|&(_, face)| face).collect();
-        match plan(engine, &best, goal(is_finer), &wanting, most)? {
-            Some(plan) => {
-                (best, fits) = (plan, middle);
-                next = if fails > order.len() { 2 * middle } else { fits.midpoint(fails) };
-            }
-            None => {
-                fails = middle;
-                next = fits.midpoint(fails);
-            }
-        }
-    }
-    Ok(best)
-}
-
-/// All faces divided evenly, as often as a budget allows, if that is any division and may come within a distance; below [`EXACT`]
-/// triangles what is left is spent on the worst faces.
-pub(super) fn even(engine: &Engine<'_>, distance: f64, most: usize) -> Result<Option<Plan>, RefineError> {
-    let faces = engine.control.mesh.face_count();
-    let levels = levels(engine, most);
-    let triangles = faces << (2 * levels);
-    // With twice the triangles the worst places come first in any case; and what is tried has to be looked at all over.
-    let least = if most < EXACT { most / 2 } else { most - most / NEARLY_ALL };
-    if levels == 0 || triangles < least {
-        return Ok(None);
-    }
-    // Heights fall with the square of the size.
-    let highest = heights(engine)?.into_iter().fold(0.0, f64::max);
-    if highest > distance * 4f64.powi(levels as i32) {
-        return Ok(None);
-    }
-    let Some(even) = engine.plan(Goal::Even(levels, vec![false; faces]), most)? else { return Ok(None) };
-    // What is left of great budgets is too little to matter.
-    if levels >= engine.max_levels || most >= EXACT {
-        return Ok(Some(even));
-    }
-    // Four for one, and what closes the gaps.
-    filled(engine, even, most, 3.5, |is_finer| Goal::Even(levels, is_finer)).map(Some)
-}
-
-/// How often all faces can be divided.
-fn levels(engine: &Engine<'_>, most: usize) -> u32 {
-    let faces = engine.control.mesh.face_count().max(1);
-    ((most / faces).max(1).ilog2() / 2).min(engine.max_levels)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::demands::Demands;
-    use super::super::with_engine;
-    use super::*;
-    use crate::mesh::Mesh;
-    use crate::models;
-    use crate::progress::unobserved;
-    use crate::refine::ExactOptions;
-    use crate::scheme::Loop;
-
-    fn model(name: &str) -> Mesh {
-        Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0
-    }
-
-    /// Counts that are expected are near those that come about.
-    #[test]
-    fn what_is_expected_is_of_the_right_size() {
-        for name in ["torus", "sphere", "cup", "bunny", "teddy", "shoe"] {
-            let mesh = model(name);
-            let options = (&ExactOptions::default().triangles(1), &Demands::default());
-            with_engine(&mesh, &Loop, options, &mut unobserved, |engine| {
-                for wanted in [10_000.0, 40_000.0] {
-                    let distance = expected(engine, wanted)?.unwrap();
-                    let triangles =
-                        engine.plan(Goal::Within(distance), usize::MAX)?.unwrap().triangles as f64;
-                    assert!((0.5..1.6).contains(&(triangles / wanted)), "{name}, {wanted}: {triangles}");
-                }
-                Ok(())
-            })
-            .unwrap();
-        }
     }
 }

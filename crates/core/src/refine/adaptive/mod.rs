@@ -72,9 +72,7 @@ use crate::progress::{Observer, SharedWatch, Stage};
 use crate::scheme::Scheme;
 use backs::BackFaces;
 use control::Control;
-use decide::decide;
 use demands::{Demands, Functions, surfaces_of};
-use dirty::Dirty;
 use emit::{Emission, Last, Scope};
 use flat::{FlatRegions, Net};
 pub(super) use frames::frames;
@@ -354,59 +352,6 @@ impl Engine<'_> {
     /// Whether triangles are looked at among their neighbours once all are emitted, not before.
     fn is_settled_later(&self) -> bool {
         self.control.criteria.is_some() || self.is_balanced
-    }
-
-    /// Divides as asked, until all conditions hold; `None` if that takes more than `most` triangles.
-    fn plan(&self, goal: Goal, most: usize) -> Result<Option<Plan>, RefineError> {
-        let control = (self.control, self.watch);
-        let Some(decision) = decide(control, &goal, &self.edges, self.max_levels, most)? else {
-            return Ok(None);
-        };
-        let faces = self.control.mesh.face_count();
-        let mut plan = Plan::of(goal, decision, faces);
-        let fits = self.carry_out(&mut plan, Dirty::all(faces), most)?
-            && (self.is_settled_later() || self.settle(&mut plan, most)?);
-        Ok(fits.then_some(plan))
-    }
-
-    /// The same for another goal, of distances alone, which asks more of these faces only: they are divided anew, and what that
-    /// changes. `None` if that takes too many triangles.
-    fn finer(
-        &self,
-        plan: &Plan,
-        goal: Goal,
-        wanting: &[u32],
-        most: usize,
-    ) -> Result<Option<Plan>, RefineError> {
-        let Some(mut finer) = self.finer_unsettled(plan, goal, wanting, most)? else { return Ok(None) };
-        Ok(self.settle(&mut finer, most)?.then_some(finer))
-    }
-
-    /// The same, but nothing is looked at among its neighbours ([`Self::settle`]): hardly fewer triangles, for less.
-    fn finer_unsettled(
-        &self,
-        plan: &Plan,
-        goal: Goal,
-        wanting: &[u32],
-        most: usize,
-    ) -> Result<Option<Plan>, RefineError> {
-        let mut finer = plan.with_goal(goal);
-        let (control, limits) = ((self.control, self.watch), (self.max_levels, most));
-        let again = (wanting, Some(&plan.goal));
-        if !finer.decision.divide(control, &finer.goal, &self.edges, limits, again)? {
-            return Ok(None);
-        }
-        finer.decision.begin_again();
-        let mut dirty = Dirty::none(plan.closed.len());
-        for &face in wanting {
-            let closed = &mut finer.closed[face as usize];
-            match finer.goal.is_near(&plan.goal, face) {
-                true => closed.forget_beyond(finer.goal.allowed(face)),
-                false => closed.forget(),
-            }
-        }
-        wanting.iter().for_each(|&face| dirty.replace(&self.edges, face));
-        Ok(self.carry_out(&mut finer, dirty, most)?.then_some(finer))
     }
 
     /// Emits a plan, dividing what fails among its neighbours; `None` if there are too many triangles.

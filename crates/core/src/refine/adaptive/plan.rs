@@ -1,13 +1,16 @@
-//! What is going to be emitted: the trees that the passes have come to, and what is known of their leaves.
+//! What is going to be emitted: the trees that the passes have come to, and what is known of their leaves; made from the beginning, or
+//! from a coarser plan.
 
-use super::block;
 use super::chains::Chains;
 use super::close::Closed;
-use super::decide::Decision;
+use super::decide::{Decision, decide};
+use super::dirty::Dirty;
 use super::emit::Emission;
 use super::judge::Goal;
 use super::quadtree::Place;
+use super::{Engine, block};
 use crate::progress::{Cancelled, SharedWatch};
+use crate::refine::RefineError;
 
 /// Trees whose closed leaves pass, and what emitting them takes.
 pub(super) struct Plan {
@@ -84,5 +87,60 @@ impl Plan {
             block.map(|face| trees.depth(trees.root(face as u32)) as usize).max()
         });
         Ok(levels?.into_iter().flatten().max().unwrap_or(0))
+    }
+}
+
+impl Engine<'_> {
+    /// Divides as asked, until all conditions hold; `None` if that takes more than `most` triangles.
+    pub(super) fn plan(&self, goal: Goal, most: usize) -> Result<Option<Plan>, RefineError> {
+        let control = (self.control, self.watch);
+        let Some(decision) = decide(control, &goal, &self.edges, self.max_levels, most)? else {
+            return Ok(None);
+        };
+        let faces = self.control.mesh.face_count();
+        let mut plan = Plan::of(goal, decision, faces);
+        let fits = self.carry_out(&mut plan, Dirty::all(faces), most)?
+            && (self.is_settled_later() || self.settle(&mut plan, most)?);
+        Ok(fits.then_some(plan))
+    }
+
+    /// The same for another goal, of distances alone, which asks more of these faces only: they are divided anew, and what that
+    /// changes. `None` if that takes too many triangles.
+    pub(super) fn finer(
+        &self,
+        plan: &Plan,
+        goal: Goal,
+        wanting: &[u32],
+        most: usize,
+    ) -> Result<Option<Plan>, RefineError> {
+        let Some(mut finer) = self.finer_unsettled(plan, goal, wanting, most)? else { return Ok(None) };
+        Ok(self.settle(&mut finer, most)?.then_some(finer))
+    }
+
+    /// The same, but nothing is looked at among its neighbours ([`Self::settle`]): hardly fewer triangles, for less.
+    pub(super) fn finer_unsettled(
+        &self,
+        plan: &Plan,
+        goal: Goal,
+        wanting: &[u32],
+        most: usize,
+    ) -> Result<Option<Plan>, RefineError> {
+        let mut finer = plan.with_goal(goal);
+        let (control, limits) = ((self.control, self.watch), (self.max_levels, most));
+        let again = (wanting, Some(&plan.goal));
+        if !finer.decision.divide(control, &finer.goal, &self.edges, limits, again)? {
+            return Ok(None);
+        }
+        finer.decision.begin_again();
+        let mut dirty = Dirty::none(plan.closed.len());
+        for &face in wanting {
+            let closed = &mut finer.closed[face as usize];
+            match finer.goal.is_near(&plan.goal, face) {
+                true => closed.forget_beyond(finer.goal.allowed(face)),
+                false => closed.forget(),
+            }
+        }
+        wanting.iter().for_each(|&face| dirty.replace(&self.edges, face));
+        Ok(self.carry_out(&mut finer, dirty, most)?.then_some(finer))
     }
 }
