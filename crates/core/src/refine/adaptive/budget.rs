@@ -63,6 +63,9 @@ const MOST_IDLE: u32 = 2;
 /// Plans beyond the budget are counted to the end up to so many more triangles (one in so many): then the next guess is better.
 const COUNTED_BEYOND: usize = 3;
 
+/// After so many plans that did not halve what lies between the ends, as a logarithm, its middle is tried.
+const MOST_STALLED: u32 = 2;
+
 /// Of the ends between which is looked further, a guess keeps away by this much, as a logarithm, or by a twentieth of what lies between.
 const LEAST_MOVED: f64 = 0.005;
 
@@ -169,6 +172,8 @@ struct Search<'e, 'a> {
     best: Plan,
     /// Whether that was looked at among its neighbours.
     is_settled: bool,
+    /// Whether all plans are: what that would add turned out to be too much to be looked at in the end.
+    settles_all: bool,
     /// The greatest distance that does not fit; 0 where none is known.
     low: f64,
     /// Of distances below this nobody is any nearer.
@@ -183,6 +188,9 @@ struct Search<'e, 'a> {
     /// Whether the last plan fitted, and how often in a row that was the same.
     fitted: bool,
     moved: i32,
+    /// What lay between the ends, as a logarithm, when it was last halved, and the plans since then.
+    span: f64,
+    stalled: u32,
     /// Plans in a row that brought nothing: where levels end the division, no distance does.
     idle: u32,
 }
@@ -200,6 +208,7 @@ impl<'e, 'a> Search<'e, 'a> {
             growth: Growth { undivided: best.triangles as f64 },
             high: Self::coarsest_distance(engine, &best),
             is_settled: true,
+            settles_all: false,
             low: floor,
             least,
             fitting: best.triangles,
@@ -209,6 +218,8 @@ impl<'e, 'a> Search<'e, 'a> {
             settling: SETTLING,
             fitted: true,
             moved: 0,
+            span: f64::INFINITY,
+            stalled: 0,
             idle: 0,
         })
     }
@@ -244,6 +255,8 @@ impl<'e, 'a> Search<'e, 'a> {
             }
             // It did not fit in the end: all again above it.
             (self.low, self.beyond) = (self.high, Some(self.fitting));
+            (self.span, self.stalled) = (f64::INFINITY, 0);
+            self.settles_all = true;
             self.before.clear();
             self.best = coarsest(engine)?;
             (self.high, self.is_settled) = (Self::coarsest_distance(engine, &self.best), true);
@@ -298,7 +311,7 @@ impl<'e, 'a> Search<'e, 'a> {
         // Between two counts a power; but counts come in steps, so the middle where the same end was moved twice, or, where the ends are far
         // apart, further from what was moved each time.
         let is_apart = span > 2.0 * TELLING.1.ln();
-        if !is_apart && self.moved > 2 {
+        if self.stalled >= MOST_STALLED || !is_apart && self.moved > 2 {
             return middle(low, high);
         }
         let divided = |triangles: f64| self.growth.divided(triangles);
@@ -317,7 +330,7 @@ impl<'e, 'a> Search<'e, 'a> {
     fn try_within(&mut self, next: f64) -> Result<(), RefineError> {
         let (engine, most) = (self.engine, self.most);
         let faces = 0..self.best.closed.len() as u32;
-        let wanting: Vec<u32> = faces.filter(|&face| exceeds(self.best.bound(face), next)).collect();
+        let wanting: Vec<u32> = faces.filter(|&face| exceeds(self.best.expected(face), next)).collect();
         let counted = most.saturating_add(most / COUNTED_BEYOND);
         let goal = Goal::Within(next);
         let mut found = match engine.is_settled_later() {
@@ -327,9 +340,8 @@ impl<'e, 'a> Search<'e, 'a> {
         let count = found.as_ref().map(|plan| plan.triangles);
         let mut is_settled = engine.is_settled_later();
         let mut fits = count.is_some_and(|count| count <= most);
-        if let Some(plan) =
-            found.as_mut().filter(|plan| fits && !is_settled && plan.triangles >= most - most / FAR)
-        {
+        let is_far = |plan: &Plan| !self.settles_all && plan.triangles < most - most / FAR;
+        if let Some(plan) = found.as_mut().filter(|plan| fits && !is_settled && !is_far(plan)) {
             fits = engine.settle(plan, counted)? && plan.triangles <= most;
             is_settled = true;
             self.settling = (plan.triangles as f64 / count.unwrap_or(most) as f64).max(1.0);
@@ -349,6 +361,9 @@ impl<'e, 'a> Search<'e, 'a> {
                 (self.low, self.beyond) = (next, Some(count));
             }
         }
+        let span = (self.high / self.low).ln();
+        let is_halved = span <= 0.5 * self.span || self.span.is_infinite();
+        (self.span, self.stalled) = if is_halved { (span, 0) } else { (self.span, self.stalled + 1) };
         Ok(())
     }
 }

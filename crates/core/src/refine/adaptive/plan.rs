@@ -6,7 +6,7 @@ use super::close::Closed;
 use super::decide::{Decision, decide};
 use super::dirty::Dirty;
 use super::emit::Emission;
-use super::judge::Goal;
+use super::judge::{Condition, Goal};
 use super::quadtree::Place;
 use super::{Engine, block};
 use crate::progress::{Cancelled, SharedWatch};
@@ -65,6 +65,17 @@ impl Plan {
         let closing = self.closed[face as usize].extent().map_or(0.0, |extent| extent.bound);
         let settled = self.settled[face as usize].map_or(0.0, |(bound, _)| bound);
         closing.max(settled).max(self.decision.bound(face))
+    }
+
+    /// The same, with what leaves that pass on conditions nobody has looked at come to beside triangles like themselves: a bound that was good
+    /// enough for a goal need not be as good as it gets, so these are judged anew for one that asks for less.
+    pub(super) fn expected(&self, face: u32) -> f64 {
+        let bound = self.bound(face);
+        if self.settled[face as usize].is_some() {
+            return bound;
+        }
+        let conditions = [self.decision.conditions(face), self.closed[face as usize].conditions()];
+        conditions.into_iter().flatten().map(Condition::expected).fold(bound, f64::max)
     }
 
     /// The faces whose leaves have the greatest bounds first.

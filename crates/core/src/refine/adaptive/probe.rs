@@ -45,7 +45,10 @@ const NARROW: f64 = 0.99;
 const MET_NARROW: f64 = 0.9;
 
 /// Upper bounds so many times the lower one are taken again.
-const WIDE: f64 = 1.12;
+const WIDE: f64 = 1.2;
+
+/// The same where a tolerance is met, and few may be.
+const MET_WIDE: f64 = 1.12;
 
 /// Control faces that are looked at together for tighter bounds at first, then twice as many each time.
 const TIGHTENED: usize = 64;
@@ -95,7 +98,7 @@ pub(super) fn probe(
     // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
     let heights = measured.iter().flat_map(|all| all.iter().map(|face| face.highest));
     let highest = greatest(heights, PROBED, watch)?;
-    let enough = if is_met { MET_NARROW } else { NARROW };
+    let (enough, wide) = if is_met { (MET_NARROW, MET_WIDE) } else { (NARROW, WIDE) };
     let mut probed = Probed { leaves: HashSet::new(), enough };
     let mut is_known = vec![measured.is_some(); worst.len()];
     lower(engine, (plan, emission), &mesh, (&highest, |_| true, &mut probed), &mut best)?;
@@ -125,13 +128,13 @@ pub(super) fn probe(
         best.upper = order.first().map_or(0.0, |&(bound, _)| bound);
         let is_leaf = |place: Place| is_known[place.face as usize];
         lower(engine, (plan, emission), &mesh, (&order, is_leaf, &mut probed), &mut best)?;
-        if !best.certified || best.upper <= WIDE * best.lower || round >= MOST_TIGHTENINGS {
+        if !best.certified || best.upper <= wide * best.lower || round >= MOST_TIGHTENINGS {
             break;
         }
         // Bounds that are good enough for the goals need not be tight.
         let loose = order.iter().take_while(|&&(bound, _)| bound > best.lower);
         let loose = loose
-            .filter(|(_, place)| tightened[place.face as usize].is_none_or(|known| WIDE * known < best.lower))
+            .filter(|(_, place)| tightened[place.face as usize].is_none_or(|known| wide * known < best.lower))
             .take(TIGHTENED << round);
         let (mut faces, mut stays) = (Vec::new(), 0.0);
         for &(bound, place) in loose {

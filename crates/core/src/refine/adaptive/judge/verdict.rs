@@ -74,6 +74,11 @@ impl Condition {
         Self { place, deviation: Deviation::alone(f64::INFINITY), tilt: ANY_TILT, slopes: [0.0; 3] }
     }
 
+    /// What it comes to beside triangles like itself.
+    pub(in super::super) fn expected(&self) -> f64 {
+        self.bound(&Allowance { tilt: self.tilt, slope: f64::INFINITY })
+    }
+
     /// What it comes to beside triangles of these tilts and angles at most.
     pub(in super::super) fn bound(&self, around: &Allowance) -> f64 {
         let slopes = self.slopes.map(|slope| slope.min(around.slope));
