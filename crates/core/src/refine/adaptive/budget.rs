@@ -52,7 +52,7 @@ const AIM: f64 = 0.993;
 const FIRST_AIM: f64 = 0.85;
 
 /// From one guess to the next distances fall by this much at most.
-const MOST_APART: f64 = 8.0;
+const MOST_APART: f64 = 3.0;
 
 /// Powers with which triangles grow, where two plans tell of one.
 const POWERS: (f64, f64) = (0.4, 3.0);
