@@ -38,7 +38,7 @@ impl Settings {
     /// The same models and figures, coarser numbers.
     const QUICK: Self = Self {
         angles_degrees: &[10.0],
-        steps: 2,
+        steps: 3,
         extra_angle_degrees: 10.0,
         drift_steps: 3,
         samples: 20_000,
