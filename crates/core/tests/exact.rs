@@ -294,6 +294,19 @@ fn balanced_meshes_need_fewer_triangles() {
 
 /// Dividing a triangle moves its corners no nearer to where those beside it fail: else divisions go round a model one triangle a
 /// round.
+/// Leaves split by several levels at once, in nodes that are walked over row by row: faces closed again lost count of their triangles.
+#[test]
+fn balanced_budgets_conform() {
+    for (name, budget) in [("shoe", 18_550), ("teddy", 9_000), ("bunny", 7_000)] {
+        let control = model(name);
+        let options = ExactOptions::default().triangles(budget).balance(true);
+        let balanced = exact(&control, &Loop, &options).unwrap();
+        balanced.mesh.validate().unwrap();
+        assert!(balanced.mesh.face_count() <= budget, "{name}");
+        assert_eq!(balanced.mesh.topology().boundary_edge_count(), 0, "{name}");
+    }
+}
+
 #[test]
 fn balancing_ends_after_a_few_rounds() {
     for (name, tolerance) in [("cup", 1e-5), ("cup", 1e-4), ("sphere", 1e-5), ("teddy", 1e-4)] {

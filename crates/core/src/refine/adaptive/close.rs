@@ -104,14 +104,15 @@ impl Closing<'_> {
         walk.node(word, at, sides, Surface::Unknown, &mut lister);
         *knots = walk.knots;
         let Lister { triangles, count, mut leaves, .. } = lister;
+        leaves.sort_unstable_by(|a, b| a.place.in_order(&b.place));
         recall(known.known(), &mut leaves);
         let counted =
             Closed { vertices: walk.next, triangles: triangles as u32, leaves: count, judged: None };
         self.judged(face, counted, (leaves, allowance), &mut None, is_stopped)
     }
 
-    /// Closes a face again, of which leaves were `split` since, by looking at the leaves that see these: `seen`. Both are in the order of a
-    /// walk. The surface over it is kept for the next time.
+    /// Closes a face again, of which leaves were `split` since, by looking at the leaves that see these: `seen`. Both are in the order of
+    /// places. The surface over it is kept for the next time.
     pub(super) fn close_again(
         &self,
         face: u32,
@@ -132,7 +133,7 @@ impl Closing<'_> {
         self.judged(face, counted, (leaves, allowance), piece, is_stopped)
     }
 
-    /// The leaves of a face that have to be judged, in the order of a walk: those known but for the ones that were split, and the ones that are
+    /// The leaves of a face that have to be judged, in the order of places: those known but for the ones that were split, and the ones that are
     /// seen anew.
     fn listed_again(&self, face: u32, known: &[Judged], (split, seen): (&[Place], &[Place])) -> Vec<Judged> {
         let open = self.control.open(face);
@@ -173,7 +174,7 @@ impl Closing<'_> {
             let piece = piece.get_or_insert_with(|| Box::new(control.piece(face)));
             closer.judge(piece.surface(control.rules), 0, &mut wanting, is_stopped);
         }
-        closed.judged = Some(Box::new(JudgedLeaves::of(leaves, max_levels)));
+        closed.judged = Some(Box::new(JudgedLeaves::of(leaves, self.trees, max_levels)));
         closed
     }
 }

@@ -165,6 +165,17 @@ impl Trees {
         Some(self.words[at])
     }
 
+    /// The node that holds the leaf at a place, and below which all leaves are equally deep.
+    pub(super) fn even_node(&self, leaf: Place) -> Place {
+        let mut word = self.root(leaf.face);
+        let mut level = 0;
+        while level < leaf.level && word & LEAF == 0 {
+            word = self.child(word, leaf.digit(level));
+            level += 1;
+        }
+        Place { level, path: leaf.path >> (2 * (leaf.level - level)), ..leaf }
+    }
+
     /// Splits whatever must be for the node at `place` to exist; `fresh` is told the places that were split. `false` if there
     /// would be too many nodes.
     pub(super) fn ensure(&mut self, place: Place, mut fresh: impl FnMut(Place)) -> bool {

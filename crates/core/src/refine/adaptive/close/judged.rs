@@ -1,7 +1,7 @@
 //! What closing a control face came to: its counts, and what was said of the leaves that had to be judged, for the next time.
 
 use super::super::judge::{Condition, Extent, Outcome, Verdict};
-use super::super::quadtree::Place;
+use super::super::quadtree::{Place, Trees};
 use crate::certificate::Deviation;
 
 /// What the closing of a control face came to.
@@ -28,7 +28,8 @@ pub(in super::super) struct JudgedLeaves {
     failing: Vec<Place>,
     /// Leaves that pass on conditions, in the order of the walk.
     pub(in super::super) conditions: Vec<Condition>,
-    /// What was said of leaves, by the edges that were split, for the next time; in the order of the walk.
+    /// What was said of leaves, by the edges that were split, for the next time; in the order of places, which that of a walk is not where
+    /// nodes are walked over row by row.
     pub(super) leaves: Vec<Judged>,
 }
 
@@ -87,7 +88,7 @@ impl Judged {
     }
 }
 
-/// Takes over what was said of the same leaves with the same edges split.
+/// Takes over what was said of the same leaves with the same edges split; both are in the order of places.
 pub(super) fn recall(known: &[Judged], leaves: &mut [Judged]) {
     let mut known = known.iter().peekable();
     for leaf in leaves {
@@ -145,11 +146,25 @@ impl Closed {
     }
 }
 
+/// The leaves in the order of a walk, which goes over nodes below which all leaves are equally deep row by row.
+fn in_walks_order<'l>(leaves: &'l [Judged], trees: &Trees) -> Vec<&'l Judged> {
+    let mut ordered: Vec<&Judged> = leaves.iter().collect();
+    let mut rest = &mut ordered[..];
+    while let [first, ..] = rest {
+        let node = trees.even_node(first.place);
+        let count = rest.iter().take_while(|leaf| node.holds(leaf.place)).count().max(1);
+        let (own, others) = core::mem::take(&mut rest).split_at_mut(count);
+        own.sort_by_key(|leaf| leaf.place.row_below(node.level));
+        rest = others;
+    }
+    ordered
+}
+
 impl JudgedLeaves {
-    /// What was said of leaves.
-    pub(super) fn of(leaves: Vec<Judged>, max_levels: u32) -> Self {
+    /// What was said of leaves, which are in the order of places.
+    pub(super) fn of(leaves: Vec<Judged>, trees: &Trees, max_levels: u32) -> Self {
         let mut judged = Self::default();
-        for leaf in &leaves {
+        for leaf in in_walks_order(&leaves, trees) {
             let place = leaf.place;
             if leaf.is_said() && leaf.split.iter().filter(|&&is_split| is_split).count() == 2 {
                 judged.diagonals.push(leaf.from_end);

@@ -12,10 +12,13 @@ use crate::scheme::Loop;
 #[test]
 fn faces_closed_again_are_as_if_closed_whole() {
     let models = [("icosphere", 5), ("torus", 6), ("sheet", 8), ("head", 9), ("spike", 10), ("cup", 3)];
+    let coarse = models.map(|(name, seed)| (name, seed, 3e-3));
+    // Divided more deeply many nodes are walked over row by row.
+    let fine = [("shoe", 0, 1e-4), ("bunny", 0, 1e-4), ("torus", 5, 1e-4)];
     let (mut again, mut judged) = (0, 0);
-    for (name, seed) in models {
+    for (name, seed, tolerance) in coarse.into_iter().chain(fine) {
         let mesh = stirred(name, seed);
-        let tolerance = 3e-3 * mesh.diagonal();
+        let tolerance = tolerance * mesh.diagonal();
         let options = ExactOptions::default().tolerance(tolerance);
         with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
             let mut plan = engine.plan(Goal::Within(tolerance), usize::MAX)?.unwrap();
@@ -37,6 +40,11 @@ fn faces_closed_again_are_as_if_closed_whole() {
                         plan.decision.trees.make_strict(place);
                     }
                     engine.split(&mut plan.decision.trees, place, &mut dirty)?;
+                    // Now and then by more levels at once.
+                    for level in 0..next(3) {
+                        place = place.child((level + next(4)) % 4);
+                        engine.split(&mut plan.decision.trees, place, &mut dirty)?;
+                    }
                 }
                 let faces = dirty.faces();
                 assert!(engine.carry_out(&mut plan, dirty, usize::MAX)?);
