@@ -220,6 +220,7 @@ impl Front {
         py: Python<'py>,
         demand: Option<DemandIn>,
         progress: Option<Py<PyAny>>,
+        is_told: bool,
     ) -> PyResult<Told<'py>> {
         let demand = demand.map(|demand| demand.demand(self.diagonal)).transpose()?;
         let mut worker = match taken(&self.place) {
@@ -233,7 +234,8 @@ impl Front {
             }
         };
         let (end, caller) = ends(progress);
-        let is_told = worker.is_told;
+        // What was told may have been lost on the way, by an interrupt.
+        let is_told = worker.is_told && is_told;
         let job: Job = Box::new(move |slot| {
             end.finish(|observer| Ok(News::of(slot.updated(demand.as_ref(), observer)?, is_told)));
         });

@@ -94,7 +94,9 @@ class Front:
         self._native = _limitmesh.Front(native, control, workers, callback)
         self._vertices: Floats = np.zeros((0, 3))
         self._faces: Integers = np.zeros((0, 3), dtype=np.int64)
-        self._take(self._native.update(None, callback))
+        # Whether the arrays here are what the last update left.
+        self._is_told = False
+        self._update(None, callback)
 
     def update(
         self,
@@ -152,7 +154,20 @@ class Front:
             "triangles": None if triangles is None else _options.whole(triangles, "triangles", 1),
             "max_levels": None if max_levels is None else _options.whole(max_levels, "max_levels", 0),
         }
-        return self._take(self._native.update(demand, _options.callback_of(progress)))
+        return self._update(demand, _options.callback_of(progress))
+
+    def _update(self, demand: dict[str, Any] | None, callback: Any) -> Changes:
+        is_told, self._is_told = self._is_told, False
+        told = self._native.update(demand, callback, is_told)
+        try:
+            changes = self._take(told)
+        except KeyboardInterrupt:
+            # What is done is done: rows of one update among those of another are no mesh.
+            self._take(told)
+            self._is_told = True
+            raise
+        self._is_told = True
+        return changes
 
     def _take(self, told: tuple[Any, ...]) -> Changes:
         count, at, positions, triangles, slots, corners, numbers = told

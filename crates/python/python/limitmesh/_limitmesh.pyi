@@ -56,7 +56,7 @@ _Indices = npt.NDArray[np.uint32]
 class Front:
     def __new__(cls, mesh: Any, control: _Record, threads: int, progress: _Callback) -> Front: ...
     def update(
-        self, demand: _Record | None, progress: _Callback
+        self, demand: _Record | None, progress: _Callback, is_told: bool
     ) -> tuple[int, _Indices, _Floats, int, _Indices, _Indices, tuple[int, int, float, bool, float | None, int]]: ...
 
 @final
