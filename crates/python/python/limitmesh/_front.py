@@ -158,7 +158,12 @@ class Front:
 
     def _update(self, demand: dict[str, Any] | None, callback: Any) -> Changes:
         is_told, self._is_told = self._is_told, False
-        told = self._native.update(demand, callback, is_told)
+        try:
+            told = self._native.update(demand, callback, is_told)
+        except OptionError:
+            # Nothing was done.
+            self._is_told = is_told
+            raise
         try:
             changes = self._take(told)
         except KeyboardInterrupt:
