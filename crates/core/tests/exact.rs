@@ -292,8 +292,6 @@ fn balanced_meshes_need_fewer_triangles() {
     }
 }
 
-/// Dividing a triangle moves its corners no nearer to where those beside it fail: else divisions go round a model one triangle a
-/// round.
 /// Leaves split by several levels at once, in nodes that are walked over row by row: faces closed again lost count of their triangles.
 #[test]
 fn balanced_budgets_conform() {
@@ -307,6 +305,8 @@ fn balanced_budgets_conform() {
     }
 }
 
+/// Dividing a triangle moves its corners no nearer to where those beside it fail: else divisions go round a model one triangle a
+/// round.
 #[test]
 fn balancing_ends_after_a_few_rounds() {
     for (name, tolerance) in [("cup", 1e-5), ("cup", 1e-4), ("sphere", 1e-5), ("teddy", 1e-4)] {

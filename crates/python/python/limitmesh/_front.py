@@ -39,8 +39,9 @@ class Front:
     """Triangles that stand for a mesh's limit surface, brought from one demand to the next: for viewers and sliders.
 
     What it is depends on the demand alone, but for the order of its rows. It begins with the control mesh's own triangles, their
-    corners on the limit surface. An update that ends before its time, by Ctrl-C or by its ``progress``, leaves all as it was here; the
-    next one goes on from where that was, to the same mesh as a fresh front's, and names all rows as changed, as it does after a fork.
+    corners on the limit surface. An update that ends before its time, by Ctrl-C or by its ``progress``, leaves all as it was here, or,
+    where it was done already, as it is then; the next one goes on from where that was, to the same mesh as a fresh front's. It may name all rows
+    as changed, as it does after a fork.
 
     Parameters
     ----------

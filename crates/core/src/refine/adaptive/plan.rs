@@ -116,20 +116,8 @@ impl Engine<'_> {
     }
 
     /// The same for another goal, of distances alone, which asks more of these faces only: they are divided anew, and what that
-    /// changes. `None` if that takes too many triangles.
+    /// changes. Nothing is looked at among its neighbours yet ([`Self::settle`]). `None` if that takes too many triangles.
     pub(super) fn finer(
-        &self,
-        plan: &Plan,
-        goal: Goal,
-        wanting: &[u32],
-        most: usize,
-    ) -> Result<Option<Plan>, RefineError> {
-        let Some(mut finer) = self.finer_unsettled(plan, goal, wanting, most)? else { return Ok(None) };
-        Ok(self.settle(&mut finer, most)?.then_some(finer))
-    }
-
-    /// The same, but nothing is looked at among its neighbours ([`Self::settle`]): hardly fewer triangles, for less.
-    pub(super) fn finer_unsettled(
         &self,
         plan: &Plan,
         goal: Goal,

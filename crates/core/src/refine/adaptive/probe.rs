@@ -132,25 +132,24 @@ pub(super) fn probe(
             break;
         }
         // Bounds that are good enough for the goals need not be tight.
-        let loose = order.iter().take_while(|&&(bound, _)| bound > best.lower);
-        let loose = loose
-            .filter(|(_, place)| tightened[place.face as usize].is_none_or(|known| wide * known < best.lower))
-            .take(TIGHTENED << round);
-        let (mut faces, mut stays) = (Vec::new(), 0.0);
-        for &(bound, place) in loose {
+        let is_loose = |&(bound, place): &(f64, Place)| {
+            let known = tightened[place.face as usize];
+            bound > best.lower && known.is_none_or(|known| wide * known < best.lower)
+        };
+        let (mut loose, mut stays) = (Vec::new(), 0.0);
+        for &(bound, place) in order.iter().filter(|known| is_loose(known)).take(TIGHTENED << round) {
             let count = emission.triangles_of(place.face).len();
             if count > room {
                 (room, stays) = (0, bound);
                 break;
             }
             room -= count;
-            faces.push(place.face);
+            loose.push(place.face);
         }
         // Beside one that stays as it is the others are of no use.
-        if faces.is_empty() || stays > WORTH_WHILE * best.upper {
+        if loose.is_empty() || stays > WORTH_WHILE * best.upper {
             break;
         }
-        let loose = faces;
         again(NARROW * best.lower, &loose, &mut worst, &mut is_known)?;
         loose.iter().for_each(|&face| tightened[face as usize] = Some(best.lower));
     }

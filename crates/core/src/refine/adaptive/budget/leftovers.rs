@@ -26,10 +26,10 @@ fn plan(
     most: usize,
 ) -> Result<Option<Plan>, RefineError> {
     if engine.is_settled_later() {
-        engine.plan(goal, most)
-    } else {
-        engine.finer(coarser, goal, wanting, most)
+        return engine.plan(goal, most);
     }
+    let Some(mut finer) = engine.finer(coarser, goal, wanting, most)? else { return Ok(None) };
+    Ok(engine.settle(&mut finer, most)?.then_some(finer))
 }
 
 /// Spends what is left of a budget on the worst faces, as many as fit: they come within the lesser of two distances, the

@@ -147,12 +147,12 @@ impl Closed {
 }
 
 /// The leaves in the order of a walk, which goes over nodes below which all leaves are equally deep row by row.
-fn in_walks_order<'l>(leaves: &'l [Judged], trees: &Trees) -> Vec<&'l Judged> {
+pub(super) fn in_walks_order<'l>(leaves: &'l [Judged], trees: &Trees) -> Vec<&'l Judged> {
     let mut ordered: Vec<&Judged> = leaves.iter().collect();
     let mut rest = &mut ordered[..];
     while let [first, ..] = rest {
         let node = trees.even_node(first.place);
-        let count = rest.iter().take_while(|leaf| node.holds(leaf.place)).count().max(1);
+        let count = rest.iter().take_while(|leaf| node.holds(leaf.place)).count();
         let (own, others) = core::mem::take(&mut rest).split_at_mut(count);
         own.sort_by_key(|leaf| leaf.place.row_below(node.level));
         rest = others;

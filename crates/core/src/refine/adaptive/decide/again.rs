@@ -227,6 +227,7 @@ mod tests {
                     distance *= 0.8;
                     let all: Vec<u32> = (0..plan.closed.len() as u32).collect();
                     plan = engine.finer(&plan, Goal::Within(distance), &all, usize::MAX)?.unwrap();
+                    assert!(engine.settle(&mut plan, usize::MAX)?);
                     let (control, trees) = (engine.control, &plan.decision.trees);
                     let mut sampling = Sampling { control, trees, limit: distance, leaves: 0, samples: 0 };
                     for face in all {

@@ -81,10 +81,12 @@ pub(super) fn farthest(
     for point in points {
         let most = farthest.map_or(-1.0, |(squared, _)| squared);
         let mut least = f64::INFINITY;
-        // One that is near enough tells that the point is not the farthest.
-        let mut to_each = triangles.iter().map(|corners| corners.map(|corner| corner - point));
-        while let Some(corners) = to_each.next().filter(|_| least > most) {
-            least = nearer(least, corners);
+        for corners in &triangles {
+            // One that is near enough tells that the point is not the farthest.
+            if least <= most {
+                break;
+            }
+            least = nearer(least, corners.map(|corner| corner - point));
         }
         if least > most {
             farthest = Some((least, point));

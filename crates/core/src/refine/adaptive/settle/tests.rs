@@ -204,9 +204,10 @@ fn what_triangles_count_on_is_there() {
         for share in [1e-2, 2e-3, 1.7e-3, 2e-4] {
             let goal = || Goal::Within(share * engine.control.mesh.diagonal());
             let faces = 0..last.closed.len() as u32;
-            let wanting = faces.filter(|&face| last.bound(face) > goal().allowed(face));
+            let wanting = faces.filter(|&face| last.expected(face) > goal().allowed(face));
             let wanting: Vec<u32> = wanting.collect();
             let mut finer = engine.finer(&last, goal(), &wanting, usize::MAX).unwrap().unwrap();
+            assert!(engine.settle(&mut finer, usize::MAX).unwrap());
             let mut at_once = engine.plan(goal(), usize::MAX).unwrap().unwrap();
             assert_holds(engine, &mut finer, name);
             assert_holds(engine, &mut at_once, name);
