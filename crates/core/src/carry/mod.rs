@@ -147,7 +147,7 @@ fn nearest(channel: Channel, places: &Places<'_>) -> Result<Channel, ChannelErro
 
 /// Values on the plane of the control faces.
 fn linear(channel: &Channel, sites: &Sites<'_>) -> Vec<f64> {
-    let mut values = Vec::with_capacity(channel.arity * sites.len());
+    let mut values = limitmesh_pages::with_capacity(channel.arity * sites.len());
     for &Origin { face, barycentric: [at_first, at_second, at_third] } in sites.iter() {
         let [first, second, third] = [0, 1, 2].map(|corner| channel.value(3 * face as usize + corner));
         for ((&a, &b), &c) in first.iter().zip(second).zip(third) {
@@ -205,7 +205,7 @@ fn smooth(
     let meshes = ValueMeshes::of(channel, rule, control)?;
     let by_face = sites.by_face(control.face_count());
     let places = |face: usize, visit: &mut dyn FnMut([f64; 3])| by_face.for_each_place(face, visit);
-    let mut values = vec![0.0; channel.arity * sites.len()];
+    let mut values = limitmesh_pages::filled(0.0, channel.arity * sites.len());
     for first in (0..channel.arity).step_by(TOGETHER) {
         let mesh = meshes.mesh(first)?;
         let surface =

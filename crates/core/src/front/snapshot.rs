@@ -104,9 +104,9 @@ pub(super) fn numbered(forest: &Forest<'_>) -> Numbered {
         numbers: vec![NONE; forest.vertices.positions.len()],
         found: Numbered {
             positions: forest.vertices.positions[..vertices].to_vec(),
-            triangles: Vec::with_capacity(forest.triangles),
-            origins: vec![nowhere; vertices],
-            parents: Vec::with_capacity(forest.triangles),
+            triangles: limitmesh_pages::with_capacity(forest.triangles),
+            origins: limitmesh_pages::filled(nowhere, vertices),
+            parents: limitmesh_pages::with_capacity(forest.triangles),
         },
     };
     (0..vertices).for_each(|vertex| walk.numbers[vertex] = vertex as u32);

@@ -336,7 +336,7 @@ fn check_indices(triangles: &[[u32; 3]], vertex_count: usize) -> Result<(), Mesh
 /// Finds the twin of every half-edge.
 fn match_twins(triangles: &[[u32; 3]], vertex_count: usize) -> Result<Vec<u32>, MeshError> {
     let origins = triangles.as_flattened();
-    let mut twins = vec![NONE; origins.len()];
+    let mut twins = limitmesh_pages::filled(NONE, origins.len());
     let mut twice = None;
     every_edge(triangles, vertex_count, |_, edge| {
         let from = |side: &EdgeSide| origins[side.side as usize];
@@ -376,7 +376,7 @@ pub(crate) fn outgoing_half_edges_polled(
     vertex_count: usize,
     poll: &mut Poll<'_>,
 ) -> Result<Vec<u32>, Cancelled> {
-    let mut outgoing = vec![NONE; vertex_count];
+    let mut outgoing = limitmesh_pages::filled(NONE, vertex_count);
     for (h, &v) in triangles.as_flattened().iter().enumerate() {
         if h.is_multiple_of(POLLED) {
             poll(h / 3)?;

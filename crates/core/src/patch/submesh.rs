@@ -65,7 +65,7 @@ pub(crate) fn refined_submesh(mesh: &Mesh, scheme: &dyn Scheme) -> Mesh {
         let (face, edge) = (4 * h.face().0, h.corner() as u32);
         [3 * (face + edge), 3 * (face + (edge + 1) % 3) + 2]
     };
-    let mut twins = vec![NONE; 3 * triangles.len()];
+    let mut twins = limitmesh_pages::filled(NONE, 3 * triangles.len());
     for h in topology.half_edges() {
         if let Some(twin) = topology.twin(h) {
             let ([first, second], [other_first, other_second]) = (halves(h), halves(twin));

@@ -155,7 +155,7 @@ impl SplitTopology {
         let old_vertices = mesh.vertex_count() as u32;
         old_vertices.checked_add(new_vertices as u32).ok_or_else(too_many)?;
 
-        let mut edges = vec![HalfEdgeId(0); new_vertices];
+        let mut edges = limitmesh_pages::filled(HalfEdgeId(0), new_vertices);
         parallel::for_each_run(&before, &mut edges, &mut vec![(); new_vertices], poll, |h, slot, _| {
             if let [edge] = slot {
                 *edge = HalfEdgeId(h as u32);
@@ -181,8 +181,8 @@ impl SplitTopology {
         let topology = mesh.topology();
         let count = self.starts.last().copied().unwrap_or(0) as usize;
         let poll = &mut |_| watch.poll();
-        let mut triangles = vec![[0u32; 3]; count];
-        let mut twins = vec![[0u32; 3]; count];
+        let mut triangles = limitmesh_pages::filled([0u32; 3], count);
+        let mut twins = limitmesh_pages::filled([0u32; 3], count);
         parallel::for_each_run(&self.starts, &mut triangles, &mut twins, poll, |face, triangles, twins| {
             let pattern = split.pattern(face);
             let first = 3 * self.starts[face];

@@ -151,7 +151,7 @@ fn boxes(
     for (level, size) in sizes.iter().enumerate() {
         starts.push(starts[level] + size);
     }
-    let mut nodes = vec![Node::EMPTY; starts[sizes.len()]];
+    let mut nodes = limitmesh_pages::filled(Node::EMPTY, starts[sizes.len()]);
     for level in (0..sizes.len()).rev() {
         let (above, below) = nodes.split_at_mut(starts[level + 1]);
         let own = &mut above[starts[level]..];

@@ -228,7 +228,7 @@ fn target<'s, 'a>(
     if surface.triangles.len() > NONE as usize / 3 {
         return Err(MeasureError::TooMany { which, count: surface.triangles.len() });
     }
-    let mut twins = vec![NONE; 3 * surface.triangles.len()];
+    let mut twins = limitmesh_pages::filled(NONE, 3 * surface.triangles.len());
     for_each_edge(surface.triangles, surface.positions.len(), &mut |done| watch.done(done), |_, edge| {
         if let [a, b] = edge {
             (twins[a.side as usize], twins[b.side as usize]) = (b.side, a.side);

@@ -147,7 +147,7 @@ fn assemble(
     orient::cut_opposed(&faces, &mut neighbours, diagnosis);
     let Sheets { topology, inputs, copied, middles, junctions, corners } =
         cut::cut(faces, neighbours, vertex_count, name, diagnosis);
-    let mut positions = Vec::with_capacity(vertex_count + copied.len());
+    let mut positions = limitmesh_pages::with_capacity(vertex_count + copied.len());
     positions.extend(names.iter().map(|&v| soup.positions[v as usize]));
     let mut middle = middles.iter();
     for &original in &copied {

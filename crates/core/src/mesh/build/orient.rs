@@ -24,7 +24,7 @@ pub(super) fn connect(
     name: impl Fn(u32) -> u32,
     diagnosis: &mut Diagnosis,
 ) -> Neighbours {
-    let mut twins = vec![NONE; 3 * triangles.len()];
+    let mut twins = limitmesh_pages::filled(NONE, 3 * triangles.len());
     let mut cuts = Groups::default();
     let mut named = Vec::new();
     every_edge(triangles, vertex_count, |lower, edge| match edge {

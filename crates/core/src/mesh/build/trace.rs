@@ -14,7 +14,7 @@ pub(super) fn corners(
     maps: &VertexMaps<'_>,
 ) -> Vec<u32> {
     let mut elsewhere: Option<Vec<u32>> = None;
-    let mut corners = Vec::with_capacity(3 * triangles.len());
+    let mut corners = limitmesh_pages::with_capacity(3 * triangles.len());
     let mut places = Places::default();
     let mut listed = None;
     for (triangle, &input) in triangles.iter().zip(inputs) {

@@ -65,7 +65,10 @@ pub(super) fn triangulate(
     if count > MAX_FACES {
         return Err(MeshError::TooMany { what: "faces", count, limit: MAX_FACES });
     }
-    let mut faces = Faces { triangles: Vec::with_capacity(count), inputs: Vec::with_capacity(count) };
+    let mut faces = Faces {
+        triangles: limitmesh_pages::with_capacity(count),
+        inputs: limitmesh_pages::with_capacity(count),
+    };
     let mut cutter = Cutter::default();
     let mut polygon = Vec::new();
     for (input, face) in soup.faces.iter().enumerate() {

@@ -10,6 +10,8 @@ mod jobs;
 mod kept;
 mod leaf_writer;
 
+use limitmesh_pages::filled;
+
 use super::area::Areas;
 use super::chains::{Chains, first_of};
 use super::close::Closed;
@@ -90,7 +92,7 @@ impl Emission {
     /// Moves the vertices along their normals.
     pub(super) fn shift(&mut self, offsets: Vec<f64>, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
         self.offsets = offsets;
-        let mut feet = Vec::with_capacity(self.positions.len());
+        let mut feet = limitmesh_pages::with_capacity(self.positions.len());
         watch.each(0..self.positions.len(), |vertex| {
             feet.push(self.positions[vertex]);
             let moved = vector(self.positions[vertex]) + self.step(vertex as u32);
@@ -206,7 +208,7 @@ pub(super) fn emit(
     if total > MAX_FACES || on_edges + inside >= NONE as usize {
         return Err(too_many("triangles", total).into());
     }
-    let mut starts = vec![0u32; 3 * faces + 1];
+    let mut starts = filled(0u32, 3 * faces + 1);
     watch.each(0..3 * faces, |h| starts[h + 1] = starts[h] + chains.along(edges, h as u32) as u32 + 1)?;
     let mut next = 0;
     let first_triangles = counts.triangles().map(|count| {
@@ -236,7 +238,7 @@ pub(super) fn emit(
         parents,
         starts: first_triangles,
         offsets: Vec::new(),
-        borders: Borders { half_edges: vec![0; starts[3 * faces] as usize], starts },
+        borders: Borders { half_edges: filled(0, starts[3 * faces] as usize), starts },
         sharp: Vec::new(),
         junctions: Junctions::default(),
         conditions: Vec::new(),

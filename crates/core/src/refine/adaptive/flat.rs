@@ -125,7 +125,7 @@ impl FlatRegions {
         let mut flat = found.concat();
         let by_area = |a: &(f64, u32), b: &(f64, u32)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
         parallel::sort_polled(&mut flat, &mut |_| watch.poll(), by_area)?;
-        let mut of_face = vec![NONE; mesh.face_count()];
+        let mut of_face = limitmesh_pages::filled(NONE, mesh.face_count());
         let mut is_left = vec![false; mesh.face_count()];
         flat.iter().for_each(|&(_, face)| is_left[face as usize] = true);
         let (mut regions, mut off_planes) = (Vec::new(), 0.0f64);

@@ -1,6 +1,8 @@
 //! What is going to be emitted: the trees that the passes have come to, and what is known of their leaves; made from the beginning, or
 //! from a coarser plan.
 
+use limitmesh_pages::filled;
+
 use super::chains::Chains;
 use super::close::Closed;
 use super::decide::{Decision, decide};
@@ -36,10 +38,10 @@ impl Plan {
             goal,
             decision,
             chains: Chains::default(),
-            closed: vec![Closed::default(); faces],
+            closed: filled(Closed::default(), faces),
             triangles: 0,
             has_failed: false,
-            settled: vec![None; faces],
+            settled: filled(None, faces),
             is_touched: vec![true; faces],
             emission: None,
         }

@@ -103,7 +103,7 @@ pub(super) fn probe(
     let mut is_known = vec![measured.is_some(); worst.len()];
     lower(engine, (plan, emission), &mesh, (&highest, |_| true, &mut probed), &mut best)?;
     // By control face, the lower bound for which it was looked at.
-    let mut tightened: Vec<Option<f64>> = vec![None; worst.len()];
+    let mut tightened: Vec<Option<f64>> = limitmesh_pages::filled(None, worst.len());
     let again = |length: f64, faces: &[u32], worst: &mut [(f64, Place)], is_known: &mut [bool]| {
         let nothing = Goal::Within(f64::INFINITY);
         let found = measure(&engine.sources(plan, emission), watch, (&nothing, length), (faces, None, None))?;

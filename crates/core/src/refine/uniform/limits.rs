@@ -7,6 +7,8 @@
 
 use core::ops::{ControlFlow, Range};
 
+use limitmesh_pages::filled;
+
 use super::grid::{Grid, Numbering};
 use super::pieces::{Pieces, Values};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
@@ -66,10 +68,10 @@ pub(super) fn refined_at_limit(
 
     let vertices = work.numbering.vertex_count();
     let faces = mesh.face_count() << (2 * levels);
-    let (mut triangles, mut twins) = (vec![[0u32; 3]; faces], vec![0u32; 3 * faces]);
-    let mut outgoing = vec![0u32; vertices];
-    let mut points = vec![[0.0; 3]; vertices];
-    let mut by_vertex = vec![[0.0; 3]; if normals { vertices } else { 0 }];
+    let (mut triangles, mut twins) = (filled([0u32; 3], faces), filled(0u32, 3 * faces));
+    let mut outgoing = filled(0u32, vertices);
+    let mut points = filled([0.0; 3], vertices);
+    let mut by_vertex = filled([0.0; 3], if normals { vertices } else { 0 });
     let blocks = work.blocks(&mut triangles, &mut twins, &mut outgoing, &mut points, &mut by_vertex);
     let flat = parallel::each_polled(blocks, &mut |_| watch.poll(), |slots| work.fill(slots))?;
     for (outgoing, v) in outgoing.iter_mut().zip(mesh.topology().vertices()) {

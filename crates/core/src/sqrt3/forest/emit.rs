@@ -25,7 +25,7 @@ pub(in crate::sqrt3) struct Emitted {
 impl Forest<'_> {
     /// All triangles of the result.
     fn result(&self) -> Vec<Triangle> {
-        let mut result = Vec::with_capacity(self.triangles);
+        let mut result = limitmesh_pages::with_capacity(self.triangles);
         for (t, node) in self.nodes.iter().enumerate() {
             if !node.is_split {
                 result.extend(self.is_real(t).then_some(Triangle::Leaf(t as u32)));

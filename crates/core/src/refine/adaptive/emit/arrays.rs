@@ -79,7 +79,8 @@ impl Arrays {
     ) -> Result<Self, Cancelled> {
         let vertices = (length.vertices, room.vertices);
         let triangles = (length.triangles, room.triangles);
-        let mut origins = Vec::with_capacity(if has_origins { with_spare(room.vertices) } else { 0 });
+        let mut origins =
+            limitmesh_pages::with_capacity(if has_origins { with_spare(room.vertices) } else { 0 });
         if has_origins {
             extend_origins(&mut origins, length.vertices, watch)?;
         }
@@ -142,9 +143,7 @@ fn with_spare(count: usize) -> usize {
 
 /// So many zeros, with room for more; nobody touches what is not used.
 fn zeros<T: Copy>(zero: T, (count, room): (usize, usize)) -> Vec<T> {
-    let mut all = vec![zero; with_spare(room.max(count))];
-    all.truncate(count);
-    all
+    limitmesh_pages::filled_with_room(zero, count, with_spare(room.max(count)))
 }
 
 /// Adds origins of vertices that are not known yet: piece by piece, since they are no zeros, which cost nothing.
@@ -163,7 +162,7 @@ fn rearrange<T: Copy>(
     moves: &Shifts,
     is_stopped: &IsStopped<'_>,
 ) {
-    array.reserve_exact(length.saturating_sub(array.len()));
+    limitmesh_pages::reserve(array, length.saturating_sub(array.len()));
     while array.len() < length {
         array.resize(length.min(array.len() + FILLED), filling);
         if is_stopped() {

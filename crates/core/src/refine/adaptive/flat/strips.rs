@@ -9,6 +9,8 @@
 //! same everywhere, as over the quadrilaterals of an extruded profile, each two faces in one plane; and pieces beside creases whose vertices
 //! are irregular, as where the quadrilaterals are cut now this way and now that.
 
+use limitmesh_pages::filled;
+
 use super::{FlatRegions, Plane};
 use crate::index::HalfEdgeId;
 use crate::mesh::NONE;
@@ -171,7 +173,7 @@ impl FlatRegions {
         });
         let mut regions = Regions {
             list: list.collect(),
-            of_triangle: vec![NONE; net.triangles.len()],
+            of_triangle: filled(NONE, net.triangles.len()),
             is_dropped: Vec::new(),
         };
         watch.each((0..).zip(&regions.list), |(number, region)| {
@@ -279,7 +281,7 @@ impl FlatRegions {
         regions: &Regions,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
-        let mut between = vec![Between::NOBODY; net.positions.len()];
+        let mut between = filled(Between::NOBODY, net.positions.len());
         between[..net.corners].fill(Between { stays: true, ..Between::NOBODY });
         watch.each((0u32..).zip(net.triangles), |(triangle, vertices)| {
             let region = regions.of(triangle);
