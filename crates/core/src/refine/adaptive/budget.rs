@@ -14,15 +14,15 @@ use crate::certificate::exceeds;
 use crate::mesh::MeshError;
 use crate::refine::RefineError;
 use crate::refine::exact_result::ExactStop;
-use expected::expected;
+use expected::Profile;
 pub(super) use leftovers::even;
-use leftovers::{EXACT, fill};
+use leftovers::{EXACT, fill, finer};
 
 /// From one plan to the next the triangles grow by this much at most while none has passed the budget.
 const STEP: f64 = 6.0;
 
 /// The part of the budget that may be left (one in so many).
-const LEFT: usize = 64;
+const LEFT: usize = 32;
 
 /// Fewer triangles than this may be left in any case.
 const LEFT_AT_LEAST: usize = 12;
@@ -40,7 +40,7 @@ const COARSEST: f64 = 1e12;
 const PROMISED: f64 = 1.1;
 
 /// Distances this far from what was found, as ratios, tell how triangles grow there, ...
-const TELLING: (f64, f64) = (1.03, 1.5);
+const TELLING: (f64, f64) = (1.02, 1.5);
 
 /// ... and where they grow with this power at least, they do so a step of [`PROMISED`] further.
 const STEADY: f64 = 0.5;
@@ -48,8 +48,8 @@ const STEADY: f64 = 0.5;
 /// The part of the budget that a guess aims at: what is left then is enough.
 const AIM: f64 = 0.993;
 
-/// The part of the budget that the first plan aims at: it has somewhat more, mostly.
-const FIRST_AIM: f64 = 0.85;
+/// The part of the budget that the first plan aims at: it has a tenth less or some hundredths more.
+const FIRST_AIM: f64 = 0.95;
 
 /// From one guess to the next distances fall by this much at most.
 const MOST_APART: f64 = 3.0;
@@ -72,9 +72,11 @@ const LEAST_MOVED: f64 = 0.005;
 /// What has more triangles than could be counted has about so many times the budget.
 const UNCOUNTED: usize = 2;
 
-/// Plans are looked at among their neighbours if they leave less of the budget than that (one in so many): those that leave
-/// more are not the last.
-const FAR: usize = 20;
+/// Below so many triangles a face plans are looked at among their neighbours each time: there that adds most, and takes little.
+const FEW: usize = 2;
+
+/// After so many plans in a row that did not fit, while none has, undivided faces are looked at.
+const MOST_BLIND: i32 = 3;
 
 /// Distances that are tried below what was found where finer divisions may take fewer triangles: how many, and the ratio of one to the next.
 const MOST_EVENER: usize = 10;
@@ -85,7 +87,7 @@ const FILLED_APART: f64 = 1.03;
 
 /// How many times as many triangles there are, about, once a plan was looked at among its neighbours, as long as none was: measured 1.00 to
 /// 1.017, but up to 1.2 where few faces are divided.
-const SETTLING: f64 = 1.012;
+const SETTLING: f64 = 1.006;
 
 /// How triangles grow: those beyond the undivided faces with a power of the reciprocal of the distance.
 struct Growth {
@@ -130,7 +132,11 @@ pub(super) fn search(
     }
     let mut search = Search::new(engine, floor, most)?;
     search.narrow()?;
-    let Search { mut high, mut low, mut best, least, .. } = search;
+    let Search { mut high, mut low, best, least, .. } = search;
+    let mut best = match best {
+        Some(best) => best,
+        None => coarsest(engine)?,
+    };
     if engine.control.flat.has_strips() {
         // A finer division that is more even may leave fewer triangles once strips are put together.
         let mut next = high;
@@ -139,7 +145,7 @@ pub(super) fn search(
             if next < floor.max(least) {
                 break;
             }
-            if let Some(plan) = engine.plan(Goal::Within(next), most)? {
+            if let Some(plan) = finer(engine, &best, Goal::Within(next), &wanting(&best, next), most)? {
                 (best, high, low) = (plan, next, floor);
             }
         }
@@ -149,6 +155,12 @@ pub(super) fn search(
         best = fill(engine, best, (high, less.max(floor)), most)?;
     }
     Ok((best, cap))
+}
+
+/// The faces of a plan that come to more than a distance.
+fn wanting(plan: &Plan, distance: f64) -> Vec<u32> {
+    let faces = 0..plan.closed.len() as u32;
+    faces.filter(|&face| exceeds(plan.expected(face), distance)).collect()
 }
 
 /// Undivided faces, which fit any budget.
@@ -168,9 +180,11 @@ struct Search<'e, 'a> {
     /// So many triangles are enough.
     enough: usize,
     growth: Growth,
-    /// The least distance whose plan fits, as far as known, and that plan.
+    /// What faces are expected to take; `None` where more than distances counts.
+    profile: Option<Profile>,
+    /// The least distance whose plan fits, as far as known, and that plan; `None` for undivided faces of which no plan was made.
     high: f64,
-    best: Plan,
+    best: Option<Plan>,
     /// Whether that was looked at among its neighbours.
     is_settled: bool,
     /// Whether all plans are: what that would add turned out to be too much to be looked at in the end.
@@ -198,7 +212,6 @@ struct Search<'e, 'a> {
 
 impl<'e, 'a> Search<'e, 'a> {
     fn new(engine: &'e Engine<'a>, floor: f64, most: usize) -> Result<Self, RefineError> {
-        let best = coarsest(engine)?;
         let has_criteria = engine.control.criteria.is_some();
         // Of distances below what is added to all of them nobody is any nearer.
         let least = if has_criteria { f64::MIN_POSITIVE } else { engine.rounding.max(f64::MIN_POSITIVE) };
@@ -206,14 +219,15 @@ impl<'e, 'a> Search<'e, 'a> {
             engine,
             most,
             enough: most - (most / LEFT).max(LEFT_AT_LEAST).min(most),
-            growth: Growth { undivided: best.triangles as f64 },
-            high: Self::coarsest_distance(engine, &best),
+            growth: Growth { undivided: engine.control.mesh.face_count() as f64 },
+            profile: if engine.is_settled_later() { None } else { Some(Profile::of(engine)?) },
+            high: f64::INFINITY,
             is_settled: true,
-            settles_all: false,
+            settles_all: most < FEW * engine.control.mesh.face_count(),
             low: floor,
             least,
-            fitting: best.triangles,
-            best,
+            fitting: engine.control.mesh.face_count(),
+            best: None,
             beyond: None,
             before: Vec::new(),
             settling: SETTLING,
@@ -225,49 +239,71 @@ impl<'e, 'a> Search<'e, 'a> {
         })
     }
 
-    /// The distance of undivided faces.
-    fn coarsest_distance(engine: &Engine<'_>, plan: &Plan) -> f64 {
+    /// Undivided faces fit.
+    fn begin_undivided(&mut self) -> Result<(), RefineError> {
+        let plan = coarsest(self.engine)?;
         // Criteria may have no answer to undivided faces but that they are as bad as can be.
         let worst = plan.worst();
-        if worst.is_finite() || engine.control.criteria.is_none() { worst } else { COARSEST }
+        let has_number = worst.is_finite() || self.engine.control.criteria.is_none();
+        self.high = if has_number { worst } else { COARSEST };
+        (self.fitting, self.growth.undivided) = (plan.triangles, plan.triangles as f64);
+        (self.best, self.is_settled) = (Some(plan), true);
+        Ok(())
+    }
+
+    /// What was thought to fit does not.
+    fn give_up_best(&mut self) {
+        (self.low, self.beyond) = (self.high, Some(self.fitting));
+        // It has more than the budget once it is looked at among its neighbours.
+        self.settling = self.settling.max(1.01 * self.most as f64 / self.fitting as f64);
+        (self.high, self.best, self.is_settled) = (f64::INFINITY, None, true);
+        (self.span, self.stalled, self.moved, self.fitted) = (f64::INFINITY, 0, 1, false);
+        self.settles_all = true;
+        self.before.clear();
     }
 
     /// Narrows until what fits is as fine as it may be.
     fn narrow(&mut self) -> Result<(), RefineError> {
         let engine = self.engine;
-        let mut first = None;
-        if !engine.is_settled_later() {
-            first = expected(engine, FIRST_AIM * self.most as f64)?;
+        let first = match &mut self.profile {
+            Some(profile) => profile.expected(engine, FIRST_AIM * self.most as f64)?,
+            None => None,
+        };
+        // What flat regions come to only plans tell.
+        if first.is_none() || !engine.control.flat.are_none() {
+            self.begin_undivided()?;
+        }
+        if let Some(expected) = first.filter(|&expected| self.low < expected && expected < self.high) {
+            self.try_within(expected)?;
         }
         loop {
             while !self.is_near() && self.high > self.least {
-                let next = match first.take().filter(|&expected| self.low < expected && expected < self.high)
-                {
-                    Some(expected) => expected,
-                    None => self.next(),
-                };
+                if self.best.is_none() && self.moved > MOST_BLIND {
+                    self.begin_undivided()?;
+                    continue;
+                }
+                let next = self.next();
                 if !(next < self.high && next > self.low) {
                     break;
                 }
                 self.try_within(next)?;
             }
-            if self.is_settled || engine.settle(&mut self.best, self.most)? {
+            let Some(best) = self.best.as_mut().filter(|_| !self.is_settled) else { return Ok(()) };
+            if engine.settle(best, self.most)? {
                 return Ok(());
             }
-            // It did not fit in the end: all again above it.
-            (self.low, self.beyond) = (self.high, Some(self.fitting));
-            (self.span, self.stalled) = (f64::INFINITY, 0);
-            self.settles_all = true;
-            self.before.clear();
-            self.best = coarsest(engine)?;
-            (self.high, self.is_settled) = (Self::coarsest_distance(engine, &self.best), true);
-            self.fitting = self.best.triangles;
+            self.give_up_best();
         }
+    }
+
+    /// The triangles of what was found.
+    fn triangles(&self) -> usize {
+        self.best.as_ref().map_or(0, |best| best.triangles)
     }
 
     /// Whether what was found is as fine as it may be.
     fn is_near(&self) -> bool {
-        if self.best.triangles < self.enough {
+        if self.triangles() < self.enough {
             return self.high <= self.low * (1.0 + NEAR);
         }
         self.high <= self.low * PROMISED || self.is_steady()
@@ -286,7 +322,7 @@ impl<'e, 'a> Search<'e, 'a> {
     /// The distance that is tried next.
     fn next(&self) -> f64 {
         let (high, low) = (self.high, self.low);
-        let has_enough = self.best.triangles >= self.enough;
+        let has_enough = self.triangles() >= self.enough;
         if self.idle > MOST_IDLE && (low == 0.0 || has_enough) {
             return if low > 0.0 { middle(low, high) } else { high / MOST_APART.powi(1 << self.idle) };
         }
@@ -295,17 +331,20 @@ impl<'e, 'a> Search<'e, 'a> {
             return (high / PROMISED).max(low);
         }
         let aim = AIM * self.most as f64 / self.settling;
+        if self.best.is_none() {
+            let beyond = self.beyond.unwrap_or(self.most.saturating_mul(UNCOUNTED));
+            let guess = self.guess((low, beyond), aim, None);
+            return low * (guess / low).powi(self.moved.max(1)).max(1.0 + NEAR);
+        }
         let known = (high, self.fitting);
         // Where faces are not divided yet nothing tells how triangles grow.
         let is_divided = |before: &&(f64, usize)| before.1 as f64 > self.growth.undivided;
         let before = self.before.last().filter(is_divided);
-        let power = before.map_or(1.0, |&before| self.growth.power(before, known));
-        let power = if power > 0.0 { power.clamp(POWERS.0, POWERS.1) } else { 1.0 };
+        let power = before.map(|&before| self.growth.power(before, known)).filter(|&power| power > 0.0);
+        let power = power.map(|power| power.clamp(POWERS.0, POWERS.1));
         if low == 0.0 {
-            return self
-                .growth
-                .distance(known, aim.min(STEP * self.best.triangles as f64), power)
-                .min(high / (1.0 + NEAR));
+            let wanted = aim.min(STEP * self.triangles() as f64);
+            return self.guess(known, wanted, power).min(high / (1.0 + NEAR));
         }
         let span = (high / low).ln();
         let Some(beyond) = self.beyond.filter(|_| span > CLOSE) else { return middle(low, high) };
@@ -318,31 +357,41 @@ impl<'e, 'a> Search<'e, 'a> {
         let divided = |triangles: f64| self.growth.divided(triangles);
         let is_beyond_nearer = divided(beyond as f64) * divided(self.fitting as f64) < divided(aim).powi(2);
         let near = if is_beyond_nearer { (low, beyond) } else { known };
-        let power =
-            if is_apart { power } else { self.growth.power(known, (low, beyond)).clamp(POWERS.0, POWERS.1) };
-        let guess = self.growth.distance(near, aim, power);
+        let between = || self.growth.power(known, (low, beyond)).clamp(POWERS.0, POWERS.1);
+        let guess = self.guess(near, aim, if is_apart { power } else { Some(between()) });
         let farther = if is_apart { (self.moved - 1).clamp(0, 3) } else { 0 };
         let guess = near.0 * (guess / near.0).powi(1 << farther);
         let edge = (0.05 * span).min(LEAST_MOVED).exp();
         guess.clamp(low * edge, high / edge)
     }
 
+    /// The distance at which so many triangles are wanted, where there are some at another: by the power with which they grow, or by what faces
+    /// are expected to take.
+    fn guess(&self, known: (f64, usize), wanted: f64, power: Option<f64>) -> f64 {
+        let told = || self.profile.as_ref()?.from(known, wanted);
+        match power {
+            None if let Some(distance) = told() => distance.clamp(known.0 / MOST_APART, known.0 * MOST_APART),
+            _ => self.growth.distance(known, wanted, power.unwrap_or(1.0)),
+        }
+    }
+
     /// Makes the plan of a distance, which becomes either end.
     fn try_within(&mut self, next: f64) -> Result<(), RefineError> {
         let (engine, most) = (self.engine, self.most);
-        let faces = 0..self.best.closed.len() as u32;
-        let wanting: Vec<u32> = faces.filter(|&face| exceeds(self.best.expected(face), next)).collect();
         let counted = most.saturating_add(most / COUNTED_BEYOND);
         let goal = Goal::Within(next);
-        let mut found = match engine.is_settled_later() {
-            true => engine.plan(goal, counted)?,
-            false => engine.finer(&self.best, goal, &wanting, counted)?,
+        let mut found = match &self.best {
+            _ if engine.is_settled_later() => engine.plan(goal, counted)?,
+            None => engine.divided(goal, counted)?,
+            Some(best) => engine.finer(best, goal, &wanting(best, next), counted)?,
         };
         let count = found.as_ref().map(|plan| plan.triangles);
         let mut is_settled = engine.is_settled_later();
         let mut fits = count.is_some_and(|count| count <= most);
-        let is_far = |plan: &Plan| !self.settles_all && plan.triangles < most - most / FAR;
-        if let Some(plan) = found.as_mut().filter(|plan| fits && !is_settled && !is_far(plan)) {
+        let settled = self.settling * count.unwrap_or(most) as f64;
+        // Those that leave more are not the last.
+        let is_last = self.settles_all || settled >= self.enough as f64;
+        if let Some(plan) = found.as_mut().filter(|_| fits && !is_settled && is_last) {
             fits = engine.settle(plan, counted)? && plan.triangles <= most;
             is_settled = true;
             self.settling = (plan.triangles as f64 / count.unwrap_or(most) as f64).max(1.0);
@@ -351,9 +400,9 @@ impl<'e, 'a> Search<'e, 'a> {
         self.fitted = fits;
         match (found, count) {
             (Some(plan), Some(count)) if fits => {
-                self.idle = if plan.triangles > self.best.triangles { 0 } else { self.idle + 1 };
+                self.idle = if plan.triangles > self.triangles() { 0 } else { self.idle + 1 };
                 self.before.push((self.high, self.fitting));
-                (self.high, self.fitting, self.best, self.is_settled) = (next, count, plan, is_settled);
+                (self.high, self.fitting, self.best, self.is_settled) = (next, count, Some(plan), is_settled);
             }
             _ => {
                 let count = count.unwrap_or(most.saturating_mul(UNCOUNTED));
@@ -365,6 +414,15 @@ impl<'e, 'a> Search<'e, 'a> {
         let span = (self.high / self.low).ln();
         let is_halved = span <= 0.5 * self.span || self.span.is_infinite();
         (self.span, self.stalled) = if is_halved { (span, 0) } else { (self.span, self.stalled + 1) };
+        // What was found counts on adding less among its neighbours than this plan did.
+        if let Some(best) = self.best.as_mut().filter(|_| !fits && is_settled && !self.is_settled)
+            && self.settling * best.triangles as f64 > most as f64
+        {
+            self.is_settled = engine.settle(best, most)?;
+            if !self.is_settled {
+                self.give_up_best();
+            }
+        }
         Ok(())
     }
 }

@@ -9,6 +9,7 @@ mod allowances;
 mod even_parts;
 mod found;
 
+use super::Engine;
 use super::control::Control;
 use super::guess::Expected;
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Seen, Verdict};
@@ -20,7 +21,7 @@ use crate::certificate::{Cell, CellRows, Marks, Pieces, SubTriangle};
 use crate::parallel::IsStopped;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{LimitPoint, Patch, RefinedPatch, Spot, child_corners};
-use crate::progress::SharedWatch;
+use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
 use crate::vector::DVec3;
 use even_parts::{AtOnce, MOST_TESTED};
@@ -84,6 +85,28 @@ pub(super) fn decide(
             None => return Ok(None),
         }
     }
+}
+
+/// How many leaves some control faces come to, each divided by itself from the beginning; about, where that is more than `most`.
+pub(super) fn leaves_of(
+    engine: &Engine<'_>,
+    goal: &Goal,
+    faces: &[u32],
+    most: usize,
+) -> Result<Vec<usize>, Cancelled> {
+    let Engine { control, watch, ref edges, max_levels, .. } = *engine;
+    let blocks = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
+        let count = Count { leaves: AtomicUsize::new(0), most };
+        let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
+        let leaves = faces[block].iter().map(|&face| {
+            decider.face(face, None);
+            decider.tell();
+            decider.piece = Piece::default();
+            count.leaves.swap(0, Ordering::Relaxed)
+        });
+        leaves.collect::<Vec<usize>>()
+    })?;
+    Ok(blocks.concat())
 }
 
 impl Decision {

@@ -106,15 +106,20 @@ impl Plan {
 impl Engine<'_> {
     /// Divides as asked, until all conditions hold; `None` if that takes more than `most` triangles.
     pub(super) fn plan(&self, goal: Goal, most: usize) -> Result<Option<Plan>, RefineError> {
+        let Some(mut plan) = self.divided(goal, most)? else { return Ok(None) };
+        let fits = self.is_settled_later() || self.settle(&mut plan, most)?;
+        Ok(fits.then_some(plan))
+    }
+
+    /// Divides as asked. Nothing is looked at among its neighbours yet ([`Self::settle`]).
+    pub(super) fn divided(&self, goal: Goal, most: usize) -> Result<Option<Plan>, RefineError> {
         let control = (self.control, self.watch);
         let Some(decision) = decide(control, &goal, &self.edges, self.max_levels, most)? else {
             return Ok(None);
         };
         let faces = self.control.mesh.face_count();
         let mut plan = Plan::of(goal, decision, faces);
-        let fits = self.carry_out(&mut plan, Dirty::all(faces), most)?
-            && (self.is_settled_later() || self.settle(&mut plan, most)?);
-        Ok(fits.then_some(plan))
+        Ok(self.carry_out(&mut plan, Dirty::all(faces), most)?.then_some(plan))
     }
 
     /// The same for another goal, of distances alone, which asks more of these faces only: they are divided anew, and what that

@@ -18,7 +18,7 @@ pub(super) const EXACT: usize = 20_000;
 const NEARLY_ALL: usize = 16;
 
 /// A plan for a goal that asks more of these faces than another: from that, where it knows what its triangles come to.
-fn plan(
+pub(super) fn finer(
     engine: &Engine<'_>,
     coarser: &Plan,
     goal: Goal,
@@ -74,7 +74,7 @@ fn filled(
         let mut is_finer = vec![false; best.closed.len()];
         order[..middle].iter().for_each(|&(_, face)| is_finer[face as usize] = true);
         let wanting: Vec<u32> = order[fits..middle].iter().map(|&(_, face)| face).collect();
-        match plan(engine, &best, goal(is_finer), &wanting, most)? {
+        match finer(engine, &best, goal(is_finer), &wanting, most)? {
             Some(plan) => {
                 (best, fits) = (plan, middle);
                 next = if fails > order.len() { 2 * middle } else { fits.midpoint(fails) };
