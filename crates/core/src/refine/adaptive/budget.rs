@@ -369,9 +369,9 @@ impl<'e, 'a> Search<'e, 'a> {
     /// are expected to take.
     fn guess(&self, known: (f64, usize), wanted: f64, power: Option<f64>) -> f64 {
         let told = || self.profile.as_ref()?.from(known, wanted);
-        match power {
-            None if let Some(distance) = told() => distance.clamp(known.0 / MOST_APART, known.0 * MOST_APART),
-            _ => self.growth.distance(known, wanted, power.unwrap_or(1.0)),
+        match power.map_or_else(told, |_| None) {
+            Some(distance) => distance.clamp(known.0 / MOST_APART, known.0 * MOST_APART),
+            None => self.growth.distance(known, wanted, power.unwrap_or(1.0)),
         }
     }
 
