@@ -1,8 +1,8 @@
 //! The greatest number of triangles that a budget allows: the least distance whose plan fits.
 //!
 //! Each distance has a plan of its own, the same that a tolerance would have, so that what is proven at a number of
-//! triangles is what a tolerance proves with as many. Counts follow a power of the distance ([`Growth`]); the search goes
-//! down from coarse ones, which cost little, and narrows what is left. What a budget below [`EXACT`] leaves even then is spent
+//! triangles is what a tolerance proves with as many. The first distance is what some divided faces let expect ([`Profile`]); counts follow
+//! that or a power of the distance ([`Growth`]), and the search narrows what is left. What a budget below [`EXACT`] leaves even then is spent
 //! on the worst faces. Beside that stands the even division of all faces, which is nearer where these are curved alike.
 
 mod expected;
