@@ -93,7 +93,7 @@ pub(crate) fn starts<F: Fn(usize) -> u32 + Sync + Send>(
         total += piece_total;
     }
     let Ok(total) = u32::try_from(total) else { return Ok(None) };
-    let mut starts = limitmesh_pages::filled(0u32, n + 1);
+    let mut starts = limitmesh_pages::defaults::<u32>(n + 1);
     starts[n] = total;
     for_each_chunk_polled(&mut starts[..n], PIECE, poll, |piece, slots| {
         let mut running = before[piece] as u32;
@@ -241,7 +241,7 @@ pub(crate) fn map_chunks_polled<T: Send + Clone + Default, F: Fn(usize) -> T + S
     poll: &mut Poll<'_>,
     f: F,
 ) -> Result<Vec<T>, Cancelled> {
-    let mut slots = limitmesh_pages::filled(T::default(), n);
+    let mut slots = limitmesh_pages::defaults::<T>(n);
     for_each_chunk_polled(&mut slots, length, poll, |chunk, slots| {
         (chunk * length..).zip(slots).for_each(|(i, slot)| *slot = f(i));
     })?;

@@ -29,37 +29,52 @@ pub fn with_capacity<T>(capacity: usize) -> Vec<T> {
     array
 }
 
-/// A vector of `length` times the same value, on large pages where it takes megabytes. Many zeros are not even touched.
+/// A vector of `length` times the same value, on large pages where it takes megabytes.
 ///
 /// ```
-/// assert_eq!(limitmesh_pages::filled([0u32; 3], 2), [[0, 0, 0], [0, 0, 0]]);
+/// assert_eq!(limitmesh_pages::filled(7u8, 2), [7, 7]);
 /// ```
 ///
 /// # Panics
 /// Like [`Vec::with_capacity`], if that would take more than `isize::MAX` bytes.
 pub fn filled<T: Clone>(value: T, length: usize) -> Vec<T> {
-    filled_with_room(value, length, length)
+    let mut array = with_capacity(length);
+    array.resize(length, value);
+    array
 }
 
-/// Like [`filled`], with room for at least `capacity` elements if that is more than `length`.
+/// A vector of `length` default values, on large pages where it takes megabytes. Many zeros are not even touched: who writes them first
+/// does that.
 ///
 /// ```
-/// let array = limitmesh_pages::filled_with_room(0u32, 2, 4);
+/// assert_eq!(limitmesh_pages::defaults::<[u32; 3]>(2), [[0, 0, 0], [0, 0, 0]]);
+/// ```
+///
+/// # Panics
+/// Like [`Vec::with_capacity`], if that would take more than `isize::MAX` bytes.
+pub fn defaults<T: Clone + Default>(length: usize) -> Vec<T> {
+    defaults_with_room(length, length)
+}
+
+/// Like [`defaults`], with room for at least `capacity` elements if that is more than `length`.
+///
+/// ```
+/// let array: Vec<u32> = limitmesh_pages::defaults_with_room(2, 4);
 /// assert!(array == [0, 0] && array.capacity() >= 4);
 /// ```
 ///
 /// # Panics
 /// Like [`Vec::with_capacity`], if that would take more than `isize::MAX` bytes.
-pub fn filled_with_room<T: Clone>(value: T, length: usize, capacity: usize) -> Vec<T> {
+pub fn defaults_with_room<T: Clone + Default>(length: usize, capacity: usize) -> Vec<T> {
     let room = capacity.max(length);
     if size_of::<T>().saturating_mul(room) >= ALONE {
-        let mut array = vec![value; room];
+        let mut array = vec![T::default(); room];
         ask(&mut array);
         array.truncate(length);
         return array;
     }
     let mut array = with_capacity(room);
-    array.resize(length, value);
+    array.resize(length, T::default());
     array
 }
 

@@ -1,6 +1,6 @@
 //! What vectors hold, and what the system says of the memory that they lie in.
 
-use limitmesh_pages::{filled, filled_with_room, reserve, with_capacity};
+use limitmesh_pages::{defaults, defaults_with_room, filled, reserve, with_capacity};
 
 #[test]
 fn vectors_hold_what_they_should() {
@@ -9,10 +9,10 @@ fn vectors_hold_what_they_should() {
         assert!(empty.is_empty() && empty.capacity() >= length);
         let same = filled([1u32, 2, 3], length);
         assert!(same.len() == length && same.iter().all(|&one| one == [1, 2, 3]));
-        let zeros = filled([0.0f64; 3], length);
+        let zeros = defaults::<[f64; 3]>(length);
         assert!(zeros.len() == length && zeros.iter().all(|&one| one == [0.0; 3]));
-        let more = filled_with_room(7u8, length, 3 * length);
-        assert!(more.capacity() >= 3 * length && more.len() == length && more.iter().all(|&one| one == 7));
+        let more: Vec<u8> = defaults_with_room(length, 3 * length);
+        assert!(more.capacity() >= 3 * length && more.len() == length && more.iter().all(|&one| one == 0));
     }
     assert_eq!(with_capacity::<()>(usize::MAX).len(), 0);
     assert_eq!(filled((), 1 << 20).len(), 1 << 20);
@@ -56,7 +56,8 @@ fn the_kernel_knows_what_was_asked_for() {
     }
     let middle = |array: &[u8]| is_asked_for(array.as_ptr() as usize + array.len() / 2);
     for bytes in [1 << 23, 1 << 26] {
-        assert_eq!(middle(&filled(0, bytes)), Some(true), "{bytes} bytes");
+        assert_eq!(middle(&filled(7, bytes)), Some(true), "{bytes} bytes");
+        assert_eq!(middle(&defaults(bytes)), Some(true), "{bytes} bytes");
     }
     // So much that it never lies where something else lay before.
     assert_eq!(middle(&vec![0u8; 1 << 26]), Some(false));

@@ -205,7 +205,7 @@ fn smooth(
     let meshes = ValueMeshes::of(channel, rule, control)?;
     let by_face = sites.by_face(control.face_count());
     let places = |face: usize, visit: &mut dyn FnMut([f64; 3])| by_face.for_each_place(face, visit);
-    let mut values = limitmesh_pages::filled(0.0, channel.arity * sites.len());
+    let mut values = limitmesh_pages::defaults(channel.arity * sites.len());
     for first in (0..channel.arity).step_by(TOGETHER) {
         let mesh = meshes.mesh(first)?;
         let surface =

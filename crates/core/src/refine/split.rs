@@ -181,8 +181,8 @@ impl SplitTopology {
         let topology = mesh.topology();
         let count = self.starts.last().copied().unwrap_or(0) as usize;
         let poll = &mut |_| watch.poll();
-        let mut triangles = limitmesh_pages::filled([0u32; 3], count);
-        let mut twins = limitmesh_pages::filled([0u32; 3], count);
+        let mut triangles = limitmesh_pages::defaults::<[u32; 3]>(count);
+        let mut twins = limitmesh_pages::defaults::<[u32; 3]>(count);
         parallel::for_each_run(&self.starts, &mut triangles, &mut twins, poll, |face, triangles, twins| {
             let pattern = split.pattern(face);
             let first = 3 * self.starts[face];

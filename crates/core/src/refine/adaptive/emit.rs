@@ -10,7 +10,7 @@ mod jobs;
 mod kept;
 mod leaf_writer;
 
-use limitmesh_pages::filled;
+use limitmesh_pages::defaults;
 
 use super::area::Areas;
 use super::chains::{Chains, first_of};
@@ -208,7 +208,7 @@ pub(super) fn emit(
     if total > MAX_FACES || on_edges + inside >= NONE as usize {
         return Err(too_many("triangles", total).into());
     }
-    let mut starts = filled(0u32, 3 * faces + 1);
+    let mut starts = defaults::<u32>(3 * faces + 1);
     watch.each(0..3 * faces, |h| starts[h + 1] = starts[h] + chains.along(edges, h as u32) as u32 + 1)?;
     let mut next = 0;
     let first_triangles = counts.triangles().map(|count| {
@@ -238,7 +238,7 @@ pub(super) fn emit(
         parents,
         starts: first_triangles,
         offsets: Vec::new(),
-        borders: Borders { half_edges: filled(0, starts[3 * faces] as usize), starts },
+        borders: Borders { half_edges: defaults(starts[3 * faces] as usize), starts },
         sharp: Vec::new(),
         junctions: Junctions::default(),
         conditions: Vec::new(),

@@ -7,7 +7,7 @@
 
 use core::ops::{ControlFlow, Range};
 
-use limitmesh_pages::filled;
+use limitmesh_pages::defaults;
 
 use super::grid::{Grid, Numbering};
 use super::pieces::{Pieces, Values};
@@ -68,10 +68,10 @@ pub(super) fn refined_at_limit(
 
     let vertices = work.numbering.vertex_count();
     let faces = mesh.face_count() << (2 * levels);
-    let (mut triangles, mut twins) = (filled([0u32; 3], faces), filled(0u32, 3 * faces));
-    let mut outgoing = filled(0u32, vertices);
-    let mut points = filled([0.0; 3], vertices);
-    let mut by_vertex = filled([0.0; 3], if normals { vertices } else { 0 });
+    let (mut triangles, mut twins) = (defaults::<[u32; 3]>(faces), defaults::<u32>(3 * faces));
+    let mut outgoing = defaults::<u32>(vertices);
+    let mut points = defaults::<[f64; 3]>(vertices);
+    let mut by_vertex = defaults::<[f64; 3]>(if normals { vertices } else { 0 });
     let blocks = work.blocks(&mut triangles, &mut twins, &mut outgoing, &mut points, &mut by_vertex);
     let flat = parallel::each_polled(blocks, &mut |_| watch.poll(), |slots| work.fill(slots))?;
     for (outgoing, v) in outgoing.iter_mut().zip(mesh.topology().vertices()) {

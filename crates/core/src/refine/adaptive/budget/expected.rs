@@ -168,4 +168,22 @@ mod tests {
             .unwrap();
         }
     }
+
+    /// A plan closes the gaps beside these leaves, which adds triangles, and divides some faces further for their neighbours' sake.
+    #[test]
+    fn leaves_that_are_told_are_those_of_plans() {
+        for name in ["torus", "sphere", "cup", "bunny", "teddy", "shoe"] {
+            let mesh = model(name);
+            let options = (&ExactOptions::default().triangles(1), &Demands::default());
+            with_engine(&mesh, &Loop, options, &mut unobserved, |engine| {
+                let goal = Goal::Within(1e-3 * mesh.diagonal());
+                let faces: Vec<u32> = (0..mesh.face_count() as u32).collect();
+                let leaves: usize = leaves_of(engine, &goal, &faces, usize::MAX)?.iter().sum();
+                let triangles = engine.divided(goal, usize::MAX)?.unwrap().triangles;
+                assert!((leaves..leaves * 3 / 2).contains(&triangles), "{name}: {leaves}, {triangles}");
+                Ok(())
+            })
+            .unwrap();
+        }
+    }
 }

@@ -85,12 +85,12 @@ impl Arrays {
             extend_origins(&mut origins, length.vertices, watch)?;
         }
         Ok(Self {
-            positions: zeros([0.0; 3], vertices),
-            normals: zeros([0.0; 3], vertices),
+            positions: zeros(vertices),
+            normals: zeros(vertices),
             origins,
-            triangles: zeros([0; 3], triangles),
-            twins: zeros(0, (3 * triangles.0, 3 * triangles.1)),
-            parents: zeros(0, triangles),
+            triangles: zeros(triangles),
+            twins: zeros((3 * triangles.0, 3 * triangles.1)),
+            parents: zeros(triangles),
         })
     }
 
@@ -142,8 +142,8 @@ fn with_spare(count: usize) -> usize {
 }
 
 /// So many zeros, with room for more; nobody touches what is not used.
-fn zeros<T: Copy>(zero: T, (count, room): (usize, usize)) -> Vec<T> {
-    limitmesh_pages::filled_with_room(zero, count, with_spare(room.max(count)))
+fn zeros<T: Clone + Default>((count, room): (usize, usize)) -> Vec<T> {
+    limitmesh_pages::defaults_with_room(count, with_spare(room))
 }
 
 /// Adds origins of vertices that are not known yet: piece by piece, since they are no zeros, which cost nothing.
