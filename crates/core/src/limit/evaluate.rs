@@ -48,19 +48,27 @@ impl LimitTable<'_> {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<Result<Vec<[f64; 3]>, LimitError>, Cancelled> {
-        let stencils = match Stencils::of(self, mesh, poll)? {
-            Ok(stencils) => stencils,
-            Err(error) => return Ok(Err(error)),
-        };
+        match Stencils::of(self, mesh, poll)? {
+            Ok(stencils) => Ok(Ok(self.positions_by(&stencils, mesh, poll)?)),
+            Err(error) => Ok(Err(error)),
+        }
+    }
+
+    /// [`Self::positions_polled`] where the stencils are known.
+    pub(crate) fn positions_by(
+        &self,
+        stencils: &Stencils,
+        mesh: &Mesh,
+        poll: &mut Poll<'_>,
+    ) -> Result<Vec<[f64; 3]>, Cancelled> {
         let refined = self.refined_for(mesh, stencils.any_moves(), poll)?;
-        let positions = parallel::map_polled(mesh.vertex_count(), poll, |v| {
+        parallel::map_polled(mesh.vertex_count(), poll, |v| {
             let (vertex, weights) = (VertexId(v as u32), stencils.at(v).position());
             match &refined {
                 Some(refined) => two_ring_position(mesh, vertex, weights, refined),
                 None => one_ring_position(mesh, vertex, weights),
             }
-        });
-        Ok(Ok(positions?))
+        })
     }
 
     /// Unit limit normal of every vertex of `mesh`, pointing outside; where the limit surface has no tangent
@@ -89,7 +97,20 @@ impl LimitTable<'_> {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<Result<SidedNormals, LimitError>, Cancelled> {
-        self.normals_or(mesh, poll, |vertex, side| face_average(mesh, vertex, side))
+        match Stencils::of(self, mesh, poll)? {
+            Ok(stencils) => Ok(Ok(self.sided_normals_by(&stencils, mesh, poll)?)),
+            Err(error) => Ok(Err(error)),
+        }
+    }
+
+    /// [`Self::sided_normals_polled`] where the stencils are known.
+    pub(crate) fn sided_normals_by(
+        &self,
+        stencils: &Stencils,
+        mesh: &Mesh,
+        poll: &mut Poll<'_>,
+    ) -> Result<SidedNormals, Cancelled> {
+        self.normals_or(stencils, mesh, poll, |vertex, side| face_average(mesh, vertex, side))
     }
 
     /// Unit limit normals as in [`Self::sided_normals`], but zero where the limit surface has no tangent plane.
@@ -98,20 +119,20 @@ impl LimitTable<'_> {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<Result<SidedNormals, LimitError>, Cancelled> {
-        self.normals_or(mesh, poll, |_, _| DVec3::ZERO)
+        match Stencils::of(self, mesh, poll)? {
+            Ok(stencils) => Ok(Ok(self.normals_or(&stencils, mesh, poll, |_, _| DVec3::ZERO)?)),
+            Err(error) => Ok(Err(error)),
+        }
     }
 
     /// Unit limit normals; `without_plane` says what stands where the limit surface has no tangent plane.
     fn normals_or(
         &self,
+        stencils: &Stencils,
         mesh: &Mesh,
         poll: &mut Poll<'_>,
         without_plane: impl Fn(VertexId, &Side<'_>) -> DVec3 + Sync + Send,
-    ) -> Result<Result<SidedNormals, LimitError>, Cancelled> {
-        let stencils = match Stencils::of(self, mesh, poll)? {
-            Ok(stencils) => stencils,
-            Err(error) => return Ok(Err(error)),
-        };
+    ) -> Result<SidedNormals, Cancelled> {
         let refined = self.refined_for(mesh, true, poll)?;
         let normal = |vertex: VertexId, side: &Side<'_>| {
             let normal = match &refined {
@@ -138,7 +159,7 @@ impl LimitTable<'_> {
                 }
             }
         }
-        Ok(Ok(normals.finished()))
+        Ok(normals.finished())
     }
 
     /// Limit normal at the vertex that `corner` leaves, on the side of its face, as [`Self::sided_normals`] gives it.
@@ -273,7 +294,7 @@ impl Stencil {
 }
 
 /// The stencils of a mesh's vertices, looked up once for each shape that occurs.
-pub(super) struct Stencils {
+pub(crate) struct Stencils {
     list: Vec<Stencil>,
     by_vertex: Vec<u32>,
     /// The vertices that are sharp or have sharp edges inside the mesh.
@@ -281,7 +302,9 @@ pub(super) struct Stencils {
 }
 
 impl Stencils {
-    pub(super) fn of(
+    /// # Errors
+    /// The scheme has no limit at the shape of some ring.
+    pub(crate) fn of(
         table: &LimitTable<'_>,
         mesh: &Mesh,
         poll: &mut Poll<'_>,

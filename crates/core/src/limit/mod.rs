@@ -113,7 +113,7 @@ mod table;
 mod vertex_stencils;
 
 pub use error::LimitError;
-pub(crate) use evaluate::area_weighted_normal;
+pub(crate) use evaluate::{Stencils, area_weighted_normal};
 pub use neighbourhood::{difference_matrix, ring_matrix};
 pub(crate) use rows::{LimitRows, summed};
 pub use sharp::{SharpSide, SharpStencil};

@@ -148,9 +148,9 @@ impl Engine<'_> {
             }
             plan.is_touched[face as usize] = true;
             // Conditions count on the triangles beside.
-            plan.settled[face as usize] = None;
+            plan.settled.forget(face);
             for twin in (3 * face..3 * face + 3).filter_map(|h| edges.twin(h)) {
-                plan.settled[twin as usize / 3] = None;
+                plan.settled.forget(twin / 3);
             }
         })?;
         plan.chains = chains;

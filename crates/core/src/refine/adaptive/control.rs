@@ -11,7 +11,7 @@ use crate::limit::SidedNormals;
 use crate::mesh::{Mesh, Sharpness};
 use crate::patch::large_rings::LargeRings;
 use crate::patch::{LimitPoint, Patch, Rules, root_patch};
-use crate::vector::vector;
+use crate::vector::{DVec3, vector};
 
 /// What is known of the control mesh, and what is asked.
 pub(super) struct Control<'a> {
@@ -52,6 +52,12 @@ impl Control<'_> {
             let position = vector(self.positions[topology.origin(h).index()]);
             LimitPoint { position, normal: vector(self.sided.at(topology, h)) }
         })
+    }
+
+    /// The control vertex opposite a half-edge in its face.
+    pub(super) fn opposite(&self, h: u32) -> DVec3 {
+        let face = self.mesh.triangles()[h as usize / 3];
+        vector(self.mesh.positions()[face[(h as usize + 2) % 3] as usize])
     }
 
     /// Which edges of a face lie on the boundary or on a sharp edge.

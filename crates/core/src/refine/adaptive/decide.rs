@@ -18,14 +18,14 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, Piece, Place, Trees, UNJUDGED, bounded};
 use super::surface::Ground;
 use crate::certificate::{Cell, CellRows, Marks, Pieces, SubTriangle};
-use crate::parallel::IsStopped;
+use crate::parallel::{self, IsStopped};
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{LimitPoint, Patch, RefinedPatch, Spot, child_corners};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
 use crate::vector::DVec3;
 use even_parts::{AtOnce, MOST_TESTED};
-use found::{Found, FoundByFace};
+use found::Found;
 
 /// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
 const BLOCK: usize = 64;
@@ -37,7 +37,8 @@ const COUNTED: usize = 256;
 #[derive(Clone)]
 pub(super) struct Decision {
     pub(super) trees: Trees,
-    found: FoundByFace,
+    /// By control face.
+    found: Vec<Found>,
     /// How often faces were divided again.
     rounds: usize,
 }
@@ -64,19 +65,22 @@ pub(super) fn decide(
     let faces = control.mesh.face_count();
     let count = Count { leaves: AtomicUsize::new(0), most };
     let expected = Expected::of_all((control, watch), goal)?;
-    let blocks = watch.long_pieces(faces, BLOCK, |block, is_stopped| {
+    let mut found = limitmesh_pages::filled(Found::NOTHING, faces);
+    let blocks: Vec<_> = found.chunks_mut(BLOCK).enumerate().collect();
+    let pieces = parallel::each_long_polled(blocks, &mut |_| watch.poll(), |(block, found), is_stopped| {
         let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
         decider.expected = &expected;
-        let found: Vec<Found> = block.map(|face| decider.face(face as u32, None)).collect();
+        for (face, found) in (BLOCK * block..).zip(found) {
+            *found = decider.face(face as u32, None);
+        }
         decider.tell();
-        (decider.piece, found)
+        decider.piece
     })?;
     if count.is_passed() {
         return Ok(None);
     }
-    let (pieces, found): (Vec<Piece>, Vec<Vec<Found>>) = blocks.into_iter().unzip();
     let trees = Trees::of(&pieces, &mut || watch.poll())?;
-    let mut decision = Decision { trees, found: FoundByFace(found), rounds: 0 };
+    let mut decision = Decision { trees, found, rounds: 0 };
     drop((pieces, expected));
     loop {
         match decision.settle((control, watch), goal, edges, (max_levels, most), |_| None)? {
@@ -112,35 +116,35 @@ pub(super) fn leaves_of(
 impl Decision {
     /// The leaves of a face that pass on conditions, in the order of the tree; those that were split since are among them.
     pub(super) fn conditions(&self, face: u32) -> &[Condition] {
-        &self.found.of(face).conditions
+        self.found[face as usize].conditions()
     }
 
     /// What the triangles of a face count on.
     pub(super) fn allowance(&self, face: u32) -> &Allowance {
-        &self.found.of(face).allowance
+        &self.found[face as usize].allowance
     }
 
     /// The same trees, of whose leaves nothing is known.
     pub(super) fn unjudged(mut self) -> Self {
-        self.found.0.iter_mut().for_each(|block| block.fill(Found::NOTHING));
+        self.found.fill(Found::NOTHING);
         self
     }
 
     /// The greatest bound of a leaf of a face, conditions expected to hold.
     pub(super) fn bound(&self, face: u32) -> f64 {
-        let found = self.found.of(face);
-        let conditional = found.conditions.iter().map(|condition| condition.deviation.height);
-        conditional.fold(found.extent.bound, f64::max)
+        let found = &self.found[face as usize];
+        let conditional = found.conditions().iter().map(|condition| condition.deviation.height);
+        conditional.fold(found.bound(), f64::max)
     }
 
     /// Whether leaves fail that must not be divided.
     pub(super) fn has_failed(&self) -> bool {
-        self.found.iter().any(|found| found.has_failed)
+        self.found.iter().any(Found::has_failed)
     }
 
-    /// What the leaves of the faces come to.
-    pub(super) fn extents(&self) -> impl Iterator<Item = &Extent> {
-        self.found.iter().map(|found| &found.extent)
+    /// What the leaves of a face come to.
+    pub(super) fn extent(&self, face: u32) -> Extent {
+        self.found[face as usize].extent(face)
     }
 }
 
@@ -240,7 +244,7 @@ impl<'a> Decider<'a> {
             self.general(&patch, (&refined, middles), corners, open, place)
         };
         self.piece.roots.push(word);
-        self.end()
+        self.end(face)
     }
 
     /// Begins with a face.
@@ -255,13 +259,9 @@ impl<'a> Decider<'a> {
     }
 
     /// What the face came to.
-    fn end(&mut self) -> Found {
-        Found {
-            extent: self.extent,
-            allowance: self.allowance,
-            has_failed: self.has_failed,
-            conditions: core::mem::take(&mut self.conditions),
-        }
+    fn end(&mut self, face: u32) -> Found {
+        let conditions = core::mem::take(&mut self.conditions);
+        Found::of(face, &self.extent, self.allowance, (self.has_failed, conditions))
     }
 
     /// A node with leaves so many levels below it that were not judged.

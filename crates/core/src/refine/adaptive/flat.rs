@@ -98,7 +98,9 @@ pub(super) struct FlatRegions {
     beyond_rims: f64,
     /// Whether the rim of such a region enclosed nothing that could be triangulated.
     has_gaps: AtomicBool,
-    /// So many leaves of a flat face count as one while faces are divided.
+    /// By control face, whether it is part of a region or there may be strips over it; empty where there are neither.
+    is_merged: Vec<bool>,
+    /// So many leaves of such a face count as one while faces are divided.
     weight: usize,
 }
 
@@ -137,10 +139,8 @@ impl FlatRegions {
             let point = vector(mesh.positions()[mesh.triangles()[seed as usize][0] as usize]);
             let plane = Plane { point, normal: normals[seed as usize] };
             is_left[seed as usize] = false;
-            let height = height_over(control, &normals, seed, &plane);
-            let Some(mut height) = height.filter(|&height| height <= most) else {
-                continue;
-            };
+            let height = |face: u32| height_over((control, edges), (&normals, face), &plane, most);
+            let Some(mut off_plane) = height(seed) else { continue };
             let mut faces = vec![seed];
             let mut next = 0;
             while let Some(&face) = faces.get(next) {
@@ -151,10 +151,9 @@ impl FlatRegions {
                     if !is_left[beside as usize] {
                         continue;
                     }
-                    let found = height_over(control, &normals, beside, &plane);
-                    if let Some(found) = found.filter(|&found| found <= most) {
+                    if let Some(found) = height(beside) {
                         is_left[beside as usize] = false;
-                        height = height.max(found);
+                        off_plane = off_plane.max(found);
                         faces.push(beside);
                     }
                 }
@@ -162,7 +161,7 @@ impl FlatRegions {
             faces.sort_unstable();
             faces.iter().for_each(|&face| of_face[face as usize] = regions.len() as u32);
             regions.push((faces, plane));
-            off_planes = off_planes.max(height + HEIGHT_ROUNDING * size);
+            off_planes = off_planes.max(off_plane + HEIGHT_ROUNDING * size);
         }
         let weight = if options.max_memory.is_some() { 1 } else { WEIGHT };
         let straight = strips::straight_faces((control, edges), &normals, (&of_face, most), watch)?;
@@ -172,6 +171,8 @@ impl FlatRegions {
         if !straight.is_empty() {
             off_planes = off_planes.max(HEIGHT_ROUNDING * size);
         }
+        let mut is_merged: Vec<bool> = of_face.iter().map(|&region| region != NONE).collect();
+        straight.iter().for_each(|&face| is_merged[face as usize] = true);
         let unfolds = options.unfold;
         let mut found = Self {
             of_face,
@@ -182,6 +183,7 @@ impl FlatRegions {
             by_rim: Vec::new(),
             beyond_rims: 0.0,
             has_gaps: AtomicBool::new(false),
+            is_merged,
             weight,
         };
         found.by_rim = found.by_rim((control, edges), (options, most), watch)?;
@@ -262,8 +264,7 @@ impl FlatRegions {
     /// How many leaves of a face count as one triangle while faces are divided: of those of flat faces, and of strips, most are not going
     /// to stay.
     pub(super) fn weight(&self, face: u32) -> usize {
-        let is_merged = self.region(face).is_some() || self.straight.binary_search(&face).is_ok();
-        if is_merged { self.weight } else { 1 }
+        if self.is_merged.get(face as usize).copied().unwrap_or(false) { self.weight } else { 1 }
     }
 
     /// The region of a face.
@@ -305,12 +306,23 @@ fn may_be_flat((control, edges): (&Control<'_>, &Edges<'_>), normals: &[DVec3], 
     normal != DVec3::ZERO && beside.all(|other| other.distance_squared(normal) <= ALIKE * ALIKE)
 }
 
-/// How far the surface over a face is off a plane at most; `None` where it faces the other way.
-fn height_over(control: &Control<'_>, normals: &[DVec3], face: u32, plane: &Plane) -> Option<f64> {
-    if normals[face as usize].dot(plane.normal) <= 0.0 {
+/// How far the surface over a face is off a plane at most; `None` where that is more than `most`, or where the face looks the other way.
+fn height_over(
+    (control, edges): (&Control<'_>, &Edges<'_>),
+    (normals, face): (&[DVec3], u32),
+    plane: &Plane,
+    most: f64,
+) -> Option<f64> {
+    // Nearly all faces are told apart by the vertices around them, which are among the control points.
+    let open = control.open(face);
+    let is_off = |h: u32| {
+        let twin = edges.twin(h).filter(|_| !open[h as usize % 3]);
+        twin.is_some_and(|twin| plane.height(control.opposite(twin)).abs() > most)
+    };
+    if normals[face as usize].dot(plane.normal) <= 0.0 || (3 * face..3 * face + 3).any(is_off) {
         return None;
     }
-    let mut most = 0.0f64;
-    control.patch(face).for_each_hull_point(|point| most = most.max(plane.height(point).abs()));
-    Some(most)
+    let mut height = 0.0f64;
+    control.patch(face).for_each_hull_point(|point| height = height.max(plane.height(point).abs()));
+    (height <= most).then_some(height)
 }

@@ -9,7 +9,7 @@ use super::decide::{Decision, decide};
 use super::dirty::Dirty;
 use super::emit::Emission;
 use super::judge::{Condition, Goal};
-use super::quadtree::Place;
+use super::settle::SettledFaces;
 use super::{Engine, block};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
@@ -23,8 +23,8 @@ pub(super) struct Plan {
     pub(super) triangles: usize,
     /// Leaves fail that must not be divided.
     pub(super) has_failed: bool,
-    /// By control face whose leaves that pass on conditions do so, the greatest bound of one, and the leaf.
-    pub(super) settled: Vec<Option<(f64, Place)>>,
+    /// The control faces whose leaves that pass on conditions do so.
+    pub(super) settled: SettledFaces,
     /// Control faces whose triangles have changed since the last emission.
     pub(super) is_touched: Vec<bool>,
     /// What was emitted last, as far as it was.
@@ -41,7 +41,7 @@ impl Plan {
             closed: filled(Closed::default(), faces),
             triangles: 0,
             has_failed: false,
-            settled: filled(None, faces),
+            settled: SettledFaces::none(faces),
             is_touched: vec![true; faces],
             emission: None,
         }
@@ -65,7 +65,7 @@ impl Plan {
     /// The greatest bound of a face's triangles.
     pub(super) fn bound(&self, face: u32) -> f64 {
         let closing = self.closed[face as usize].extent().map_or(0.0, |extent| extent.bound);
-        let settled = self.settled[face as usize].map_or(0.0, |(bound, _)| bound);
+        let settled = self.settled.bound(face);
         closing.max(settled).max(self.decision.bound(face))
     }
 
@@ -73,7 +73,7 @@ impl Plan {
     /// enough for a goal need not be as good as it gets, so these are judged anew for one that asks for less.
     pub(super) fn expected(&self, face: u32) -> f64 {
         let bound = self.bound(face);
-        if self.settled[face as usize].is_some() {
+        if self.settled.has(face) {
             return bound;
         }
         let conditions = [self.decision.conditions(face), self.closed[face as usize].conditions()];

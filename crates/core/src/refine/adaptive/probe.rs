@@ -4,23 +4,23 @@
 //! worst leaves to the nearest triangle of the mesh, which is looked for in all control faces whose points come near.
 
 mod farthest;
+mod nearest_triangle;
 
-use std::collections::HashSet;
+use core::cmp::Ordering;
+use std::collections::{HashMap, HashSet};
 
 use super::emit::Emission;
 use super::judge::Goal;
 use super::measure::{Measured, measure};
 use super::quadtree::Place;
-use super::{Engine, Plan, block};
+use super::{Engine, Plan};
 use crate::certificate::TriangleFrame;
-use crate::geometry::box_tree::{Bounds, NO_BOUNDS, distance_squared_to, grown};
-use crate::geometry::nearer;
 use crate::index::VertexId;
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::ErrorBounds;
-use crate::vector::{DVec3, vector};
 use farthest::{SAMPLED_LEVELS, farthest, sample};
+use nearest_triangle::Nearest;
 
 /// Leaves with the greatest bounds that are looked at for a lower bound.
 const PROBED: usize = 64;
@@ -53,6 +53,9 @@ const MET_WIDE: f64 = 1.12;
 /// Control faces that are looked at together for tighter bounds at first, then twice as many each time.
 const TIGHTENED: usize = 64;
 
+/// So many bounds may matter in the last round, with as many as were taken again before it.
+const MOST_CANDIDATES: usize = 3 * TIGHTENED << MOST_TIGHTENINGS;
+
 /// The share of the triangles (one in so many) that are looked at again where the tolerance is met.
 const MET_SHARE: usize = 64;
 
@@ -62,14 +65,11 @@ const MET_AT_LEAST: usize = 6_000;
 /// Bounds are taken again only if the greatest that there is no room for is below this part of the upper bound.
 const WORTH_WHILE: f64 = 0.95;
 
-/// Boxes that are looked at together: control faces with consecutive numbers are often near each other.
-const GROUP: usize = 64;
-
-/// Boxes and triangles that are looked at between two calls of the observer.
-const LOOKED_AT: u32 = 1 << 14;
-
 /// How often that is done.
 const MOST_TIGHTENINGS: usize = 6;
+
+/// Vertices that are looked at between two calls of the observer.
+const LOOKED_AT: usize = 1 << 14;
 
 /// What was looked at for lower bounds.
 struct Probed {
@@ -88,53 +88,52 @@ pub(super) fn probe(
     (measured, is_met): (Option<&[Measured]>, bool),
 ) -> Result<ErrorBounds, Cancelled> {
     let watch = engine.watch;
-    let mut worst = match measured {
-        Some(measured) => measured.iter().map(|face| face.worst).collect(),
-        None => plan.worst_by_face(watch)?,
-    };
     let mut best =
         ErrorBounds { lower: 0.0, upper: 0.0, at: [0.0; 3], certified: engine.control.rules.is_certified() };
-    let mesh = Nearest::of(engine, plan, emission)?;
+    let mesh = Nearest::of(engine.sources(plan, emission), watch)?;
     // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
     let heights = measured.iter().flat_map(|all| all.iter().map(|face| face.highest));
     let highest = greatest(heights, PROBED, watch)?;
     let (enough, wide) = if is_met { (MET_NARROW, MET_WIDE) } else { (NARROW, WIDE) };
     let mut probed = Probed { leaves: HashSet::new(), enough };
-    let mut is_known = vec![measured.is_some(); worst.len()];
     lower(engine, (plan, emission), &mesh, (&highest, |_| true, &mut probed), &mut best)?;
-    // By control face, the lower bound for which it was looked at.
-    let mut tightened: Vec<Option<f64>> = limitmesh_pages::filled(None, worst.len());
-    let again = |length: f64, faces: &[u32], worst: &mut [(f64, Place)], is_known: &mut [bool]| {
+    let again = |length: f64, faces: &[u32]| {
         let nothing = Goal::Within(f64::INFINITY);
-        let found = measure(&engine.sources(plan, emission), watch, (&nothing, length), (faces, None, None))?;
-        for (&face, found) in faces.iter().zip(found) {
-            let known = &mut worst[face as usize];
-            if found.worst.0 < known.0 {
-                *known = found.worst;
-                is_known[face as usize] = true;
-            }
-        }
-        Ok(())
+        measure(&engine.sources(plan, emission), watch, (&nothing, length), (faces, None, None))
     };
+    let mut worst = Worst { plan, measured, bounded: HashMap::new() };
+    // In no round another one comes among the greatest.
+    let mut candidates = greatest_unsorted(worst.of_all(), MOST_CANDIDATES, watch)?;
     // What failed for sure has no bound yet.
-    let unbounded = worst.iter().filter(|(bound, _)| bound.is_infinite()).map(|(_, place)| place.face);
-    again(f64::MAX, &unbounded.collect::<Vec<u32>>(), &mut worst, &mut is_known)?;
+    if candidates.iter().any(|(bound, _)| bound.is_infinite()) {
+        let unbounded = worst.of_all().filter(|(bound, _)| bound.is_infinite()).map(|(_, place)| place.face);
+        let unbounded: Vec<u32> = unbounded.collect();
+        let found = again(f64::MAX, &unbounded)?;
+        let found = unbounded.into_iter().zip(found.into_iter().map(|found| found.worst));
+        worst.bounded = found.filter(|(_, (bound, _))| bound.is_finite()).collect();
+        candidates = greatest_unsorted(worst.of_all(), MOST_CANDIDATES, watch)?;
+    }
+    // Which of them were looked at again, the lower bound for which they were, and whether that told which leaf is the worst.
+    let mut tightened: HashMap<u32, (f64, bool)> = HashMap::new();
     // A tolerance that is met is proven already: what else there is to know must not take longer than to meet it.
     let mut room = if is_met { emission.triangles.len() / MET_SHARE + MET_AT_LEAST } else { usize::MAX };
     for round in 0.. {
         // Before this round fewer than half as many were tightened.
         let most = PROBED.max(TIGHTENED << (round + 1));
-        let order = greatest(worst.iter().copied(), most, watch)?;
+        let order = greatest(candidates.iter().copied(), most, watch)?;
         best.upper = order.first().map_or(0.0, |&(bound, _)| bound);
-        let is_leaf = |place: Place| is_known[place.face as usize];
+        let is_leaf = |place: Place| {
+            let is_tighter = tightened.get(&place.face).is_some_and(|&(_, is_tighter)| is_tighter);
+            is_tighter || worst.is_leaf(place.face)
+        };
         lower(engine, (plan, emission), &mesh, (&order, is_leaf, &mut probed), &mut best)?;
         if !best.certified || best.upper <= wide * best.lower || round >= MOST_TIGHTENINGS {
             break;
         }
         // Bounds that are good enough for the goals need not be tight.
         let is_loose = |&(bound, place): &(f64, Place)| {
-            let known = tightened[place.face as usize];
-            bound > best.lower && known.is_none_or(|known| wide * known < best.lower)
+            bound > best.lower
+                && tightened.get(&place.face).is_none_or(|&(known, _)| wide * known < best.lower)
         };
         let (mut loose, mut stays) = (Vec::new(), 0.0);
         for &(bound, place) in order.iter().filter(|known| is_loose(known)).take(TIGHTENED << round) {
@@ -150,15 +149,57 @@ pub(super) fn probe(
         if loose.is_empty() || stays > WORTH_WHILE * best.upper {
             break;
         }
-        again(NARROW * best.lower, &loose, &mut worst, &mut is_known)?;
-        loose.iter().for_each(|&face| tightened[face as usize] = Some(best.lower));
+        let found = again(NARROW * best.lower, &loose)?;
+        let found: HashMap<u32, (f64, Place)> =
+            loose.into_iter().zip(found.into_iter().map(|found| found.worst)).collect();
+        for known in &mut candidates {
+            let Some(found) = found.get(&known.1.face) else { continue };
+            let was_tighter = tightened.get(&known.1.face).is_some_and(|&(_, is_tighter)| is_tighter);
+            let is_tighter = found.0 < known.0;
+            tightened.insert(known.1.face, (best.lower, is_tighter || was_tighter));
+            if is_tighter {
+                *known = *found;
+            }
+        }
     }
     if !best.certified {
-        best.upper = estimated(engine, plan, &worst, &mesh, &mut best)?;
+        best.upper = estimated(engine, &worst, &mesh, &mut best)?;
     }
     best.upper = best.upper.max(best.lower) + engine.rounding;
     best.lower = (best.lower - engine.rounding).max(0.0);
     Ok(best)
+}
+
+/// The greatest bounds of the control faces, and the leaves that have them.
+struct Worst<'a> {
+    plan: &'a Plan,
+    measured: Option<&'a [Measured]>,
+    /// What faces came to that had failed for sure.
+    bounded: HashMap<u32, (f64, Place)>,
+}
+
+impl Worst<'_> {
+    fn of(&self, face: u32) -> (f64, Place) {
+        let known = match self.measured {
+            Some(measured) => measured[face as usize].worst,
+            None => self.plan.worst_of(face),
+        };
+        if known.0.is_infinite() { self.bounded.get(&face).copied().unwrap_or(known) } else { known }
+    }
+
+    fn of_all(&self) -> impl Iterator<Item = (f64, Place)> {
+        (0..self.plan.closed.len() as u32).map(|face| self.of(face))
+    }
+
+    /// Whether the leaf of a face is one of those that were emitted: others may have been split since.
+    fn is_leaf(&self, face: u32) -> bool {
+        self.measured.is_some() || self.bounded.contains_key(&face)
+    }
+}
+
+/// The order of bounds, the greatest first.
+fn by_bound(a: &(f64, Place), b: &(f64, Place)) -> Ordering {
+    b.0.total_cmp(&a.0).then_with(|| (a.1.face, a.1.path).cmp(&(b.1.face, b.1.path)))
 }
 
 /// So many of the greatest bounds, the greatest first.
@@ -167,23 +208,34 @@ fn greatest(
     most: usize,
     watch: &SharedWatch<'_>,
 ) -> Result<Vec<(f64, Place)>, Cancelled> {
-    let by_place = |a: &Place, b: &Place| (a.face, a.path).cmp(&(b.face, b.path));
-    let order = |a: &(f64, Place), b: &(f64, Place)| b.0.total_cmp(&a.0).then_with(|| by_place(&a.1, &b.1));
-    let mut found = Vec::with_capacity(2 * most);
+    let mut found = greatest_unsorted(bounds, most, watch)?;
+    found.sort_unstable_by(by_bound);
+    Ok(found)
+}
+
+/// The same in any order.
+fn greatest_unsorted(
+    bounds: impl Iterator<Item = (f64, Place)>,
+    most: usize,
+    watch: &SharedWatch<'_>,
+) -> Result<Vec<(f64, Place)>, Cancelled> {
+    let mut found = Vec::new();
     // So many are at least as great as this.
     let mut least: Option<(f64, Place)> = None;
     watch.each(bounds, |bound| {
-        if least.is_some_and(|least| order(&least, &bound).is_le()) {
+        if least.is_some_and(|least| by_bound(&least, &bound).is_le()) {
             return;
         }
         found.push(bound);
         if found.len() == 2 * most {
-            least = Some(*found.select_nth_unstable_by(most - 1, order).1);
+            least = Some(*found.select_nth_unstable_by(most - 1, by_bound).1);
             found.truncate(most);
         }
     })?;
-    found.sort_unstable_by(order);
-    found.truncate(most);
+    if found.len() > most {
+        found.select_nth_unstable_by(most - 1, by_bound);
+        found.truncate(most);
+    }
     Ok(found)
 }
 
@@ -197,7 +249,7 @@ fn lower(
     best: &mut ErrorBounds,
 ) -> Result<(), Cancelled> {
     let most = order.first().map_or(0.0, |&(promise, _)| promise);
-    let most_probed = PROBED.min(FEWEST_PROBED + MOST_BOXES / mesh.boxes.len().max(1));
+    let most_probed = PROBED.min(FEWEST_PROBED + MOST_BOXES / plan.closed.len().max(1));
     for &(promise, place) in order.iter().take(most_probed) {
         if promise <= best.lower || best.lower > probed.enough * most {
             break;
@@ -220,20 +272,18 @@ fn lower(
 /// many of them the next estimate.
 fn estimated(
     engine: &Engine<'_>,
-    plan: &Plan,
-    worst: &[(f64, Place)],
+    worst: &Worst<'_>,
     mesh: &Nearest<'_, '_>,
     best: &mut ErrorBounds,
 ) -> Result<f64, Cancelled> {
     let control = engine.control;
-    let bounds = worst.iter().map(|&(bound, _)| bound);
-    let mut order: Vec<(f64, u32)> = bounds.zip(0..).collect();
+    let mut order: Vec<(f64, u32)> = worst.of_all().map(|(bound, _)| bound).zip(0..).collect();
     order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     for (count, &(bound, face)) in order.iter().enumerate() {
         if bound <= best.lower || count >= MOST_MEASURED {
             return Ok(bound.max(best.lower));
         }
-        let trees = &plan.decision.trees;
+        let trees = &worst.plan.decision.trees;
         let levels = trees.depth(trees.root(face)) as usize + SAMPLED_LEVELS;
         let mut points = Vec::new();
         sample(control.piece(face).surface(control.rules), levels.min(MOST_SAMPLED_LEVELS), &mut points);
@@ -248,81 +298,14 @@ fn estimated(
 }
 
 impl Plan {
-    /// The worst leaves of the control faces, with their bounds.
-    fn worst_by_face(&self, watch: &SharedWatch<'_>) -> Result<Vec<(f64, Place)>, Cancelled> {
-        let mut worst: Vec<(f64, Place)> =
-            (0..self.closed.len() as u32).map(|face| (0.0, Place::root(face))).collect();
-        let closed = self.closed.iter().filter_map(|face| face.extent());
-        let extents = self.decision.extents().chain(closed);
+    /// The greatest bound of a control face, and the leaf that has it.
+    fn worst_of(&self, face: u32) -> (f64, Place) {
+        let closing = self.closed[face as usize].extent().copied();
+        let extents = [Some(self.decision.extent(face)), closing].into_iter().flatten();
         let judged = extents.filter_map(|extent| Some((extent.bound, extent.worst?)));
-        watch.each(judged.chain(self.settled.iter().flatten().copied()), |(bound, place)| {
-            let known = &mut worst[place.face as usize];
-            if bound > known.0 {
-                *known = (bound, place);
-            }
-        })?;
-        Ok(worst)
-    }
-}
-
-/// The nearest points of the emitted triangles.
-struct Nearest<'a, 'w> {
-    watch: &'a SharedWatch<'w>,
-    emission: &'a Emission,
-    /// Boxes that hold the surface over each control face, and so the corners of its triangles.
-    boxes: Vec<Bounds>,
-    /// Those of [`GROUP`] boxes together.
-    groups: Vec<Bounds>,
-}
-
-impl<'a, 'w> Nearest<'a, 'w> {
-    fn of(engine: &'a Engine<'w>, plan: &Plan, emission: &'a Emission) -> Result<Self, Cancelled> {
-        let (control, edges) = (engine.control.mesh, &engine.edges);
-        let bounds = |face: usize| {
-            let corners = control.triangles()[face].map(|vertex| vector(emission.positions[vertex as usize]));
-            let mut bounds = corners.into_iter().fold(NO_BOUNDS, grown);
-            let edges = (3 * face as u32..3 * face as u32 + 3).map(|h| plan.chains.vertices(edges, h));
-            for run in edges.chain([emission.vertices_inside(face as u32)]) {
-                bounds = emission.positions[run].iter().map(|&point| vector(point)).fold(bounds, grown);
-            }
-            bounds
-        };
-        let faces = control.face_count();
-        let boxes = engine.watch.map(faces, block(faces), bounds)?;
-        let joined = |a: Bounds, &[low, high]: &Bounds| grown(grown(a, low), high);
-        let groups = boxes.chunks(GROUP).map(|group| group.iter().fold(NO_BOUNDS, joined)).collect();
-        Ok(Self { watch: engine.watch, emission, boxes, groups })
-    }
-
-    /// The distance of a point to the mesh; `face` is likely to be nearest.
-    fn distance(&self, point: DVec3, face: u32) -> Result<f64, Cancelled> {
-        let mut least = f64::INFINITY;
-        self.within(face, point, &mut least)?;
-        for (group, bounds) in self.groups.iter().enumerate() {
-            if group.is_multiple_of(LOOKED_AT as usize / GROUP) {
-                self.watch.poll()?;
-            }
-            if distance_squared_to(bounds, point) < least {
-                let first = GROUP * group;
-                for (other, bounds) in (first..).zip(&self.boxes[first..]).take(GROUP) {
-                    if distance_squared_to(bounds, point) < least && other != face as usize {
-                        self.within(other as u32, point, &mut least)?;
-                    }
-                }
-            }
-        }
-        Ok(least.sqrt())
-    }
-
-    fn within(&self, face: u32, point: DVec3, least: &mut f64) -> Result<(), Cancelled> {
-        for (i, triangle) in (1u32..).zip(&self.emission.triangles[self.emission.triangles_of(face)]) {
-            if i.is_multiple_of(LOOKED_AT) {
-                self.watch.poll()?;
-            }
-            let corners = triangle.map(|vertex| vector(self.emission.positions[vertex as usize]) - point);
-            *least = nearer(*least, corners);
-        }
-        Ok(())
+        let greater =
+            |known: (f64, Place), other: (f64, Place)| if other.0 > known.0 { other } else { known };
+        judged.chain(self.settled.worst(face)).fold((0.0, Place::root(face)), greater)
     }
 }
 
@@ -333,7 +316,7 @@ pub(super) fn rounding(control: &Mesh, max_levels: usize, watch: &SharedWatch<'_
     let size = control.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
     let topology = control.topology();
     let valence = |v: usize| topology.valence_and_openness(VertexId(v as u32)).0;
-    let most = watch.pieces(control.vertex_count(), LOOKED_AT as usize, |piece| piece.map(valence).max());
+    let most = watch.pieces(control.vertex_count(), LOOKED_AT, |piece| piece.map(valence).max());
     let most = most?.into_iter().flatten().max().unwrap_or(0);
     let units = 32.0 + 8.0 * max_levels.min(MOST_LEVELS) as f64 + f64::from(most);
     Ok((units * f64::EPSILON + 4.0 * TriangleFrame::ROUNDING) * size)

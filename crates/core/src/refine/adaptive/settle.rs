@@ -3,6 +3,8 @@
 //! Most triangles pass whatever is beside them ([`super::judge`]). What is left counted on neighbours like itself; here the
 //! angles between the emitted triangles say whether that was right.
 
+mod settled_faces;
+
 use std::collections::HashSet;
 
 use super::area::Areas;
@@ -16,6 +18,7 @@ use crate::mesh::NONE;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
 use crate::vector::{DVec3, vector};
+pub(super) use settled_faces::SettledFaces;
 
 /// Leaves that one call takes together.
 const BLOCK: usize = 1024;
@@ -51,10 +54,7 @@ impl Engine<'_> {
                 self.watch.poll()?;
                 if place.level >= self.max_levels {
                     plan.has_failed = true;
-                    let known = &mut plan.settled[place.face as usize];
-                    if known.is_none_or(|(known, _)| bound > known) {
-                        *known = Some((bound, place));
-                    }
+                    plan.settled.add(place, bound);
                     continue;
                 }
                 is_split = true;
@@ -96,24 +96,26 @@ impl Engine<'_> {
         if matches!(plan.goal, Goal::Even(..)) {
             return Ok(());
         }
-        self.watch.each(0..plan.closed.len(), |face| {
-            let lists = [plan.decision.conditions(face as u32), plan.closed[face].conditions()];
-            if plan.settled[face].is_some() || lists.iter().all(|list| list.is_empty()) {
+        self.watch.each(0..plan.closed.len() as u32, |face| {
+            let lists = [plan.decision.conditions(face), plan.closed[face as usize].conditions()];
+            if plan.settled.has(face) || lists.iter().all(|list| list.is_empty()) {
                 return;
             }
             let closing = |face: u32| plan.closed[face as usize].extent();
-            let (around, _) = plan.decision.around(self.control, &self.edges, face as u32, closing);
+            let (around, _) = plan.decision.around(self.control, &self.edges, face, closing);
             let bounds =
                 lists.into_iter().flatten().map(|condition| (condition.bound(&around), condition.place));
             let worst = bounds.max_by(|a, b| a.0.total_cmp(&b.0));
-            plan.settled[face] = worst.filter(|&(bound, _)| bound <= plan.goal.allowed(face as u32));
+            if let Some((bound, place)) = worst.filter(|&(bound, _)| bound <= plan.goal.allowed(face)) {
+                plan.settled.add(place, bound);
+            }
         })
     }
 
     /// What must be looked at: the leaves with conditions that nobody has looked at, and what is beside them.
     fn conditional(&self, plan: &Plan) -> Result<Areas, Cancelled> {
         let mut areas = Areas::default();
-        let faces = (0..plan.closed.len() as u32).filter(|&face| plan.settled[face as usize].is_none());
+        let faces = (0..plan.closed.len() as u32).filter(|&face| !plan.settled.has(face));
         self.watch.each(faces, |face| {
             let open = self.control.open(face);
             let lists = [plan.decision.conditions(face), plan.closed[face as usize].conditions()];
@@ -162,12 +164,11 @@ impl Engine<'_> {
 fn failing(
     emission: &Emission,
     goal: &Goal,
-    settled: &mut [Option<(f64, Place)>],
+    settled: &mut SettledFaces,
     watch: &SharedWatch<'_>,
 ) -> Result<Vec<(Place, f64)>, Cancelled> {
     let sharp = sharp_edges(emission, watch)?;
-    let conditions =
-        emission.conditions.iter().filter(|(condition, ..)| settled[condition.place.face as usize].is_none());
+    let conditions = emission.conditions.iter().filter(|(condition, ..)| !settled.has(condition.place.face));
     let conditions: Vec<&(Condition, u32, u32)> = conditions.collect();
     let found = watch.pieces(conditions.len(), BLOCK, |block| {
         let bounds = conditions[block].iter().map(|(condition, first, last)| {
@@ -187,21 +188,17 @@ fn failing(
     })?;
     let (mut failing, mut failed) = (Vec::new(), HashSet::new());
     watch.each(found.into_iter().flatten(), |(bound, holds, place)| {
-        let known = &mut settled[place.face as usize];
-        if !holds {
+        if holds {
+            settled.add(place, bound);
+        } else {
             failing.push((place, bound));
             failed.insert(place.face);
-        } else if known.is_none_or(|(known, _)| bound > known) {
-            *known = Some((bound, place));
         }
     })?;
     // Where all leaves with conditions have been divided since there is nothing left to look at.
-    watch.each((0..).zip(settled.iter_mut()), |(face, known)| {
-        if failed.contains(&face) {
-            *known = None;
-        } else if known.is_none() {
-            *known = Some((0.0, Place::root(face)));
-        }
+    watch.each(0..settled.faces(), |face| match failed.contains(&face) {
+        true => settled.forget(face),
+        false => settled.settle(face),
     })?;
     Ok(failing)
 }

@@ -40,7 +40,7 @@ impl Decider<'_> {
         self.begin(face);
         // What was let pass counts on that still, and of what replaces it nothing is tilted more.
         self.allowance = found.allowance;
-        self.extent = Extent { bound: 0.0, worst: None, ..found.extent };
+        self.extent = Extent { bound: 0.0, worst: None, ..found.extent(face) };
         let word = before.trees.root(face);
         let (open, place) = (self.control.open(face), Place::root(face));
         let word = if before.is_within(word, self.judge.limit) {
@@ -50,7 +50,7 @@ impl Decider<'_> {
             self.node_again((before, word), &patch, self.control.corners(face), open, place)
         };
         self.piece.roots.push(word);
-        self.end()
+        self.end(face)
     }
 
     /// A node all of whose leaves stay.

@@ -38,7 +38,7 @@ impl Decision {
             }
         })?;
         for &(face, tilt, slope) in &wanting {
-            let own = &mut self.found.of_mut(face).allowance;
+            let own = &mut self.found[face as usize].allowance;
             *own = if self.rounds >= MOST_ROUNDS {
                 Allowance::NOTHING
             } else {
@@ -70,7 +70,7 @@ impl Decision {
         let again = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
             let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
             let again = faces[block].iter().map(|&face| {
-                let found = self.found.of(face);
+                let found = &self.found[face as usize];
                 let found = match coarser {
                     None => decider.face(face, Some(found.allowance)),
                     Some(goal) => decider.again(face, Before { trees: &self.trees, goal }, found),
@@ -87,7 +87,7 @@ impl Decision {
             if !self.trees.replace(face, &piece) {
                 return Err(self.trees.too_many(piece.words.len()).into());
             }
-            *self.found.of_mut(face) = found;
+            self.found[face as usize] = found;
         }
         Ok(true)
     }
@@ -102,7 +102,7 @@ impl Decision {
         closing: impl Fn(u32) -> Option<&'c Extent>,
     ) -> (Allowance, f64) {
         let all = |face: u32| {
-            let mut extent = self.found.of(face).extent;
+            let mut extent = self.extent(face);
             if let Some(closing) = closing(face) {
                 extent.add(closing);
             }

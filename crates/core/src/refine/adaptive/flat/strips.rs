@@ -12,7 +12,7 @@
 use limitmesh_pages::filled;
 
 use super::{FlatRegions, Plane};
-use crate::index::HalfEdgeId;
+use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::NONE;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::normal_net::{CUBIC, tangents};
@@ -28,6 +28,11 @@ const BLOCK: usize = 64;
 
 /// Triangles are looked at where one beside them is so many times as far off their plane as it may be: that of a sliver is not known well.
 const NEARLY: f64 = 1024.0;
+
+/// Where the coefficients of a regular piece's derivative along an edge, a quarter of them, are within a distance of the first, the vertex opposite
+/// that edge is within half of so many times this distance of the middle between the vertices beyond the two other edges: the second
+/// difference of these three is a sum of differences from the first, with weights that together come to 24. A third more for rounding.
+const BENT: f64 = 32.0;
 
 /// Fewer triangles than this are not put together.
 const FEWEST: usize = 3;
@@ -134,9 +139,8 @@ pub(super) fn straight_faces(
             && (3 * face..3 * face + 3).any(|h| {
                 let twin = edges.twin(h).filter(|_| control.lasting.edge(HalfEdgeId(h)) <= 0.0);
                 twin.is_some_and(|twin| {
-                    let opposite = mesh.triangles()[twin as usize / 3][(twin as usize + 2) % 3];
                     !is_flat(twin / 3)
-                        && plane.height(vector(mesh.positions()[opposite as usize])).abs() <= most
+                        && plane.height(control.opposite(twin)).abs() <= most
                         && normals[twin as usize / 3].dot(plane.normal) > 0.0
                 })
             })
@@ -144,10 +148,29 @@ pub(super) fn straight_faces(
     let found = watch.pieces(mesh.face_count(), super::BLOCK, |block| {
         let faces = block.map(|face| face as u32);
         faces
-            .filter(|&face| is_beside_its_like(face) && has_direction(control, face, most))
+            .filter(|&face| is_beside_its_like(face) && may_have_direction((control, edges), face, most))
+            .filter(|&face| has_direction(control, face, most))
             .collect::<Vec<u32>>()
     })?;
     Ok(found.concat())
+}
+
+/// Whether the surface over a face may be straight in a direction, as far as the vertices beside it tell ([`BENT`]).
+fn may_have_direction((control, edges): (&Control<'_>, &Edges<'_>), face: u32, most: f64) -> bool {
+    let Control { mesh, sharpness, .. } = *control;
+    let corners = mesh.triangles()[face as usize];
+    let is_edged = |vertex: VertexId| sharpness.is_tagged(vertex) || mesh.topology().is_boundary(vertex);
+    if corners.iter().any(|&vertex| is_edged(VertexId(vertex))) {
+        return true;
+    }
+    let beside = [0, 1, 2].map(|edge| edges.twin(3 * face + edge).map(|twin| control.opposite(twin)));
+    (0..3).any(|edge| {
+        let (Some(before), Some(after)) = (beside[(edge + 1) % 3], beside[(edge + 2) % 3]) else {
+            return true;
+        };
+        let middle = vector(mesh.positions()[corners[(edge + 2) % 3] as usize]);
+        (before + after - 2.0 * middle).length() <= BENT * most
+    })
 }
 
 /// Whether the surface over a face is a regular piece that has the same derivative everywhere along one of the face's edges, or may be
@@ -385,3 +408,6 @@ impl Between {
         Some(self.next[at])
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -29,14 +29,22 @@ fn with_plans(models: &[(&str, u64)], mut run: impl FnMut(&Engine<'_>, Plan, &st
     }
 }
 
-type Settled = Vec<Option<(f64, Place)>>;
+/// By control face, what is known of its conditions: nothing, or the greatest bound and its leaf.
+type Known = Vec<Option<Option<(f64, Place)>>>;
 
-/// What fails, and what is found of each face, where nothing is known.
-fn looked_at_all(engine: &Engine<'_>, plan: &mut Plan) -> (Vec<(Place, f64)>, Settled) {
+/// The leaves that fail in what was emitted, and what is found of each face, where nothing is known.
+fn found_in(engine: &Engine<'_>, plan: &Plan, emission: &Emission) -> (Vec<(Place, f64)>, Known) {
+    let mut settled = SettledFaces::none(plan.closed.len());
+    let failing = failing(emission, &plan.goal, &mut settled, engine.watch).unwrap();
+    let known = (0..settled.faces()).map(|face| settled.has(face).then(|| settled.worst(face)));
+    (failing, known.collect())
+}
+
+/// The same in all that is emitted.
+fn looked_at_all(engine: &Engine<'_>, plan: &mut Plan) -> (Vec<(Place, f64)>, Known) {
     plan.emission = None;
-    let mut settled = vec![None; plan.settled.len()];
     let emission = engine.emit_all(plan).unwrap();
-    (failing(&emission, &plan.goal, &mut settled, engine.watch).unwrap(), settled)
+    found_in(engine, plan, &emission)
 }
 
 /// Runs on the plans of some stirred models before any condition was looked at.
@@ -54,7 +62,7 @@ fn with_unsettled(count: u64, mut run: impl FnMut(&Engine<'_>, Plan, &str)) {
             let faces = mesh.face_count();
             let mut plan = Plan::of(goal, decision.unwrap(), faces);
             engine.carry_out(&mut plan, Dirty::all(faces), usize::MAX)?;
-            plan.settled.fill(None);
+            plan.settled = SettledFaces::none(faces);
             run(engine, plan, &format!("{name}, seed {seed}"));
             Ok(())
         })
@@ -70,9 +78,8 @@ fn areas_tell_what_all_triangles_tell() {
         let areas = engine.conditional(&plan).unwrap();
         let look = |scope| {
             let part = engine.emit_some(&plan, scope).unwrap();
-            let mut settled = vec![None; plan.settled.len()];
-            let found = failing(&part, &plan.goal, &mut settled, engine.watch).unwrap();
-            (part, (found, settled))
+            let found = found_in(engine, &plan, &part);
+            (part, found)
         };
         let (part, found) = look(Scope::Areas(&areas));
         let (_, in_faces) = look(Scope::Faces(&areas));
@@ -154,8 +161,8 @@ fn what_is_settled_holds_among_the_triangles_that_are_emitted() {
     with_plans(&models, |engine, mut plan, name| {
         let (failing, found) = looked_at_all(engine, &mut plan);
         assert!(failing.is_empty(), "{name}: {failing:?}");
-        for (found, known) in found.into_iter().zip(&plan.settled) {
-            let [found, known] = [found, *known].map(|known| known.map_or(0.0, |(bound, _)| bound));
+        for (face, found) in (0..).zip(found) {
+            let (found, known) = (found.flatten().map_or(0.0, |(bound, _)| bound), plan.settled.bound(face));
             assert!(found <= known, "{name}: {found} is settled as {known}");
             counted += usize::from(found > 0.0);
         }
@@ -169,7 +176,8 @@ fn assert_holds(engine: &Engine<'_>, plan: &mut Plan, name: &str) {
     assert!(failing.is_empty(), "{name}: {failing:?}");
     let emission = engine.emit_all(plan).unwrap();
     let sharp = sharp_edges(&emission, engine.watch).unwrap();
-    for (face, extent) in (0..).zip(plan.decision.extents()) {
+    for face in 0..plan.closed.len() as u32 {
+        let extent = plan.decision.extent(face);
         let allowance = *plan.decision.allowance(face);
         if allowance == Allowance::NOTHING {
             continue;
