@@ -2,6 +2,7 @@
 
 use super::greater;
 use crate::criterion::Apart;
+use crate::vector::hypotenuse;
 
 /// The square of the greatest chord of the angle between neighbours that help each other, 2√3: 137°. Where they meet in
 /// a sharper fold, both may reach beyond the surface (see [`super::bounds`]).
@@ -49,7 +50,7 @@ impl Deviation {
         if moved == 0.0 {
             return self;
         }
-        let height = greater(self.height, moved).hypot(2.0 * aside);
+        let height = hypotenuse(greater(self.height, moved), 2.0 * aside);
         let across = self.across + 2.0 * aside;
         Self { own: greater(self.own, moved), height, drift: self.drift + aside, across, ..self }
     }

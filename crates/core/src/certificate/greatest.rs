@@ -11,7 +11,7 @@ use super::deviation::Deviation;
 use super::exceeds;
 use super::trilinear::{Trilinear, TrilinearFrame};
 use crate::patch::bezier_triangle::{BezierTriangle, EDGES, INNER};
-use crate::vector::Extremes;
+use crate::vector::{Extremes, hypotenuse};
 use wide::f64x4;
 
 /// Points of curves that are taken together.
@@ -203,7 +203,7 @@ impl<'a> Greatest<'a> {
         let (height, _) = Trilinear(most).split();
         let squared = squared.larger(height * height);
         // Squares of tiny lengths vanish.
-        let own = if squared > 1e-280 { squared.sqrt() } else { height.hypot(side) };
+        let own = if squared > 1e-280 { squared.sqrt() } else { hypotenuse(height, side) };
         // A curve that swings less than the angles at its edge open crosses no other edge.
         let stays = (0..3).all(|edge| self.swings[edge] <= frame.slopes[edge]);
         (stays && !self.beyond).then_some(Deviation { own, height, drift, slopes, across: 0.0 })

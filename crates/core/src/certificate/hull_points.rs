@@ -9,7 +9,7 @@ use super::triangle_frame::{Beside, TriangleFrame};
 use super::trilinear::{Trilinear, TrilinearFrame};
 use super::{exceeds, greater};
 use crate::patch::bezier_triangle::{BezierTriangle, EDGES, INNER};
-use crate::vector::{Blend, DVec3};
+use crate::vector::{Blend, DVec3, hypotenuse};
 
 /// A point that a bound looks at, in space or from its triangle.
 pub(super) trait HullPoint: Blend {
@@ -222,7 +222,7 @@ impl<P: HullPoint> DeviationBound<'_, P> {
             if exceeds(beside.outside, 0.0) {
                 own = f64::INFINITY;
                 if self.open[edge] {
-                    alone = greater(alone, height.hypot(beside.outside));
+                    alone = greater(alone, hypotenuse(height, beside.outside));
                 } else {
                     self.drifted(edge, beside, deviation);
                 }

@@ -38,8 +38,7 @@ mod heights;
 use super::deviation::Deviation;
 use super::triangle_frame::TriangleFrame;
 use crate::patch::Quartic;
-use crate::vector::DVec3;
-use crate::vector::Extremes;
+use crate::vector::{DVec3, Extremes, hypotenuse};
 pub(crate) use heights::{Heights, quadratic_height};
 
 /// Bounds Σ λₐλ_b|λ_b − λₐ|/12 over the triangle, which is 0.1176/12 at most: a polynomial wherever the coordinates are in
@@ -378,9 +377,9 @@ impl BesideEdges {
         match self.loose {
             Some(own) => Deviation { slopes: [f64::INFINITY; 3], ..Deviation::alone(own) },
             None => {
-                let alone = height.hypot(self.open);
+                let alone = hypotenuse(height, self.open);
                 let across = if self.open > 0.0 { alone } else { 0.0 };
-                let (own, drift, slopes) = (height.hypot(self.side), self.drift, self.slopes);
+                let (own, drift, slopes) = (hypotenuse(height, self.side), self.drift, self.slopes);
                 Deviation { own, height: alone, drift, slopes, across }
             }
         }

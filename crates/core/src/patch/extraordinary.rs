@@ -141,8 +141,13 @@ impl<V: Blend> RefinedExtraordinary<V> {
     /// The points of one of the parts, if it is regular.
     #[inline]
     pub(crate) fn points(&self, part: usize) -> Option<[V; 12]> {
-        let local = self.local(part);
-        (local != 0).then(|| self.regular(local))
+        self.is_regular(part).then(|| self.regular_part(part))
+    }
+
+    /// The points of one of the parts, which is regular.
+    #[inline]
+    pub(crate) fn regular_part(&self, part: usize) -> [V; 12] {
+        self.regular(self.local(part))
     }
 
     /// The points of a regular part, numbered from the irregular corner, as it stands in the face.

@@ -285,14 +285,15 @@ impl RefinedPatch<'_> {
     /// What is wanted of that.
     #[inline]
     pub(crate) fn middle_as<L: Limit>(&self, edge: usize) -> L {
-        let (at, ring) = match self {
-            Self::Regular(refined) => refined.middle(edge),
-            Self::Extraordinary(refined) => refined.middle(edge),
-            Self::Pole(refined) => refined.middle(edge),
-            Self::Sectors(refined) => refined.regular_middle(edge),
-            Self::SemiSharp(refined) => return L::of(refined.middle(edge)),
-            Self::Mesh(refined) => return L::of(refined.middle(edge)),
-        };
-        L::regular(at, &ring)
+        // One by one, so that rings stay in registers.
+        let regular = |(at, ring): (DVec3, [DVec3; 6])| L::regular(at, &ring);
+        match self {
+            Self::Regular(refined) => regular(refined.middle(edge)),
+            Self::Extraordinary(refined) => regular(refined.middle(edge)),
+            Self::Pole(refined) => regular(refined.middle(edge)),
+            Self::Sectors(refined) => regular(refined.regular_middle(edge)),
+            Self::SemiSharp(refined) => L::of(refined.middle(edge)),
+            Self::Mesh(refined) => L::of(refined.middle(edge)),
+        }
     }
 }

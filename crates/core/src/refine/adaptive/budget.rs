@@ -170,7 +170,9 @@ fn coarsest(engine: &Engine<'_>) -> Result<Plan, RefineError> {
         place: format!("{} control faces", engine.control.mesh.face_count()),
         what: "undivided faces fit any budget",
     };
-    everything.ok_or_else(|| broken().into())
+    let mut plan = everything.ok_or_else(broken)?;
+    plan.triangles = engine.triangles(&mut plan)?;
+    Ok(plan)
 }
 
 /// The narrowing of distances to the least one that fits.

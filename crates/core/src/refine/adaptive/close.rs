@@ -225,7 +225,7 @@ impl Closer<'_> {
             Surface::General(..) if is_stopped() => {}
             Surface::General(piece, rules) => match leaves {
                 [leaf] if leaf.place.level == level => {
-                    leaf.say(self.general(piece, piece.middles(rules), leaf));
+                    leaf.say(self.general(piece, *piece.middles(rules), leaf));
                 }
                 _ => {
                     for of_child in leaves.chunk_by_mut(|a, b| a.place.digit(level) == b.place.digit(level)) {

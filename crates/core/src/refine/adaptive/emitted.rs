@@ -187,7 +187,7 @@ impl<B: Beholder> Leaves<'_, B> {
             Surface::General(piece, rules) => {
                 let mut pieces = Pieces::of(&piece.patch);
                 let [a, b, c] = piece.corners;
-                let [d, e, f] = piece.middles(rules);
+                let [d, e, f] = *piece.middles(rules);
                 let points = [a, b, c, d, e, f];
                 for triangle in triangles {
                     let emitted = emitted(triangle.part, triangle.corners, triangle.borders);

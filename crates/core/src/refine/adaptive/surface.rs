@@ -6,7 +6,8 @@ use core::cell::OnceCell;
 
 use crate::certificate::{NetPart, QuarticJet, SubTriangle};
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{LimitPoint, Patch, Quartic, Rules, Spot, child_corners};
+use crate::patch::extraordinary::RefinedExtraordinary;
+use crate::patch::{Limit, LimitPoint, Patch, Points, Quartic, Rules, Spot, child_corners};
 use crate::vector::DVec3;
 
 /// Points that are evaluated together.
@@ -65,14 +66,22 @@ impl Ground {
 /// A piece of the limit surface, and what was derived from it so far: walks ask for some of it several times, and for much of it
 /// never.
 pub(super) enum SurfacePiece {
-    Regular(RegularPiece),
+    Regular(Points, OnceCell<Box<Ground>>),
     General(GeneralPiece),
 }
 
 /// A regular piece.
-pub(super) struct RegularPiece {
-    points: [DVec3; 12],
-    ground: OnceCell<Box<Ground>>,
+#[derive(Clone, Copy)]
+pub(super) struct RegularPiece<'a> {
+    points: PointsOf<'a>,
+    ground: &'a OnceCell<Box<Ground>>,
+}
+
+/// The points of a regular piece: its own, or those of a part of what was refined.
+#[derive(Clone, Copy)]
+enum PointsOf<'a> {
+    Own(&'a Points),
+    Part(&'a RefinedExtraordinary, usize),
 }
 
 /// Any other, with its corners' limits, normals on this side.
@@ -83,50 +92,108 @@ pub(super) struct GeneralPiece {
 }
 
 /// A piece refined once.
-struct Refinement {
-    middles: [LimitPoint; 3],
-    children: [SurfacePiece; 4],
+enum Refinement {
+    Extraordinary(AroundVertex),
+    Any { middles: [LimitPoint; 3], children: Vec<SurfacePiece> },
+}
+
+/// Three regular pieces beside one at an irregular vertex. They stay part of what was refined, since of many of them nobody asks for anything.
+struct AroundVertex {
+    refined: RefinedExtraordinary,
+    middles: OnceCell<[LimitPoint; 3]>,
+    grounds: [OnceCell<Box<Ground>>; 4],
+    at_vertex: OnceCell<Box<GeneralPiece>>,
 }
 
 impl SurfacePiece {
     pub(super) fn of(patch: Patch, corners: [LimitPoint; 3]) -> Self {
         match patch {
-            Patch::Regular(points) => Self::Regular(RegularPiece { points, ground: OnceCell::new() }),
-            patch => Self::General(GeneralPiece { patch, corners, refined: OnceCell::new() }),
+            Patch::Regular(points) => Self::Regular(points, OnceCell::new()),
+            patch => Self::General(GeneralPiece::of(patch, corners)),
         }
     }
 
     /// All of it.
     pub(super) fn surface<'a>(&'a self, rules: &'a Rules<'a>) -> Surface<'a> {
         match self {
-            Self::Regular(piece) => Surface::Regular(piece, Spot::WHOLE),
+            Self::Regular(points, ground) => {
+                Surface::Regular(RegularPiece { points: PointsOf::Own(points), ground }, Spot::WHOLE)
+            }
             Self::General(piece) => Surface::General(piece, rules),
         }
     }
 }
 
-impl RegularPiece {
-    pub(super) fn ground(&self) -> &Ground {
-        self.ground.get_or_init(|| Box::new(Ground::of(&BezierTriangle::of(&self.points))))
+impl<'a> RegularPiece<'a> {
+    pub(super) fn ground(self) -> &'a Ground {
+        let net = || match self.points {
+            PointsOf::Own(points) => BezierTriangle::of(points),
+            PointsOf::Part(refined, part) => BezierTriangle::of(&refined.regular_part(part)),
+        };
+        self.ground.get_or_init(|| Box::new(Ground::of(&net())))
     }
 }
 
 impl GeneralPiece {
+    fn of(patch: Patch, corners: [LimitPoint; 3]) -> Self {
+        Self { patch, corners, refined: OnceCell::new() }
+    }
+
     fn refined(&self, rules: &Rules<'_>) -> &Refinement {
         self.refined.get_or_init(|| {
+            if let Patch::Extraordinary(patch) = &self.patch {
+                return Box::new(Refinement::Extraordinary(AroundVertex {
+                    refined: patch.refined(rules.beta(patch.ring.len())),
+                    middles: OnceCell::new(),
+                    grounds: Default::default(),
+                    at_vertex: OnceCell::new(),
+                }));
+            }
             let refined = self.patch.refined(rules);
             let middles = [0, 1, 2].map(|edge| refined.middle(edge));
-            let children = from_fn(|child| {
+            let mut children = Vec::with_capacity(4);
+            for child in 0..4 {
                 let own = child_corners(self.corners, middles, child);
-                SurfacePiece::of(refined.part(child), own)
-            });
-            Box::new(Refinement { middles, children })
+                children.push(SurfacePiece::of(refined.part(child), own));
+            }
+            Box::new(Refinement::Any { middles, children })
         })
     }
 
     /// The limits in the middles of the edges.
-    pub(super) fn middles(&self, rules: &Rules<'_>) -> [LimitPoint; 3] {
-        self.refined(rules).middles
+    pub(super) fn middles(&self, rules: &Rules<'_>) -> &[LimitPoint; 3] {
+        match self.refined(rules) {
+            Refinement::Extraordinary(around) => around.middles(),
+            Refinement::Any { middles, .. } => middles,
+        }
+    }
+
+    /// The surface over a child.
+    fn child<'a>(&'a self, child: usize, rules: &'a Rules<'a>) -> Surface<'a> {
+        let around = match self.refined(rules) {
+            Refinement::Extraordinary(around) => around,
+            Refinement::Any { children, .. } => return children[child].surface(rules),
+        };
+        if around.refined.is_regular(child) {
+            let points = PointsOf::Part(&around.refined, child);
+            return Surface::Regular(RegularPiece { points, ground: &around.grounds[child] }, Spot::WHOLE);
+        }
+        let at_vertex = around.at_vertex.get_or_init(|| {
+            let own = child_corners(self.corners, *around.middles(), child);
+            Box::new(Self::of(Patch::Extraordinary(Box::new(around.refined.own().clone())), own))
+        });
+        Surface::General(at_vertex, rules)
+    }
+}
+
+impl AroundVertex {
+    fn middles(&self) -> &[LimitPoint; 3] {
+        self.middles.get_or_init(|| {
+            [0, 1, 2].map(|edge| {
+                let (at, ring) = self.refined.middle(edge);
+                LimitPoint::regular(at, &ring)
+            })
+        })
     }
 }
 
@@ -136,7 +203,7 @@ pub(super) enum Surface<'a> {
     /// Nobody asks.
     Unknown,
     /// Part of a regular piece.
-    Regular(&'a RegularPiece, Spot),
+    Regular(RegularPiece<'a>, Spot),
     /// Any other piece.
     General(&'a GeneralPiece, &'a Rules<'a>),
 }
@@ -147,7 +214,7 @@ impl<'a> Surface<'a> {
         match self {
             Surface::Unknown => Surface::Unknown,
             Surface::Regular(piece, spot) => Surface::Regular(piece, spot.child(child)),
-            Surface::General(piece, rules) => piece.refined(rules).children[child].surface(rules),
+            Surface::General(piece, rules) => piece.child(child, rules),
         }
     }
 
@@ -156,7 +223,7 @@ impl<'a> Surface<'a> {
         match self {
             Surface::Unknown => [LimitPoint { position: DVec3::ZERO, normal: DVec3::ZERO }; 3],
             Surface::Regular(piece, spot) => piece.ground().at([0, 1, 2].map(|edge| spot.along(edge, 0.5))),
-            Surface::General(piece, rules) => piece.middles(rules),
+            Surface::General(piece, rules) => *piece.middles(rules),
         }
     }
 
