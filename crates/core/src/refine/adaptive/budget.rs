@@ -126,7 +126,7 @@ pub(super) fn search(
     cap: ExactStop,
 ) -> Result<(Plan, ExactStop), RefineError> {
     if floor > 0.0
-        && let Some(plan) = engine.plan(Goal::Within(floor), most)?
+        && let Some(plan) = engine.without_counting_strips().plan(Goal::Within(floor), most)?
     {
         return Ok((plan, ExactStop::Met));
     }
@@ -170,9 +170,7 @@ fn coarsest(engine: &Engine<'_>) -> Result<Plan, RefineError> {
         place: format!("{} control faces", engine.control.mesh.face_count()),
         what: "undivided faces fit any budget",
     };
-    let mut plan = everything.ok_or_else(broken)?;
-    plan.triangles = engine.triangles(&mut plan)?;
-    Ok(plan)
+    everything.ok_or_else(|| broken().into())
 }
 
 /// The narrowing of distances to the least one that fits.

@@ -213,7 +213,7 @@ pub(super) fn count(
         let plan = if engine.is_balanced {
             engine.balanced(limit, usize::MAX)?.map(|outcome| outcome.plan)
         } else {
-            engine.plan(Goal::Within(limit), usize::MAX)?
+            engine.without_counting_strips().plan(Goal::Within(limit), usize::MAX)?
         };
         let Some(mut plan) = plan else { return Ok((0, false)) };
         let flat = &engine.control.flat;
@@ -279,6 +279,7 @@ fn with_engine<T>(
         watch: &watch,
         is_balanced: options.balance,
         has_origins: options.origins,
+        counts_strips: true,
         rounding,
     };
     watch.stage(Stage::Refining, None)?;
@@ -308,6 +309,8 @@ pub(super) struct Engine<'a> {
     is_balanced: bool,
     /// Vertices tell where they came from.
     has_origins: bool,
+    /// Plans tell how many triangles they come to once strips are put together; else they may tell more, as long as that fits.
+    counts_strips: bool,
     /// What rounding may do to a distance.
     rounding: f64,
 }
@@ -349,6 +352,11 @@ impl Engine<'_> {
                 && even.error.upper <= PROVEN_ALIKE * worst_first.error.upper;
             return Ok(if is_better { even } else { worst_first });
         }
+    }
+
+    /// The same for plans of whose numbers of triangles nobody asks more than that they fit.
+    fn without_counting_strips(&self) -> Self {
+        Self { counts_strips: false, ..self.clone() }
     }
 
     /// Whether triangles are looked at among their neighbours once all are emitted, not before.
