@@ -82,6 +82,9 @@ const MOST_BLIND: i32 = 3;
 const MOST_EVENER: usize = 10;
 const EVENER: f64 = 0.93;
 
+/// That is worth while where so much of the budget (one in so many) may be in strips.
+const WORTH_EVENER: usize = 16;
+
 /// Faces on which that is spent come within a distance that is less by this at least: a difference that takes triangles.
 const FILLED_APART: f64 = 1.03;
 
@@ -137,7 +140,8 @@ pub(super) fn search(
         Some(best) => best,
         None => coarsest(engine)?,
     };
-    if engine.control.flat.has_strips() {
+    let over_strips = engine.control.flat.over_strips(|face| best.closed[face as usize].triangles as usize);
+    if WORTH_EVENER * over_strips >= most {
         // A finer division that is more even may leave fewer triangles once strips are put together.
         let mut next = high;
         for _ in 0..MOST_EVENER {

@@ -261,6 +261,11 @@ impl FlatRegions {
         !self.straight.is_empty()
     }
 
+    /// Triangles of which strips may be made, `own` being those of a face.
+    pub(super) fn over_strips(&self, own: impl Fn(u32) -> usize) -> usize {
+        self.straight.iter().map(|&face| own(face)).sum()
+    }
+
     /// How many leaves of a face count as one triangle while faces are divided: of those of flat faces, and of strips, most are not going
     /// to stay.
     pub(super) fn weight(&self, face: u32) -> usize {
