@@ -82,8 +82,8 @@ const MOST_BLIND: i32 = 3;
 const MOST_EVENER: usize = 10;
 const EVENER: f64 = 0.93;
 
-/// That is worth while where so much of the budget (one in so many) may be in strips.
-const WORTH_EVENER: usize = 16;
+/// What flat regions and strips save is looked at where so many faces (one in so many) are part of them.
+const WORTH_MERGING: usize = 16;
 
 /// Faces on which that is spent come within a distance that is less by this at least: a difference that takes triangles.
 const FILLED_APART: f64 = 1.03;
@@ -141,7 +141,7 @@ pub(super) fn search(
         None => coarsest(engine)?,
     };
     let over_strips = engine.control.flat.over_strips(|face| best.closed[face as usize].triangles as usize);
-    if WORTH_EVENER * over_strips >= most {
+    if WORTH_MERGING * over_strips >= most {
         // A finer division that is more even may leave fewer triangles once strips are put together.
         let mut next = high;
         for _ in 0..MOST_EVENER {
@@ -273,8 +273,10 @@ impl<'e, 'a> Search<'e, 'a> {
             Some(profile) => profile.expected(engine, FIRST_AIM * self.most as f64)?,
             None => None,
         };
-        // What flat regions come to only plans tell.
-        if first.is_none() || !engine.control.flat.are_none() {
+        // What flat regions and strips come to only plans tell.
+        let is_merged =
+            WORTH_MERGING * engine.control.flat.merged_faces() >= engine.control.mesh.face_count();
+        if first.is_none() || is_merged {
             self.begin_undivided()?;
         }
         if let Some(expected) = first.filter(|&expected| self.low < expected && expected < self.high) {

@@ -261,6 +261,11 @@ impl FlatRegions {
         !self.straight.is_empty()
     }
 
+    /// Control faces that are part of regions, or over which there may be strips.
+    pub(super) fn merged_faces(&self) -> usize {
+        self.is_merged.iter().filter(|&&is_merged| is_merged).count()
+    }
+
     /// Triangles of which strips may be made, `own` being those of a face.
     pub(super) fn over_strips(&self, own: impl Fn(u32) -> usize) -> usize {
         self.straight.iter().map(|&face| own(face)).sum()
