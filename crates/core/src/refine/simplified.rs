@@ -24,9 +24,6 @@ const FINE_TIMES: usize = 16;
 /// Triangles of a fine mesh that nobody asked about: some gigabytes. A greater cap on the result is the fine mesh's too.
 const AFFORDABLE: usize = 8_000_000;
 
-/// Where the collapse leaves more than this part of the fine triangles (one in so many), refinement alone may need fewer.
-const FEW: usize = 4;
-
 /// Refines and collapses.
 pub(super) fn simplified(
     control: &Mesh,
@@ -34,13 +31,13 @@ pub(super) fn simplified(
     options: &ExactOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
-    let most = |count: Option<usize>| count.map(|count| count.saturating_mul(FINE_TIMES));
+    let times = |count: Option<usize>| count.map(|count| count.saturating_mul(FINE_TIMES));
     let fine_options = ExactOptions {
         optimize: false,
         // Edges that are kept are edges of the fine mesh.
         flat_regions: options.flat_regions && options.kept_edges.is_empty(),
         tolerance: options.tolerance.map(|tolerance| FINE_SHARE * tolerance),
-        triangles: if options.tolerance.is_some() { None } else { most(options.triangles) },
+        triangles: times(options.triangles),
         // What is capped is the result.
         max_triangles: options
             .max_triangles
@@ -54,21 +51,19 @@ pub(super) fn simplified(
         options.tolerance.map(|tolerance| tolerance - fine.error.upper).filter(|&left| left > 0.0);
     let fewest = [options.triangles, options.max_triangles].into_iter().flatten().min();
     let mut collapsed = match (allowance, options.tolerance, fewest) {
-        (Some(_), ..) => collapse((&fine.mesh, &features), allowance, options.triangles, observer)?,
+        (Some(_), ..) => collapse((&fine.mesh, &features), allowance, None, observer)?,
         // A cap ended the refinement before the tolerance left anything to collapse.
         (None, Some(_), None) => return Ok(fine),
         (None, ..) => collapse((&fine.mesh, &features), None, fewest, observer)?,
     };
-    let over =
-        |collapsed: &Simplified| options.max_triangles.is_some_and(|cap| collapsed.mesh.face_count() > cap);
-    if over(&collapsed) {
-        collapsed = collapse((&fine.mesh, &features), None, options.max_triangles, observer)?;
+    // More than there may be within the tolerance, so as many as there may be.
+    let most = fewest.unwrap_or(usize::MAX);
+    if allowance.is_some() && collapsed.mesh.face_count() > most {
+        collapsed = collapse((&fine.mesh, &features), None, fewest, observer)?;
     }
     let unoptimised =
         ExactOptions { optimize: false, flat_regions: fine_options.flat_regions, ..options.clone() };
     // Where no more edges can go, refinement alone keeps the number of triangles; where nothing is proven, it proves.
-    let asked = options.triangles.filter(|_| options.tolerance.is_none());
-    let most = asked.into_iter().chain(options.max_triangles).min().unwrap_or(usize::MAX);
     let is_over = collapsed.mesh.face_count() > most;
     if is_over || collapsed.bound.is_none() {
         let plain = adaptive(control, scheme, &unoptimised, observer)?;
@@ -78,8 +73,8 @@ pub(super) fn simplified(
     }
     let error = error_bounds(&fine, &collapsed, observer)?;
     let is_met = options.tolerance.is_some_and(|tolerance| error.upper <= tolerance);
-    if options.tolerance.is_some() && (!is_met || collapsed.mesh.face_count() > fine.mesh.face_count() / FEW)
-    {
+    // Refinement alone may need fewer, as beside edges that are sharp for a while, and takes little time beside this.
+    if options.tolerance.is_some() {
         let plain = adaptive(control, scheme, &unoptimised, observer)?;
         if plain.stop == ExactStop::Met && (!is_met || plain.mesh.face_count() <= collapsed.mesh.face_count())
         {
