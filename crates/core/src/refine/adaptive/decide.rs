@@ -91,22 +91,20 @@ pub(super) fn decide(
     }
 }
 
-/// How many leaves some control faces come to, each divided by itself from the beginning; about, where that is more than `most`.
+/// How many leaves some control faces come to, each divided by itself from the beginning; about, where that is more than the number beside it.
 pub(super) fn leaves_of(
     engine: &Engine<'_>,
     goal: &Goal,
-    faces: &[u32],
-    most: usize,
+    faces: &[(u32, usize)],
 ) -> Result<Vec<usize>, Cancelled> {
     let Engine { control, watch, ref edges, max_levels, .. } = *engine;
     let blocks = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
-        let count = Count { leaves: AtomicUsize::new(0), most };
-        let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
-        let leaves = faces[block].iter().map(|&face| {
+        let leaves = faces[block].iter().map(|&(face, most)| {
+            let count = Count { leaves: AtomicUsize::new(0), most };
+            let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
             decider.face(face, None);
             decider.tell();
-            decider.piece = Piece::default();
-            count.leaves.swap(0, Ordering::Relaxed)
+            count.leaves.load(Ordering::Relaxed)
         });
         leaves.collect::<Vec<usize>>()
     })?;

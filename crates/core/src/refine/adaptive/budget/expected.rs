@@ -8,6 +8,7 @@ use crate::certificate::TriangleFrame;
 use crate::parallel;
 use crate::progress::Cancelled;
 use crate::refine::RefineError;
+use crate::vector::hypotenuse;
 
 /// Triangles that a face takes for each time that it is too high, about: some are less high than need be, others close gaps.
 const FOR_ONE: f64 = 2.9;
@@ -18,6 +19,10 @@ const TIMES: (f64, f64) = (0.4, 2.5);
 /// So many faces, or one in so many if that is less, are divided to tell how much it is.
 const SAMPLED: usize = 96;
 const SAMPLED_OF: usize = 8;
+
+/// Leaves of a face are counted up to so many and so many times what is expected: beyond that they make no difference.
+const COUNTED_FEWEST: usize = 64;
+const COUNTED_TIMES: f64 = 8.0;
 
 /// Distances that near to each other, as a logarithm, have the same faces divided.
 const SAME: f64 = 0.05;
@@ -57,7 +62,7 @@ impl Profile {
         let count = SAMPLED.min(self.heights.len() / SAMPLED_OF);
         for _ in 0..if count > 0 { ROUNDS } else { 0 } {
             let Some(within) = distance else { break };
-            self.sample(engine, (count, wanted as usize), within)?;
+            self.sample(engine, count, within)?;
             let known = distance.replace(self.distance(wanted).unwrap_or(within));
             if known.zip(distance).is_some_and(|(known, now)| (known / now).ln().abs() < SAME) {
                 break;
@@ -88,13 +93,8 @@ impl Profile {
         None
     }
 
-    /// Divides so many faces within a distance, more of those that have more triangles, to learn what they take: of one at most so many leaves.
-    fn sample(
-        &mut self,
-        engine: &Engine<'_>,
-        (count, most): (usize, usize),
-        distance: f64,
-    ) -> Result<(), RefineError> {
+    /// Divides so many faces within a distance, more of those that have more triangles, to learn what they take.
+    fn sample(&mut self, engine: &Engine<'_>, count: usize, distance: f64) -> Result<(), RefineError> {
         let divided = self.heights.partition_point(|&(height, _)| self.for_one * height > distance);
         let expected = |&(height, _): &(f64, u32)| self.for_one * height / distance;
         let all: f64 = self.heights[..divided].iter().map(expected).sum();
@@ -105,12 +105,12 @@ impl Profile {
             let after = before + expected(face);
             let share = part(after) - part(before);
             if share > 0.0 {
-                faces.push(face.1);
+                faces.push((face.1, COUNTED_FEWEST + (COUNTED_TIMES * expected(face)) as usize));
                 shares.push((share, expected(face)));
             }
             before = after;
         }
-        let found = leaves_of(engine, &Goal::Within(distance), &faces, most)?;
+        let found = leaves_of(engine, &Goal::Within(distance), &faces)?;
         let ratios =
             found.iter().zip(&shares).map(|(&leaves, (share, expected))| share * leaves as f64 / expected);
         let times = CLOSED * ratios.sum::<f64>() / shares.iter().map(|(share, _)| share).sum::<f64>();
@@ -121,15 +121,23 @@ impl Profile {
     }
 }
 
-/// How high the surface stands over the triangles of the control faces' corners, in the middles of their edges.
+/// How high the surface stands over the triangles of the control faces' corners, in the middles of their edges, and how far it is off the edges
+/// that are open; 0 where that is no more than rounding.
 pub(super) fn heights(engine: &Engine<'_>) -> Result<Vec<f64>, Cancelled> {
-    let control = engine.control;
+    let (control, rounding) = (engine.control, engine.rounding);
     let faces = control.mesh.face_count();
     let height = |face: usize| {
         let piece = control.piece(face as u32);
-        let frame = TriangleFrame::new(control.corners(face as u32).map(|corner| corner.position));
+        let corners = control.corners(face as u32).map(|corner| corner.position);
+        let (frame, open) = (TriangleFrame::new(corners), control.open(face as u32));
         let middles = piece.surface(control.rules).middles();
-        middles.iter().map(|middle| frame.height(middle.position).abs()).fold(0.0, f64::max)
+        let off = |edge: usize| {
+            let middle = middles[edge].position;
+            let aside = if open[edge] { frame.outward(edge).dot(middle - corners[edge]) } else { 0.0 };
+            hypotenuse(frame.height(middle), aside)
+        };
+        let height = off(0).max(off(1)).max(off(2));
+        if height > rounding { height } else { 0.0 }
     };
     engine.watch.map(faces, block(faces), height)
 }
@@ -177,8 +185,9 @@ mod tests {
             let options = (&ExactOptions::default().triangles(1), &Demands::default());
             with_engine(&mesh, &Loop, options, &mut unobserved, |engine| {
                 let goal = Goal::Within(1e-3 * mesh.diagonal());
-                let faces: Vec<u32> = (0..mesh.face_count() as u32).collect();
-                let leaves: usize = leaves_of(engine, &goal, &faces, usize::MAX)?.iter().sum();
+                let faces: Vec<(u32, usize)> =
+                    (0..mesh.face_count() as u32).map(|face| (face, usize::MAX)).collect();
+                let leaves: usize = leaves_of(engine, &goal, &faces)?.iter().sum();
                 let triangles = engine.divided(goal, usize::MAX)?.unwrap().triangles;
                 assert!((leaves..leaves * 3 / 2).contains(&triangles), "{name}: {leaves}, {triangles}");
                 Ok(())
