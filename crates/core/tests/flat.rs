@@ -337,3 +337,40 @@ fn estimates_count_regions_that_stay() {
     }
     assert!(kept > 3, "{kept}");
 }
+
+/// Separate planar squares, whose surfaces are bent along their boundaries alone: a number of triangles is used for these, and takes about as many
+/// steps as a tolerance. It had begun with distances far below rounding.
+#[test]
+fn budgets_of_flat_faces_are_not_guessed_from_rounding() {
+    let mut random = support::Random::new(7);
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for card in 0..60u32 {
+        let at = [0, 1, 2].map(|_| random.signed());
+        let turn = TAU * random.signed();
+        let (s, c) = turn.sin_cos();
+        for (u, v) in [(0.0, 0.0), (0.2, 0.0), (0.2, 0.2), (0.0, 0.2)] {
+            positions.push([at[0] + u * c, at[1] + u * s, at[2] + v]);
+        }
+        triangles.extend([[0, 1, 2], [0, 2, 3]].map(|corners| corners.map(|corner| 4 * card + corner)));
+    }
+    let mesh = Mesh::from_triangles(positions, triangles).unwrap();
+    let mut rounds = 0;
+    let mut before = f64::INFINITY;
+    for number in [300, 1000, 3000] {
+        let mut count = |progress: &limitmesh::progress::Progress| {
+            if progress.stage == limitmesh::progress::Stage::Refining {
+                rounds = rounds.max(progress.done);
+            }
+            core::ops::ControlFlow::Continue(())
+        };
+        let options = ExactOptions::default().triangles(number);
+        let result = limitmesh::refine::exact_observed(&mesh, &Loop, &options, &mut count).unwrap();
+        let count = result.mesh.face_count();
+        assert!(count <= number && count >= 3 * number / 4, "{number}: {count}");
+        let own = exact(&mesh, &Loop, &ExactOptions::default().tolerance(result.error.upper)).unwrap();
+        assert!(own.mesh.face_count() <= count, "{number}: {count}, {}", own.mesh.face_count());
+        assert!(result.error.upper < before, "{number}");
+        before = result.error.upper;
+    }
+    assert!(rounds < 200, "{rounds}");
+}

@@ -306,3 +306,20 @@ fn what_is_curved_both_ways_has_no_strips() {
         assert_eq!(result.mesh.positions(), kept.mesh.positions(), "{name}");
     }
 }
+
+/// Where flat ends and straight sides are merged, balanced vertices, of which none are, need more triangles: those on the surface are taken.
+#[test]
+fn balanced_pegs_take_no_more_triangles() {
+    for (facets, tolerance) in [(13, 1e-2), (16, 1e-3), (32, 1e-4)] {
+        let mesh = peg(facets);
+        for options in [within(tolerance), ExactOptions::default().tolerance(tolerance)] {
+            let plain = exact(&mesh, &Loop, &options).unwrap();
+            let balanced = exact(&mesh, &Loop, &options.clone().balance(true)).unwrap();
+            assert_eq!((plain.stop, balanced.stop), (ExactStop::Met, ExactStop::Met));
+            let [plain, count] = [&plain, &balanced].map(|result| result.mesh.face_count());
+            assert!(count <= plain, "{facets}, {tolerance}: {count} balanced, {plain}");
+            let told = exact_estimate(&mesh, &Loop, &options.balance(true)).unwrap().triangles;
+            assert!(4 * told <= 6 * count && 4 * count <= 6 * told, "{facets}, {tolerance}: {told}, {count}");
+        }
+    }
+}

@@ -424,3 +424,28 @@ fn what_a_format_rounds_is_part_of_the_distance() {
         assert_eq!(lower > 0.004, code == 3, "{lower}");
     }
 }
+
+/// Flat regions of a part whose rims cross keep more triangles than were counted. Budgets had lost all flat regions to that, and the more
+/// triangles there were the farther off was what was proven.
+#[test]
+fn budgets_of_parts_that_fold_are_nearer_with_more_triangles() {
+    let Some(models) = std::env::var_os("LIMITMESH_MODELS") else {
+        println!("skipped: LIMITMESH_MODELS names no folder");
+        return;
+    };
+    let folder = folder("folding-parts");
+    let notch = Path::new(&models).join("parts/notch.stl");
+    let upper = |options: &str| {
+        let options = format!("--crease-angle 30 --interpolate {options}");
+        let report = refine(0, &notch.to_string_lossy(), &file(&folder, "notch.ply"), &options);
+        (number(&report["error"]["upper"]), report["output"]["triangles"].as_u64().expect("a number"))
+    };
+    let (_, count) = upper("--tolerance 0.002");
+    let mut before = f64::INFINITY;
+    for number in [count / 2, count, 2 * count] {
+        let (found, triangles) = upper(&format!("--triangles {number}"));
+        assert!(triangles <= number && found < before, "{number}: {triangles}, {found} after {before}");
+        assert!(number != count || found <= 1.15 * 0.002, "{number}: {found}");
+        before = found;
+    }
+}

@@ -26,6 +26,7 @@ mod backs;
 mod balance;
 mod budget;
 mod bulges;
+mod caps;
 mod carry_out;
 mod chains;
 mod changes;
@@ -71,6 +72,7 @@ use crate::patch::large_rings::LargeRings;
 use crate::progress::{Observer, SharedWatch, Stage};
 use crate::scheme::Scheme;
 use backs::BackFaces;
+use caps::{may_do_with_fewer, once};
 use control::Control;
 use demands::{Demands, Functions, surfaces_of};
 use emit::{Emission, Last, Scope};
@@ -159,40 +161,6 @@ fn fitting(
     Ok(Demands::default())
 }
 
-/// Refines with some nodes divided in any case.
-fn once(
-    mesh: &Mesh,
-    scheme: &dyn Scheme,
-    (options, demands): (&ExactOptions, &Demands),
-    observer: &mut Observer<'_>,
-) -> Result<Exact, RefineError> {
-    let (most, cap) = options.budget();
-    let most = most.max(mesh.face_count());
-    let (found, has_gaps) = with_engine(mesh, scheme, (options, demands), observer, |engine| {
-        let floor = engine.floor(options.tolerance);
-        if !options.balance {
-            let found = engine.finest(floor, (most, cap), options)?;
-            return Ok((found, engine.control.flat.has_gaps()));
-        }
-        if floor > 0.0
-            && let Some(outcome) = engine.balanced(floor, most)?
-        {
-            return Ok((outcome.finish(engine, ExactStop::Met, options)?, false));
-        }
-        let plain = Engine { is_balanced: false, ..engine.clone() }.finest(floor, (most, cap), options)?;
-        Ok((engine.least_balanced(plain, floor, (most, cap), options)?, false))
-    })?;
-    if has_gaps {
-        let options = ExactOptions { by_rims: false, ..options.clone() };
-        return once(mesh, scheme, (&options, demands), observer);
-    }
-    // Flat regions whose rims cross, or that share edges, keep more triangles than plans counted.
-    if options.flat_regions && found.mesh.face_count() > most {
-        return once(mesh, scheme, (&options.clone().flat_regions(false), demands), observer);
-    }
-    Ok(found)
-}
-
 /// The triangles that goals so many times as coarse take; with angles or pixels but for those of leaves that turn out to fail among
 /// their neighbours.
 pub(super) fn count(
@@ -225,8 +193,12 @@ pub(super) fn count(
         let found = engine.assemble(emission, plan.levels(engine.watch)?)?.mesh.face_count();
         Ok((found, flat.has_gaps()))
     })?;
+    let plain = options.clone().balance(false);
     match has_gaps {
         true => count(mesh, scheme, &ExactOptions { by_rims: false, ..options.clone() }, times, observer),
+        false if options.balance && may_do_with_fewer(mesh, scheme, (&plain, &demands), found, observer)? => {
+            Ok(found.min(count(mesh, scheme, &plain, times, observer)?))
+        }
         false => Ok(found),
     }
 }

@@ -1,0 +1,114 @@
+//! One refinement, within its caps and budgets, also where flat regions keep more triangles than plans count; of balanced vertices and those
+//! on the surface, where these may do with fewer triangles, the better.
+
+use super::demands::Demands;
+use super::with_engine;
+use crate::mesh::Mesh;
+use crate::progress::Observer;
+use crate::refine::RefineError;
+use crate::refine::exact_options::ExactOptions;
+use crate::refine::exact_result::{Exact, ExactStop};
+use crate::scheme::Scheme;
+
+/// Balanced results of fewer triangles are compared with those of vertices on the surface.
+const FEW_BALANCED: usize = 5_000;
+
+/// How often a budget is tried that flat regions overrun, each time with as much less as they did and this part of that.
+const MOST_NARROWER: usize = 4;
+const NARROWER: f64 = 0.99;
+
+/// Refines with some nodes divided in any case.
+pub(super) fn once(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    (options, demands): (&ExactOptions, &Demands),
+    observer: &mut Observer<'_>,
+) -> Result<Exact, RefineError> {
+    let found = within_caps(mesh, scheme, (options, demands), observer)?;
+    if !options.balance {
+        return Ok(found);
+    }
+    let plain_options = options.clone().balance(false);
+    let count = found.mesh.face_count();
+    if !may_do_with_fewer(mesh, scheme, (&plain_options, demands), count, observer)? {
+        return Ok(found);
+    }
+    let plain = within_caps(mesh, scheme, (&plain_options, demands), observer)?;
+    let is_better = match (plain.stop, found.stop) {
+        (ExactStop::Met, ExactStop::Met) => plain.mesh.face_count() <= count,
+        (ExactStop::Met, _) => true,
+        (_, ExactStop::Met) => false,
+        _ => plain.worst <= found.worst && plain.error.upper <= found.error.upper,
+    };
+    Ok(if is_better { plain } else { found })
+}
+
+/// Whether vertices on the surface may do with fewer triangles than balanced ones: where flat regions are merged, which is done with these alone,
+/// and where hardly any face is divided. Of few triangles it takes little time to tell.
+pub(super) fn may_do_with_fewer(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    plain: (&ExactOptions, &Demands),
+    count: usize,
+    observer: &mut Observer<'_>,
+) -> Result<bool, RefineError> {
+    if count < FEW_BALANCED.max(2 * mesh.face_count()) {
+        return Ok(true);
+    }
+    with_engine(mesh, scheme, plain, observer, |engine| Ok(!engine.control.flat.are_none()))
+}
+
+/// The same, of which caps and budgets are kept.
+fn within_caps(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    (options, demands): (&ExactOptions, &Demands),
+    observer: &mut Observer<'_>,
+) -> Result<Exact, RefineError> {
+    let most = options.budget().0.max(mesh.face_count());
+    let mut room = most;
+    for _ in 0..MOST_NARROWER {
+        let found = within_room(mesh, scheme, (options, demands), room, observer)?;
+        let count = found.mesh.face_count();
+        if !options.flat_regions || count <= most {
+            return Ok(found);
+        }
+        // Flat regions whose rims cross, or that share edges, keep more triangles than plans counted.
+        room = (room as f64 * most as f64 / count as f64 * NARROWER) as usize;
+        if room < mesh.face_count() {
+            break;
+        }
+    }
+    within_room(mesh, scheme, (&options.clone().flat_regions(false), demands), most, observer)
+}
+
+/// The same with so many triangles, or more where flat regions keep some that nobody counted.
+fn within_room(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    (options, demands): (&ExactOptions, &Demands),
+    most: usize,
+    observer: &mut Observer<'_>,
+) -> Result<Exact, RefineError> {
+    let (_, cap) = options.budget();
+    let (found, has_gaps) = with_engine(mesh, scheme, (options, demands), observer, |engine| {
+        let floor = engine.floor(options.tolerance);
+        if !options.balance {
+            let found = engine.finest(floor, (most, cap), options)?;
+            return Ok((found, engine.control.flat.has_gaps()));
+        }
+        if floor > 0.0
+            && let Some(outcome) = engine.balanced(floor, most)?
+        {
+            return Ok((outcome.finish(engine, ExactStop::Met, options)?, false));
+        }
+        let plain =
+            super::Engine { is_balanced: false, ..engine.clone() }.finest(floor, (most, cap), options)?;
+        Ok((engine.least_balanced(plain, floor, (most, cap), options)?, false))
+    })?;
+    if has_gaps {
+        let options = ExactOptions { by_rims: false, ..options.clone() };
+        return within_room(mesh, scheme, (&options, demands), most, observer);
+    }
+    Ok(found)
+}
