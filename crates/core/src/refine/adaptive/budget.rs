@@ -269,9 +269,10 @@ impl<'e, 'a> Search<'e, 'a> {
     /// Narrows until what fits is as fine as it may be.
     fn narrow(&mut self) -> Result<(), RefineError> {
         let engine = self.engine;
-        let first = match &mut self.profile {
-            Some(profile) => profile.expected(engine, FIRST_AIM * self.most as f64)?,
-            None => None,
+        let first = match (engine.guess, &mut self.profile) {
+            (Some(guess), _) => Some(guess),
+            (None, Some(profile)) => profile.expected(engine, FIRST_AIM * self.most as f64)?,
+            (None, None) => None,
         };
         // What flat regions and strips come to only plans tell.
         let is_merged =

@@ -2,7 +2,7 @@
 //! on the surface, where these may do with fewer triangles, the better.
 
 use super::demands::Demands;
-use super::with_engine;
+use super::{Engine, with_engine};
 use crate::mesh::Mesh;
 use crate::progress::Observer;
 use crate::refine::RefineError;
@@ -13,9 +13,12 @@ use crate::scheme::Scheme;
 /// Balanced results of fewer triangles are compared with those of vertices on the surface.
 const FEW_BALANCED: usize = 5_000;
 
-/// How often a budget is tried that flat regions overrun, each time with as much less as they did and this part of that.
+/// How often a budget is tried that flat regions overrun, each time with less by so many times what that was.
 const MOST_NARROWER: usize = 4;
-const NARROWER: f64 = 0.99;
+const OVERRUN: f64 = 1.5;
+
+/// Distances fall with about this power of the number of triangles: 1 where surfaces are curved, 2 where rims alone are.
+const FALLING: f64 = 1.5;
 
 /// Refines with some nodes divided in any case.
 pub(super) fn once(
@@ -66,32 +69,36 @@ fn within_caps(
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
     let most = options.budget().0.max(mesh.face_count());
-    let mut room = most;
+    let (mut room, mut guess) = (most, None);
     for _ in 0..MOST_NARROWER {
-        let found = within_room(mesh, scheme, (options, demands), room, observer)?;
+        let found = within_room(mesh, scheme, (options, demands), (room, guess), observer)?;
         let count = found.mesh.face_count();
         if !options.flat_regions || count <= most {
             return Ok(found);
         }
         // Flat regions whose rims cross, or that share edges, keep more triangles than plans counted.
-        room = (room as f64 * most as f64 / count as f64 * NARROWER) as usize;
+        let over = count.saturating_sub(room) as f64;
+        room = most.saturating_sub((OVERRUN * over) as usize);
+        let share = room as f64 / count as f64;
+        guess = Some(found.error.upper / share.powf(FALLING)).filter(|_| found.error.certified);
         if room < mesh.face_count() {
             break;
         }
     }
-    within_room(mesh, scheme, (&options.clone().flat_regions(false), demands), most, observer)
+    within_room(mesh, scheme, (&options.clone().flat_regions(false), demands), (most, None), observer)
 }
 
-/// The same with so many triangles, or more where flat regions keep some that nobody counted.
+/// The same with so many triangles, or more where flat regions keep some that nobody counted; with a guess for the distance, if there is one.
 fn within_room(
     mesh: &Mesh,
     scheme: &dyn Scheme,
     (options, demands): (&ExactOptions, &Demands),
-    most: usize,
+    (most, guess): (usize, Option<f64>),
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
     let (_, cap) = options.budget();
     let (found, has_gaps) = with_engine(mesh, scheme, (options, demands), observer, |engine| {
+        let engine = &Engine { guess, ..engine.clone() };
         let floor = engine.floor(options.tolerance);
         if !options.balance {
             let found = engine.finest(floor, (most, cap), options)?;
@@ -102,13 +109,12 @@ fn within_room(
         {
             return Ok((outcome.finish(engine, ExactStop::Met, options)?, false));
         }
-        let plain =
-            super::Engine { is_balanced: false, ..engine.clone() }.finest(floor, (most, cap), options)?;
+        let plain = Engine { is_balanced: false, ..engine.clone() }.finest(floor, (most, cap), options)?;
         Ok((engine.least_balanced(plain, floor, (most, cap), options)?, false))
     })?;
     if has_gaps {
         let options = ExactOptions { by_rims: false, ..options.clone() };
-        return within_room(mesh, scheme, (&options, demands), most, observer);
+        return within_room(mesh, scheme, (&options, demands), (most, guess), observer);
     }
     Ok(found)
 }

@@ -252,6 +252,7 @@ fn with_engine<T>(
         is_balanced: options.balance,
         has_origins: options.origins,
         counts_strips: true,
+        guess: None,
         rounding,
     };
     watch.stage(Stage::Refining, None)?;
@@ -283,6 +284,8 @@ pub(super) struct Engine<'a> {
     has_origins: bool,
     /// Plans tell how many triangles they come to once strips are put together; else they may tell more, as long as that fits.
     counts_strips: bool,
+    /// A distance that is about right for the budget, as an earlier refinement tells.
+    guess: Option<f64>,
     /// What rounding may do to a distance.
     rounding: f64,
 }
