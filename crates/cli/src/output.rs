@@ -17,12 +17,9 @@ const STANDARD_OUTPUT: &str = "-";
 /// Prints text on standard output.
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes())?;
-    if !text.ends_with('\n') {
-        out.write_all(b"\n")?;
-    }
-    out.flush()?;
-    Ok(())
+    let end: &[u8] = if text.ends_with('\n') { b"" } else { b"\n" };
+    let written = out.write_all(text.as_bytes()).and_then(|()| out.write_all(end)).and_then(|()| out.flush());
+    written.context("standard output")
 }
 
 /// A value as indented JSON with a line end.
@@ -39,8 +36,7 @@ pub(crate) fn is_standard_output(path: &Path) -> bool {
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     if is_standard_output(path) {
         let mut out = std::io::stdout().lock();
-        out.write_all(bytes)?;
-        return Ok(out.flush()?);
+        return out.write_all(bytes).and_then(|()| out.flush()).context("standard output");
     }
     interrupt::uninterrupted(path.display().to_string(), || limitmesh_io::write_whole(path, bytes))?;
     Ok(())
@@ -59,8 +55,8 @@ pub(crate) fn write_mesh(
         return Ok(());
     }
     match limitmesh_io::write_to(&mut std::io::stdout().lock(), format, mesh, options) {
-        // As it is, so that a reader that went away is known.
-        Err(WriteError::Writer { reason }) => Err(reason.into()),
+        // As it is below that, so that a reader that went away is known.
+        Err(WriteError::Writer { reason }) => Err(reason).context("standard output"),
         result => Ok(result?),
     }
 }

@@ -25,7 +25,8 @@ pub(crate) struct ExactArguments {
 
     /// The best mesh with at most so many triangles, the worst places refined first
     ///
-    /// With other goals, whichever is reached first ends the refinement. Also with --method planarity and vertex-error and with --scheme sqrt3.
+    /// With other goals, whichever is reached first ends the refinement. Each mesh of a glTF file and each object of a 3MF file may have so many.
+    /// Also with --method planarity and vertex-error and with --scheme sqrt3.
     #[arg(long, value_name = "N", value_parser = values::positive)]
     pub(crate) triangles: Option<usize>,
 

@@ -433,11 +433,11 @@ fn budgets_of_parts_that_fold_are_nearer_with_more_triangles() {
         println!("skipped: LIMITMESH_MODELS names no folder");
         return;
     };
-    let folder = folder("folding-parts");
+    let folder = folder();
     let notch = Path::new(&models).join("parts/notch.stl");
     let upper = |options: &str| {
         let options = format!("--crease-angle 30 --interpolate {options}");
-        let report = refine(0, &notch.to_string_lossy(), &file(&folder, "notch.ply"), &options);
+        let report = refine(0, &notch.to_string_lossy(), &folder.path().join("notch.ply"), &options);
         (number(&report["error"]["upper"]), report["output"]["triangles"].as_u64().expect("a number"))
     };
     let (_, count) = upper("--tolerance 0.002");

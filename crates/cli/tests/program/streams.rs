@@ -153,3 +153,16 @@ fn names_may_be_in_any_encoding() {
     run("info {}", &[&input]).expect(0);
     run("measure {} --limit-of {}", &[&output, &input]).expect(0);
 }
+
+/// Whoever cannot take what is written is named.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_standard_output_is_named() {
+    for arguments in ["refine builtin:cube -o - --to ply", "info builtin:cube --json"] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has one");
+        let ended = command(arguments, &[]).stdout(full).stderr(Stdio::piped()).output().expect("it ends");
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(1), "{arguments}: {said}");
+        assert!(said.contains("standard output") && said.contains("No space left"), "{arguments}: {said}");
+    }
+}
