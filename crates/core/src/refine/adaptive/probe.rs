@@ -54,7 +54,7 @@ const MET_WIDE: f64 = 1.12;
 const TIGHTENED: usize = 64;
 
 /// So many bounds may matter in the last round, with as many as were taken again before it.
-const MOST_CANDIDATES: usize = 3 * TIGHTENED << MOST_TIGHTENINGS;
+const MOST_CANDIDATES: usize = (3 * TIGHTENED) << MOST_TIGHTENINGS;
 
 /// The share of the triangles (one in so many) that are looked at again where the tolerance is met.
 const MET_SHARE: usize = 64;

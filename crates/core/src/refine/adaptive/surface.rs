@@ -92,6 +92,8 @@ pub(super) struct GeneralPiece {
 }
 
 /// A piece refined once.
+// Always on the heap, and most are of the larger kind.
+#[allow(clippy::large_enum_variant)]
 enum Refinement {
     Extraordinary(AroundVertex),
     Any { middles: [LimitPoint; 3], children: Vec<SurfacePiece> },
