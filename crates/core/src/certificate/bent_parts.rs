@@ -13,7 +13,7 @@ mod moved;
 
 use core::array::from_fn;
 
-use super::quartic_cell::{CUBIC, CURVE_CUBIC, QUARTIC, QuarticJet};
+use super::quartic_cell::{CUBIC, CURVE_CUBIC, QUARTIC, QUARTIC_SLOPE, QuarticJet};
 use crate::vector::DVec3;
 pub(crate) use moved::MovedFour;
 use wide::f64x4;
@@ -49,11 +49,19 @@ pub(crate) struct Bender<'a> {
 pub(crate) struct Bent {
     /// The second derivatives along the edges in their middles.
     bends: [Vectors; 3],
+    /// What third and fourth derivatives do.
+    rest: Rest,
+}
+
+/// What third and fourth derivatives of four parts do.
+struct Rest {
     /// How far heights over any plane may be off those of the quadratic part.
-    rest: f64x4,
-    /// What third and fourth derivatives along the edges come to at most.
-    third: f64x4,
-    fourth: f64x4,
+    height: f64x4,
+    /// How far curves may be off their edges, and their slopes towards the ends times the edges' lengths.
+    curve: f64x4,
+    steep: f64x4,
+    /// What first derivatives along edges may be off.
+    first: f64x4,
 }
 
 /// What is kept of four parts. Bends are those along the edges in their middles, by edge, axis and part.
@@ -88,9 +96,9 @@ impl<'a> Bender<'a> {
         let bend = |c: &[DVec3; 6], at: Places| quadratic(c, at).map(|bend| bend * square);
         let bends =
             [bend(uu, [u + half, v]), bend(&self.across, [u + half, v + half]), bend(vv, [u, v + half])];
-        let cubic = cubic(&self.third([u + third, v + third])) * (square * reach);
-        let (third, fourth) = self.most(reach);
-        Bent { bends, rest: cubic + (QUARTIC * self.fourth) * (square * square), third, fourth }
+        let [third, bubble] =
+            thirds(&self.third([u + third, v + third])).map(|length| length * (square * reach));
+        Bent { bends, rest: Rest::of([third, bubble], self.fourth * (square * square)) }
     }
 
     /// Parts with any corners.
@@ -107,7 +115,8 @@ impl<'a> Bender<'a> {
             from_fn(|axis| (0..3).fold(f64x4::ZERO, |sum, i| sum + by[i][axis] * shares[i]))
         };
         let bends = [bend(a, b), bend(b, c), bend(c, a)];
-        let (third, fourth) = self.most(reach);
+        let square = reach * reach;
+        let fourth = self.jet.most(1.0).1 * (square * square);
         let centroid = from_fn(|axis| (a[axis] + b[axis] + c[axis]) * (1.0 / 3.0));
         let [s, r] = [b, c].map(|to| [to[0] - a[0], to[1] - a[1]]);
         let form = self.third(centroid);
@@ -118,7 +127,7 @@ impl<'a> Bender<'a> {
             let values = [inner(twice_s, s), inner(twice_s, r), inner(twice_r, s), inner(twice_r, r)];
             along.iter_mut().zip(values).for_each(|(along, value)| along[axis] = value);
         }
-        Bent { bends, rest: cubic(&along) + QUARTIC * fourth, third, fourth }
+        Bent { bends, rest: Rest::of(thirds(&along), fourth) }
     }
 
     /// The third derivatives at places: by u three times to v three times.
@@ -130,13 +139,23 @@ impl<'a> Bender<'a> {
             from_fn(|axis| c[axis] + by_u[axis] * u + by_v[axis] * v)
         })
     }
+}
 
-    /// What third and fourth derivatives along directions with coordinates up to `reach` come to at most.
+impl Rest {
+    /// By the length of the greatest third derivative along an edge at the centroid, that of the bubble's coefficient B, and what fourth
+    /// derivatives along pairs of edges come to at most, as [`super::quartic_cell`] has it.
+    ///
+    /// Let s and r be edges from one corner, t = r − s, and F that bound. In the middle of s, a sixth of s − 2r from the centroid,
+    /// the third derivative is off by ssss/6 − sssr/3; and sssr = ½(ssss + ssrr − sstt), so by no more than ⅔ F.
     #[inline]
-    fn most(&self, reach: f64x4) -> (f64x4, f64x4) {
-        let (third, fourth) = self.jet.most(1.0);
-        let cube = reach * reach * reach;
-        (third * cube, fourth * (cube * reach))
+    fn of([third, bubble]: [f64x4; 2], fourth: f64x4) -> Self {
+        let in_middle = third + fourth * (2.0 / 3.0);
+        Self {
+            height: CUBIC * third + bubble * (1.0 / 27.0) + QUARTIC * fourth,
+            curve: CURVE_CUBIC * in_middle + fourth * (1.0 / 384.0),
+            steep: in_middle * (1.0 / 12.0) + fourth * (1.0 / 48.0),
+            first: 0.25 * (third + bubble) + QUARTIC_SLOPE * fourth,
+        }
     }
 }
 
@@ -147,7 +166,7 @@ impl Bent {
     pub(crate) fn heights(&self, normals: &Vectors) -> (f64x4, f64x4, f64x4) {
         let bends = self.bends.map(|bend| dot(&bend, normals));
         let (low, high) = moved::quadratic_range(bends, [f64x4::ZERO; 3]);
-        (low, high, self.rest)
+        (low, high, self.rest.height)
     }
 
     /// What is kept, in a unit that makes so much of lengths.
@@ -156,19 +175,20 @@ impl Bent {
         let bends = self.bends.map(|bend| bend.map(|axis| axis * scale));
         let size =
             bends.iter().fold(f64x4::ZERO, |size, [x, y, z]| size.fast_max(x.abs() + y.abs() + z.abs()));
-        let (third, fourth) = (self.third * scale, self.fourth * scale);
+        let Rest { height, curve, steep, first } = &self.rest;
+        let [height, curve, steep, first] = [height, curve, steep, first].map(|&bound| bound * scale);
         let off = ROUNDED * size;
         let above = |bound: f64x4| (bound + off) * A_LITTLE_MORE;
         let single = |numbers: f64x4| numbers.to_array().map(|number| number as f32);
         // What is not a number is not below it.
-        let sum = bends.iter().flatten().fold(self.rest * scale, |sum, axis| sum + axis.abs());
-        let is_known = (sum + third + fourth).simd_lt(f64x4::splat(TOO_GREAT));
+        let sum = bends.iter().flatten().fold(height + first, |sum, axis| sum + axis.abs());
+        let is_known = (sum + curve + steep).simd_lt(f64x4::splat(TOO_GREAT));
         BentFour {
             bends: bends.map(|bend| bend.map(single)),
-            rest: single(is_known.bitselect(above(self.rest * scale), f64x4::splat(f64::INFINITY))),
-            curve: single(above(CURVE_CUBIC * third + fourth * (1.0 / 384.0))),
-            steep: single(above(third * (1.0 / 12.0) + fourth * (1.0 / 48.0))),
-            first: single(above(0.5 * third + fourth)),
+            rest: single(is_known.bitselect(above(height), f64x4::splat(f64::INFINITY))),
+            curve: single(above(curve)),
+            steep: single(above(steep)),
+            first: single(above(first)),
         }
     }
 }
@@ -195,15 +215,15 @@ impl BentFour {
     }
 }
 
-/// How far heights may be off those of the quadratic part for the third derivatives at the centroid, given along the edges from the
-/// first corner, s and r: sss, ssr, srr, rrr. See [`super::quartic_cell`].
+/// The lengths of the greatest third derivative along an edge and of the bubble's coefficient, for the third derivatives at the
+/// centroid, given along the edges from the first corner, s and r: sss, ssr, srr, rrr. See [`super::quartic_cell`].
 #[inline]
-fn cubic([a, b, c, d]: &[Vectors; 4]) -> f64x4 {
+fn thirds([a, b, c, d]: &[Vectors; 4]) -> [f64x4; 2] {
     let across: Vectors = from_fn(|axis| d[axis] - a[axis] + 3.0 * (b[axis] - c[axis]));
     let bubble: Vectors =
         from_fn(|axis| 0.25 * a[axis] - 0.5 * b[axis] + (across[axis] + d[axis]) * (1.0 / 12.0));
     let most = dot(a, a).fast_max(dot(d, d)).fast_max(dot(&across, &across));
-    CUBIC * most.sqrt() + (1.0 / 27.0) * dot(&bubble, &bubble).sqrt()
+    [most.sqrt(), dot(&bubble, &bubble).sqrt()]
 }
 
 /// A form of third degree with one direction put in twice.

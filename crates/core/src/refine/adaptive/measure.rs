@@ -151,7 +151,8 @@ impl Beholder for Measuring<'_> {
         };
         let highest = match (over, height) {
             (Over::Regular(ground, cell, spot), Height::Regular((height, rest), heights)) => {
-                let beside = ground.jet().beside(&cell, &among.frame, emitted.open);
+                let by_piece = ground.jet().beside(&cell, &among.frame, emitted.open);
+                let beside = ground.jet().beside_closely(&by_piece, &cell, &among.frame, emitted.open);
                 let off = |height| beside.deviation_off(height, among.moved, among.aside);
                 let refined = || heights.lifted(among.lifts, DIVISIONS, self.high_enough(&among, &off(0.0)));
                 // Nothing that is loose depends on heights.
