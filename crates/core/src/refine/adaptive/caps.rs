@@ -13,6 +13,9 @@ use crate::scheme::Scheme;
 /// Balanced results of fewer triangles are compared with those of vertices on the surface.
 const FEW_BALANCED: usize = 5_000;
 
+/// So are those of meshes of which so many faces (one in so many) are part of flat regions or strips.
+const MERGED_SHARE: usize = 16;
+
 /// How often a budget is tried that flat regions overrun, each time with less by so many times what that was.
 const MOST_NARROWER: usize = 4;
 const OVERRUN: f64 = 1.5;
@@ -58,7 +61,9 @@ pub(super) fn may_do_with_fewer(
     if count < FEW_BALANCED.max(2 * mesh.face_count()) {
         return Ok(true);
     }
-    with_engine(mesh, scheme, plain, observer, |engine| Ok(!engine.control.flat.are_none()))
+    with_engine(mesh, scheme, plain, observer, |engine| {
+        Ok(MERGED_SHARE * engine.control.flat.merged_faces() >= mesh.face_count())
+    })
 }
 
 /// The same, of which caps and budgets are kept.
