@@ -3,7 +3,7 @@
 
 use super::bulges::Bulges;
 use super::carry_out::marked;
-use super::changes::{Changes, Moves};
+use super::changes::Changes;
 use super::dirty::Dirty;
 use super::emit::Emission;
 use super::emitted::Sources;
@@ -43,9 +43,8 @@ impl Engine<'_> {
     ) -> Result<Option<Outcome>, RefineError> {
         let mut bulges = Bulges::default();
         let mut measured: Vec<Measured> = Vec::new();
-        // What was changed since triangles were measured last, and how vertices were moved then.
+        // What was changed since triangles were measured last.
         let mut is_new = vec![false; plan.closed.len()];
-        let mut before = None;
         // Heights that are good enough, where it is known.
         let allowed = if self.control.criteria.is_none() { goal.allowed(0) } else { 0.0 };
         loop {
@@ -70,18 +69,20 @@ impl Engine<'_> {
             }
             self.watch.stage(Stage::Bounding, None)?;
             let is_touched = core::mem::replace(&mut is_new, vec![false; touched.len()]);
-            let edges = (&self.edges, &plan.chains);
-            let changes = Changes::since(before.as_ref(), is_touched, &emission, edges, self.watch)?;
+            // Of triangles of which nothing but distances is asked it is known what they came to.
+            let are_others = if allowed > 0.0 { vec![false; is_touched.len()] } else { is_touched };
+            let known = self.is_balanced.then_some(&bulges);
+            let changes = Changes::since(known, are_others, &emission, self.watch)?;
             let sources = self.sources(&plan, &emission);
-            let faces = changes.faces(&emission, &self.edges, self.watch)?;
-            let bulges = self.is_balanced.then_some(&bulges);
+            let faces = changes.faces(&emission, self.watch)?;
             let found =
-                measure(&sources, self.watch, (goal, f64::INFINITY), (&faces, Some(&changes), bulges))?;
+                measure(&sources, self.watch, (goal, f64::INFINITY), (&faces, Some(&changes), known))?;
+            bulges.keep((&emission, &faces), &found, self.watch)?;
             if measured.is_empty() {
                 measured = found;
             } else {
                 self.watch.each(faces.iter().zip(found), |(&face, found)| {
-                    measured[face as usize].replace(found, changes.is_touched(face));
+                    measured[face as usize].replace(found, changes.are_others(face));
                 })?;
             }
             let failing: Vec<(Place, f64)> =
@@ -91,7 +92,6 @@ impl Engine<'_> {
             let Some(dirty) = dirty else {
                 return Ok(Some(Outcome { plan, emission, measured: Some(measured) }));
             };
-            before = Some(Moves::of(&mut emission, &plan.chains));
             plan.emission = Some(emission);
             if !self.carry_out(&mut plan, dirty, most)? {
                 return Ok(None);

@@ -2,21 +2,24 @@
 //! [`super::offsets`], and what is kept of each part of the surface so that triangles are bounded after their corners were moved
 //! ([`super::measure`]).
 //!
-//! Parts of regular pieces are looked at four at a time, those of a piece together ([`waiting`]).
+//! Parts of regular pieces are looked at four at a time, those of a piece together ([`waiting`]). Triangles that were there before are
+//! not looked at again ([`known`]): what they came to when they were measured stays with them, too.
 
+mod known;
 mod waiting;
 
 use super::backs::{Behind, looks_away};
 use super::control::Control;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
-use super::measure::fail;
+use super::measure::{Measured, fail};
 use super::quadtree::Place;
 use crate::certificate::{BentFour, FOUR, TriangleFrame};
 use crate::criterion::Region;
 use crate::patch::{Rules, reciprocal_power};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
+use known::{Key, Known};
 use waiting::Waiting;
 
 /// Levels below a leaf whose vertices are sampled where a piece is not regular.
@@ -39,15 +42,33 @@ pub(super) struct Bulge {
     pub(super) ranges: Vec<[f64; 2]>,
     /// Leaves whose triangles bulge too far, and half of that.
     failing: Vec<(Place, f64)>,
-    /// Codes of the leaves whose triangles they are.
-    places: Vec<u64>,
+    /// Which triangles they are.
+    keys: Vec<Key>,
+    /// What they came to when they were measured last.
+    pub(super) found: Vec<FoundLast>,
     /// What their parts of the surface are like, in a unit that makes so much of lengths.
     pub(super) parts: Vec<BentFour>,
     pub(super) scale: f64,
 }
 
+/// What a triangle came to among its neighbours.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FoundLast {
+    /// How far its corners were moved; not numbers as long as it was not measured.
+    pub(super) offsets: [f64; 3],
+    /// The bound of its distance; what counts of that, which has one where the bound is infinite, too; and the height of the surface over it.
+    pub(super) bound: f64,
+    pub(super) value: f64,
+    pub(super) height: f64,
+}
+
+impl FoundLast {
+    const NOTHING: Self =
+        Self { offsets: [f64::NAN; 3], bound: f64::INFINITY, value: f64::INFINITY, height: 0.0 };
+}
+
 impl Bulges {
-    /// Looks at the triangles of some control faces; heights of `allowed` on either side are good enough.
+    /// Looks at the triangles of some control faces that were not there before; heights of `allowed` on either side are good enough.
     pub(super) fn look(
         &mut self,
         sources: &Sources<'_>,
@@ -63,7 +84,9 @@ impl Bulges {
                 let triangles = emission.triangles_of(face);
                 let found = Bulge::unknown(triangles.len(), scale(sources.control, face));
                 let (control, first) = (sources.control, triangles.start as u32);
-                let mut looking = Looking { control, emission, first, waiting: Waiting::default(), found };
+                let known = Known::of(self.0.get(face as usize));
+                let waiting = Waiting::default();
+                let mut looking = Looking { control, emission, first, waiting, known, found };
                 sources.show(face, is_stopped, &mut looking);
                 looking.end(face, hopeless)
             });
@@ -71,6 +94,28 @@ impl Bulges {
         })?;
         watch.each(faces.iter().zip(found.into_iter().flatten()), |(&face, found)| {
             self.0[face as usize] = found;
+        })
+    }
+
+    /// Keeps what was found of the triangles of some control faces, at least how far their corners are moved.
+    pub(super) fn keep(
+        &mut self,
+        (emission, faces): (&Emission, &[u32]),
+        found: &[Measured],
+        watch: &SharedWatch<'_>,
+    ) -> Result<(), Cancelled> {
+        watch.each(faces.iter().zip(found), |(&face, found)| {
+            let Some(bulge) = self.0.get_mut(face as usize) else { return };
+            if !found.each.is_empty() {
+                bulge.found.copy_from_slice(&found.each);
+                return;
+            }
+            let triangles = emission.triangles_of(face);
+            bulge
+                .found
+                .iter_mut()
+                .zip(triangles)
+                .for_each(|(known, at)| known.offsets = emission.offsets_of(at));
         })
     }
 
@@ -85,7 +130,8 @@ impl Bulge {
         Self {
             ranges: vec![[f64::NAN; 2]; triangles],
             failing: Vec::new(),
-            places: vec![0; triangles],
+            keys: vec![Key::default(); triangles],
+            found: vec![FoundLast::NOTHING; triangles],
             parts: vec![BentFour::UNKNOWN; triangles.div_ceil(FOUR)],
             scale,
         }
@@ -93,7 +139,7 @@ impl Bulge {
 
     /// The leaf whose triangle has this number in the control face.
     pub(super) fn place(&self, face: u32, number: usize) -> Place {
-        let code = self.places[number];
+        let code = self.keys[number].leaf;
         let level = (u64::BITS - 1 - code.leading_zeros().min(u64::BITS - 1)) / 2;
         Place { face, level, path: code & !(1 << (2 * level)) }
     }
@@ -111,13 +157,20 @@ struct Looking<'a> {
     emission: &'a Emission,
     first: u32,
     waiting: Waiting,
+    known: Known<'a>,
     found: Bulge,
 }
 
 impl Beholder for Looking<'_> {
+    fn wants_triangle(&mut self, emitted: &Emitted) -> bool {
+        let number = (emitted.number - self.first) as usize;
+        let key = Key::of(emitted, self.emission);
+        self.found.keys[number] = key;
+        !self.known.take_over(key, number, &mut self.found)
+    }
+
     fn triangle<'p>(&mut self, emitted: &Emitted, over: Over<'_, 'p>, rules: &'p Rules<'p>) {
         let number = (emitted.number - self.first) as usize;
-        self.found.places[number] = 1 << (2 * emitted.place.level) | emitted.place.path;
         if self.control.criteria.is_some() && self.is_unseen(emitted, &over, rules) {
             return;
         }
@@ -126,7 +179,8 @@ impl Beholder for Looking<'_> {
                 if self.waiting.is_full(ground) {
                     self.waiting.look(self.emission, self.first, &mut self.found);
                 }
-                self.waiting.push(ground, (emitted, self.emission), (cell, spot));
+                let turn = self.found.keys[number].turn() as u32;
+                self.waiting.push(ground, (emitted, turn), (cell, spot));
             }
             Over::General(pieces, _) => {
                 let frame = TriangleFrame::new(self.corners(emitted));

@@ -102,6 +102,11 @@ impl Emission {
         Ok(())
     }
 
+    /// How far the corners of a triangle were moved.
+    pub(super) fn offsets_of(&self, triangle: usize) -> [f64; 3] {
+        self.triangles[triangle].map(|vertex| self.offsets.get(vertex as usize).copied().unwrap_or(0.0))
+    }
+
     /// How far a vertex was moved, and in which direction.
     pub(super) fn step(&self, vertex: u32) -> DVec3 {
         let offset = self.offsets.get(vertex as usize).copied().unwrap_or(0.0);

@@ -58,6 +58,11 @@ pub(super) trait Beholder {
         true
     }
 
+    /// Whether one is to be shown.
+    fn wants_triangle(&mut self, _emitted: &Emitted) -> bool {
+        true
+    }
+
     /// Looks at one.
     fn triangle<'p>(&mut self, emitted: &Emitted, over: Over<'_, 'p>, rules: &'p Rules<'p>);
 }
@@ -174,23 +179,28 @@ impl<B: Beholder> Leaves<'_, B> {
         match node.surface {
             Surface::Unknown => {}
             Surface::Regular(piece, spot) => {
-                let ground = piece.ground();
                 let spot = spot.leaf(node.depth, i, j);
                 let [a, b, c] = spot.corners();
                 let domain = [a, b, c, spot.along(0, 0.5), spot.along(1, 0.5), spot.along(2, 0.5)];
                 for triangle in triangles {
                     let emitted = emitted(triangle.part, triangle.corners, triangle.borders);
+                    if !self.beholder.wants_triangle(&emitted) {
+                        continue;
+                    }
                     let cell = Cell(triangle.corners.map(|label| domain[label]));
-                    self.beholder.triangle(&emitted, Over::Regular(ground, cell, spot), self.rules);
+                    self.beholder.triangle(&emitted, Over::Regular(piece.ground(), cell, spot), self.rules);
                 }
             }
             Surface::General(piece, rules) => {
                 let mut pieces = Pieces::of(&piece.patch);
                 let [a, b, c] = piece.corners;
-                let [d, e, f] = *piece.middles(rules);
-                let points = [a, b, c, d, e, f];
                 for triangle in triangles {
                     let emitted = emitted(triangle.part, triangle.corners, triangle.borders);
+                    if !self.beholder.wants_triangle(&emitted) {
+                        continue;
+                    }
+                    let [d, e, f] = *piece.middles(rules);
+                    let points = [a, b, c, d, e, f];
                     let limits = triangle.corners.map(|label| points[label]);
                     self.beholder.triangle(&emitted, Over::General(&mut pieces, limits), self.rules);
                 }
@@ -204,6 +214,9 @@ impl<B: Beholder> Leaves<'_, B> {
         self.next += 1;
         let vertices = self.triangles[number as usize];
         let emitted = Emitted { number, vertices, place, part: SubTriangle::Whole, open };
+        if !self.beholder.wants_triangle(&emitted) {
+            return;
+        }
         match node.surface {
             Surface::Unknown => {}
             Surface::Regular(piece, spot) => {
@@ -227,6 +240,9 @@ impl<B: Beholder> Leaves<'_, B> {
         let place = node.place.leaf(node.depth, (i, j), true);
         let emitted =
             Emitted { number, vertices: [b, c, a], place, part: SubTriangle::Whole, open: [false; 3] };
+        if !self.beholder.wants_triangle(&emitted) {
+            return;
+        }
         let spot = spot.row(node.depth, i, j, true);
         let cell = Cell(spot.corners());
         self.beholder.triangle(&emitted, Over::Regular(piece.ground(), cell, spot), self.rules);

@@ -12,7 +12,7 @@ use std::collections::HashSet;
 use smallvec::SmallVec;
 
 use super::backs::{BackFaces, Behind, looks_away};
-use super::bulges::Bulges;
+use super::bulges::{Bulge, Bulges, FoundLast};
 use super::changes::Changes;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
@@ -49,6 +49,8 @@ pub(super) struct Measured {
     pub(super) pixels: f64,
     /// Leaves that fail, in the order of the walk, and what they come to.
     pub(super) failing: Vec<(Place, f64)>,
+    /// What each triangle came to, this time or before, where that is kept.
+    pub(super) each: Vec<FoundLast>,
 }
 
 /// Looks at the triangles of some control faces, or those of them that changes concern. Bounds of distances below `length`, of
@@ -65,16 +67,18 @@ pub(super) fn measure(
         let measured = faces[block].iter().map(|&face| {
             let mut measuring = Measuring::of(sources, (face, &sharp), (goal, length), changes);
             let bulge = bulges.filter(|_| measuring.criteria.is_none() && !measuring.rim_alone);
-            if let Some(Bulges(bulges)) = bulge {
-                let is_left = measuring.at_once(face, &bulges[face as usize]);
+            let bulge = bulge.map(|Bulges(bulges)| &bulges[face as usize]);
+            if let Some(bulge) = bulge {
+                measuring.found.each.clone_from(&bulge.found);
+                let is_left = measuring.at_once(face, bulge);
                 let is_done = !is_left.contains(&true);
                 measuring.is_left = Some(is_left);
                 if is_done {
-                    return measuring.found();
+                    return measuring.found(Some(bulge));
                 }
             }
             sources.show(face, is_stopped, &mut measuring);
-            measuring.found()
+            measuring.found(bulge)
         });
         measured.collect::<Vec<_>>()
     })?;
@@ -109,14 +113,14 @@ impl Beholder for Measuring<'_> {
         self.is_left.as_ref().is_none_or(|is_left| is_left[own].contains(&true))
     }
 
-    fn triangle<'p>(&mut self, emitted: &Emitted, mut over: Over<'_, 'p>, rules: &'p Rules<'p>) {
-        let is_wanted = match &self.is_left {
+    fn wants_triangle(&mut self, emitted: &Emitted) -> bool {
+        match &self.is_left {
             Some(is_left) => is_left[(emitted.number - self.first) as usize],
             None => self.changes.is_none_or(|changes| changes.concern(self.emission, emitted.number)),
-        };
-        if !is_wanted {
-            return;
         }
+    }
+
+    fn triangle<'p>(&mut self, emitted: &Emitted, mut over: Over<'_, 'p>, rules: &'p Rules<'p>) {
         if self.rim_alone {
             return self.along_rim(emitted, over, rules);
         }
@@ -140,7 +144,7 @@ impl Beholder for Measuring<'_> {
         };
         if self.fails_for_sure(height.least()) {
             let value = Value { bound: f64::INFINITY, value: height.least(), pixels: 0.0 };
-            return self.fail(emitted.number, emitted.place, value);
+            return self.take((emitted.number, emitted.place), value, 0.0);
         }
         let mut best: Option<Value> = None;
         let mut is_enough = |deviation: Deviation| {
@@ -173,19 +177,16 @@ impl Beholder for Measuring<'_> {
             (Over::Regular(..), Height::General(height)) => height,
         };
         let Some(value) = best else { return };
-        if exceeds(highest, self.found.highest.0) {
-            self.found.highest = (highest, emitted.place);
-        }
         let value = Value { value: if exceeds(value.value, cone) { value.value } else { cone }, ..value };
-        self.found.add(emitted.place, &value);
-        if exceeds(value.value, self.limit) {
-            self.fail(emitted.number, emitted.place, value);
-        }
+        self.take((emitted.number, emitted.place), value, highest);
     }
 }
 
 impl Measured {
-    fn add(&mut self, place: Place, value: &Value) {
+    fn add(&mut self, place: Place, value: &Value, height: f64) {
+        if exceeds(height, self.highest.0) {
+            self.highest = (height, place);
+        }
         if exceeds(value.bound, self.worst.0) {
             self.worst = (value.bound, place);
         }
@@ -195,9 +196,9 @@ impl Measured {
         self.pixels = self.pixels.max(value.pixels);
     }
 
-    /// Takes what was found of all triangles of the control face, or adds what was of some.
+    /// Takes what was found of all triangles of the control face, or adds what was of some while that of others is not kept.
     pub(super) fn replace(&mut self, found: Self, is_all: bool) {
-        if is_all {
+        if is_all || !found.each.is_empty() {
             *self = found;
             return;
         }
@@ -234,7 +235,7 @@ impl<'a> Measuring<'a> {
             back_faces: &control.back_faces,
             rim_alone: control.flat.is_its_rim(face),
             sharp,
-            changes: changes.filter(|changes| !changes.is_touched(face)),
+            changes,
             first: emission.triangles_of(face).start as u32,
             is_left: None,
             limit: goal.allowed(face),
@@ -245,13 +246,32 @@ impl<'a> Measuring<'a> {
                 value: 0.0,
                 pixels: 0.0,
                 failing: Vec::new(),
+                each: Vec::new(),
             },
             failing: Vec::new(),
         }
     }
 
     /// What all come to.
-    fn found(mut self) -> Measured {
+    fn found(mut self, bulge: Option<&Bulge>) -> Measured {
+        let each = core::mem::take(&mut self.found.each);
+        for (number, known) in each.iter().enumerate() {
+            let found = &mut self.found;
+            found.value = found.value.max(known.value);
+            let fails = exceeds(known.value, self.limit);
+            if fails || exceeds(known.bound, found.worst.0) || exceeds(known.height, found.highest.0) {
+                let place = bulge.map_or(found.worst.1, |bulge| bulge.place(found.worst.1.face, number));
+                found.add(
+                    place,
+                    &Value { bound: known.bound, value: known.value, pixels: 0.0 },
+                    known.height,
+                );
+                if fails {
+                    fail(&mut found.failing, place, known.value);
+                }
+            }
+        }
+        self.found.each = each;
         // Triangles of a leaf stand together.
         self.failing.sort_by_key(|&(number, ..)| number);
         for (_, place, value) in self.failing {
@@ -260,9 +280,17 @@ impl<'a> Measuring<'a> {
         self.found
     }
 
-    fn fail(&mut self, number: u32, place: Place, value: Value) {
-        self.found.add(place, &value);
-        self.failing.push((number, place, value.value));
+    /// Takes what a triangle comes to over which the surface is so high.
+    fn take(&mut self, (number, place): (u32, Place), value: Value, height: f64) {
+        if let Some(known) = self.found.each.get_mut((number - self.first) as usize) {
+            let offsets = self.emission.offsets_of(number as usize);
+            *known = FoundLast { offsets, bound: value.bound, value: value.value, height };
+            return;
+        }
+        self.found.add(place, &value, height);
+        if exceeds(value.value, self.limit) {
+            self.failing.push((number, place, value.value));
+        }
     }
 
     /// A triangle of a flat region, of whose edges those on the rim count alone.
@@ -278,14 +306,7 @@ impl<'a> Measuring<'a> {
             Over::General(pieces, _) => pieces.deviation(emitted.part, &frame, rules, effort),
         };
         let bound = deviation.own;
-        if exceeds(bound, self.found.highest.0) {
-            self.found.highest = (bound, emitted.place);
-        }
-        let value = Value { bound, value: bound, pixels: 0.0 };
-        match exceeds(bound, self.limit) {
-            true => self.fail(emitted.number, emitted.place, value),
-            false => self.found.add(emitted.place, &value),
-        }
+        self.take((emitted.number, emitted.place), Value { bound, value: bound, pixels: 0.0 }, bound);
     }
 
     /// Whether a triangle with a point of the surface so high over it fails for sure: then it needs no bound, as long as it is

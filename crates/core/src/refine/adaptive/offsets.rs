@@ -4,7 +4,8 @@
 //! sides have e/2. Let heights over a triangle lie between l ≤ 0 ≤ h while its corners are on the surface. With all three moved by
 //! x they lie between l − x and h − x, so for errors of at most e each corner's x has to be between h − e and l + e. A vertex that is
 //! between these for all triangles around it stays so when some of them are divided: then the ranges shrink. Else a division would
-//! make the triangles beside fail, these those beside them, and so on, one a round.
+//! make the triangles beside fail, these those beside them, and so on, one a round. For the same reason it stays where it was put, as
+//! long as that is good enough: then triangles that were measured need not be measured again.
 //!
 //! Where a surface bends both ways in the same way, and on boundaries and sharp edges, vertices stay. Triangles that no camera sees have no
 //! say: they may be much coarser than those beside them, which would not stand what these want.
@@ -18,9 +19,12 @@ use crate::vector::Extremes;
 /// Where all heights around can be within this part of what is allowed, vertices move no farther than they have to for that.
 const EASY: f64 = 0.5;
 
+/// Where all heights around are within this part of what is allowed, vertices stay where they were moved before.
+const STAYS: f64 = 0.75;
+
 impl Bulges {
     /// How far each vertex is to be moved along its normal: by the mean of the middles around, or as near to that as leaves all
-    /// heights around well within `allowed`; where nothing does, to the middle of them all.
+    /// heights around well within `allowed`; where nothing does, to the middle of them all; or as far as before.
     pub(super) fn offsets(
         &self,
         control: &Control<'_>,
@@ -29,14 +33,20 @@ impl Bulges {
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<f64>, Cancelled> {
         let mut around = vec![Around::default(); emission.positions.len()];
-        let ranges = self.0.iter().flat_map(|face| &face.ranges);
-        watch.each(emission.triangles.iter().zip(ranges), |(triangle, range)| {
-            if !range[0].is_nan() {
-                triangle.iter().for_each(|&vertex| around[vertex as usize].add(*range));
+        let known = self.0.iter().flat_map(|face| face.ranges.iter().zip(&face.found));
+        watch.each(emission.triangles.iter().zip(known), |(triangle, (range, found))| {
+            for (&vertex, offset) in triangle.iter().zip(found.offsets) {
+                let around = &mut around[vertex as usize];
+                if !range[0].is_nan() {
+                    around.add(*range);
+                }
+                if !offset.is_nan() {
+                    around.before = Some(offset);
+                }
             }
         })?;
         let mut offsets = Vec::with_capacity(around.len());
-        watch.each(around, |around| offsets.push(around.offset(EASY * allowed)))?;
+        watch.each(around, |around| offsets.push(around.offset(allowed)))?;
         watch.each(0..control.mesh.face_count() as u32, |face| {
             let open = control.open(face);
             for edge in (0..3).filter(|&edge| open[edge as usize]) {
@@ -62,6 +72,8 @@ struct Around {
     /// Of twice the middles.
     sum: f64,
     triangles: u32,
+    /// How far the vertex was moved before.
+    before: Option<f64>,
 }
 
 impl Around {
@@ -72,7 +84,12 @@ impl Around {
     }
 
     /// How far to move the vertex.
-    fn offset(&self, easy: f64) -> f64 {
+    fn offset(&self, allowed: f64) -> f64 {
+        let stays = STAYS * allowed;
+        if let Some(before) = self.before.filter(|&x| self.high - stays <= x && x <= self.low + stays) {
+            return before;
+        }
+        let easy = EASY * allowed;
         let (least, most) = (self.high - easy, self.low + easy);
         if least <= most {
             (0.5 * self.sum / f64::from(self.triangles.max(1))).max(least).min(most)

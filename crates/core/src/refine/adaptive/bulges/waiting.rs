@@ -48,7 +48,7 @@ impl Waiting {
     pub(super) fn push(
         &mut self,
         ground: &Ground,
-        (emitted, emission): (&Emitted, &Emission),
+        (emitted, turn): (&Emitted, u32),
         (cell, spot): (Cell, Spot),
     ) {
         if self.ground.is_none() {
@@ -56,8 +56,6 @@ impl Waiting {
             self.jet = Some(ground.jet().clone());
         }
         let number = emitted.number;
-        let corners = emission.triangles[number as usize];
-        let turn = corners.iter().position(|&vertex| vertex == emitted.vertices[0]).unwrap_or(0) as u32;
         if emitted.part == SubTriangle::Whole {
             self.even.push(Part { at: spot, number, turn });
         } else {

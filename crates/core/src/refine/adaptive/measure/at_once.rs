@@ -1,9 +1,8 @@
 //! The triangles of a control face by what was kept of their parts of the surface when these were looked at ([`super::super::bulges`]), four at a
 //! time and without the surface: what passes or fails so needs no closer look.
 
-use super::super::bulges::Bulge;
-use super::super::quadtree::Place;
-use super::{Measuring, Value};
+use super::super::bulges::{Bulge, FoundLast};
+use super::Measuring;
 use crate::certificate::{FOUR, MovedFour};
 use crate::mesh::NONE;
 
@@ -35,17 +34,15 @@ impl Measuring<'_> {
                 *is_left = !self.gather(number + at, at, &mut four);
             }
             let found = four.bounds(parts, bulge.scale);
-            let place = |at: usize| bulge.place(face, number + at - triangles.start);
             for (at, is_left) in is_left.iter_mut().enumerate().filter(|&(at, _)| wanted[at]) {
                 if *is_left {
                     continue;
                 }
                 let (bound, height, least) = (found.bound[at], found.height[at], found.least[at]);
                 if self.fails_for_sure(least) {
-                    let value = Value { bound: f64::INFINITY, value: least, pixels: 0.0 };
-                    self.fail((number + at) as u32, place(at), value);
+                    self.keep(number + at, [f64::INFINITY, least, 0.0]);
                 } else if bound <= self.limit && bound <= self.length {
-                    self.pass(bound, height, || place(at));
+                    self.keep(number + at, [bound, bound, height]);
                 } else {
                     *is_left = true;
                 }
@@ -54,17 +51,11 @@ impl Measuring<'_> {
         is_left
     }
 
-    /// Takes what a triangle comes to that passes.
+    /// Keeps a triangle's bound, what counts of it, and the height over it.
     #[inline]
-    fn pass(&mut self, bound: f64, height: f64, place: impl Fn() -> Place) {
-        let found = &mut self.found;
-        if bound > found.worst.0 {
-            found.worst = (bound, place());
-        }
-        if height > found.highest.0 {
-            found.highest = (height, place());
-        }
-        found.value = found.value.max(bound);
+    fn keep(&mut self, number: usize, [bound, value, height]: [f64; 3]) {
+        let offsets = self.emission.offsets_of(number);
+        self.found.each[number - self.first as usize] = FoundLast { offsets, bound, value, height };
     }
 
     /// Puts a triangle and those beside it at a place among four; `false` if it has an edge without a neighbour.
