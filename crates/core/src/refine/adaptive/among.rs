@@ -9,7 +9,7 @@ use super::emit::Emission;
 use super::emitted::Sources;
 use super::judge::Goal;
 use super::measure::{Measured, measure};
-use super::quadtree::Place;
+use super::quadtree::{self, Place};
 use super::result::Outcome;
 use super::{ADDED, Engine, Plan};
 use crate::progress::Stage;
@@ -42,56 +42,47 @@ impl Engine<'_> {
         (most, is_budget): (usize, bool),
     ) -> Result<Option<Outcome>, RefineError> {
         let mut bulges = Bulges::default();
-        let mut measured: Vec<Measured> = Vec::new();
-        // What was changed since triangles were measured last.
-        let mut is_new = vec![false; plan.closed.len()];
+        let faces = 0..plan.closed.len() as u32;
+        let mut measured: Vec<Measured> = faces.map(Measured::nothing).collect();
         // Heights that are good enough, where it is known.
         let allowed = if self.control.criteria.is_none() { goal.allowed(0) } else { 0.0 };
+        let is_alone = self.is_balanced && allowed > 0.0;
         loop {
             let touched = plan.is_touched.clone();
             let mut emission = self.emit_all(&mut plan)?;
             if self.is_balanced {
-                bulges.look(&self.sources(&plan, &emission), self.watch, &marked(&touched), allowed)?;
-            }
-            is_new.iter_mut().zip(&touched).for_each(|(is_new, is_touched)| *is_new |= is_touched);
-            // What cannot be balanced is divided before anything is measured.
-            let failing = if allowed > 0.0 { bulges.failing() } else { Vec::new() };
-            if let Some(dirty) = self.divide(&mut plan, &failing, Some(allowed))? {
-                plan.emission = Some(emission);
-                if !self.carry_out(&mut plan, dirty, most)? {
-                    return Ok(None);
-                }
-                continue;
-            }
-            if self.is_balanced {
+                let sources = self.sources(&plan, &emission);
+                bulges.look(&sources, self.watch, &marked(&touched), (allowed, self.max_levels))?;
                 let offsets = bulges.offsets(self.control, &emission, allowed, self.watch)?;
                 emission.shift(offsets, self.watch)?;
             }
             self.watch.stage(Stage::Bounding, None)?;
-            let is_touched = core::mem::replace(&mut is_new, vec![false; touched.len()]);
             // Of triangles of which nothing but distances is asked it is known what they came to.
-            let are_others = if allowed > 0.0 { vec![false; is_touched.len()] } else { is_touched };
             let known = self.is_balanced.then_some(&bulges);
-            let changes = Changes::since(known, are_others, &emission, self.watch)?;
+            let changes = Changes::since((known, is_alone), &touched, &emission, self.watch)?;
             let sources = self.sources(&plan, &emission);
-            let faces = changes.faces(&emission, self.watch)?;
+            let faces = changes.faces(&emission, &self.edges, self.watch)?;
             let found =
                 measure(&sources, self.watch, (goal, f64::INFINITY), (&faces, Some(&changes), known))?;
             bulges.keep((&emission, &faces), &found, self.watch)?;
-            if measured.is_empty() {
-                measured = found;
-            } else {
-                self.watch.each(faces.iter().zip(found), |(&face, found)| {
-                    measured[face as usize].replace(found, changes.are_others(face));
-                })?;
-            }
+            self.watch.each(faces.iter().zip(found), |(&face, found)| {
+                measured[face as usize].replace(found, changes.are_others(face));
+            })?;
             let failing: Vec<(Place, f64)> =
-                measured.iter().flat_map(|face| &face.failing).copied().collect();
+                measured.iter_mut().flat_map(|face| core::mem::take(&mut face.failing)).collect();
             let is_full = is_budget && plan.triangles + ADDED * failing.len() > most;
-            let dirty = if is_full { None } else { self.divide(&mut plan, &failing, None)? };
-            let Some(dirty) = dirty else {
+            let mut dirty = Dirty::none(plan.closed.len());
+            let mut is_split = false;
+            if !is_full {
+                // What cannot be balanced was not measured.
+                let hopeless = if is_alone { bulges.failing() } else { Vec::new() };
+                for (failing, allowed) in [(hopeless, Some(allowed)), (failing, None)] {
+                    is_split |= self.divide(&mut plan, &failing, allowed, &mut dirty)?;
+                }
+            }
+            if !is_split {
                 return Ok(Some(Outcome { plan, emission, measured: Some(measured) }));
-            };
+            }
             plan.emission = Some(emission);
             if !self.carry_out(&mut plan, dirty, most)? {
                 return Ok(None);
@@ -99,19 +90,23 @@ impl Engine<'_> {
         }
     }
 
-    /// Divides the leaves that fail, and marks the faces that this changes; `None` if there are none that may be. With heights that
+    /// Divides the leaves that fail, and marks the faces that this changes; says whether there are any that may be. With heights that
     /// are `allowed` as often as these take, each division leaving a quarter.
     fn divide(
         &self,
         plan: &mut Plan,
         failing: &[(Place, f64)],
         allowed: Option<f64>,
-    ) -> Result<Option<Dirty>, RefineError> {
-        let mut dirty = Dirty::none(plan.closed.len());
+        dirty: &mut Dirty,
+    ) -> Result<bool, RefineError> {
         let mut is_split = false;
         let mut fresh = Vec::new();
         for &(place, height) in failing {
             self.watch.poll()?;
+            // Triangles of a leaf may fail for both reasons.
+            if plan.decision.trees.word_at(place).is_none_or(quadtree::is_split) {
+                continue;
+            }
             let mut left = allowed.map_or(0.0, |allowed| height / (4.0 * SURELY * allowed));
             fresh.push(place);
             for level in place.level.. {
@@ -121,7 +116,7 @@ impl Engine<'_> {
                 }
                 is_split = true;
                 for place in core::mem::take(&mut fresh) {
-                    self.split(&mut plan.decision.trees, place, &mut dirty)?;
+                    self.split(&mut plan.decision.trees, place, dirty)?;
                     fresh.extend((0..4).map(|child| place.child(child)));
                 }
                 if left <= 1.0 {
@@ -131,7 +126,7 @@ impl Engine<'_> {
             }
             fresh.clear();
         }
-        Ok(is_split.then_some(dirty))
+        Ok(is_split)
     }
 
     /// The finest mesh with balanced triangles within a value; `None` if that takes more triangles than there may be.

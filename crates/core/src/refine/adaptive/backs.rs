@@ -113,7 +113,7 @@ impl<'a> Behind<'a> {
     ) -> Self {
         let leaf = match over {
             Over::Regular(ground, _, spot) => Leaf::Regular(ground, *spot),
-            Over::General(pieces, _) => Leaf::General(pieces.patch(), rules),
+            Over::General(pieces, ..) => Leaf::General(pieces.patch(), rules),
         };
         Self { faces, face: emitted.place.face, leaf }
     }

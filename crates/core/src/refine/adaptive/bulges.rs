@@ -31,6 +31,9 @@ const BLOCK: usize = 64;
 /// Heights in a range of so many times what is allowed on either side are too much, wherever the corners are.
 const HOPELESS: f64 = 2.0;
 
+/// The range of heights over a triangle that is divided in any case.
+pub(super) const ENDS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
 /// What is known of the triangles, by control face.
 #[derive(Default)]
 pub(super) struct Bulges(pub(super) Vec<Bulge>);
@@ -42,6 +45,8 @@ pub(super) struct Bulge {
     pub(super) ranges: Vec<[f64; 2]>,
     /// Leaves whose triangles bulge too far, and half of that.
     failing: Vec<(Place, f64)>,
+    /// Whether triangles were not measured as they are.
+    waits: bool,
     /// Which triangles they are.
     keys: Vec<Key>,
     /// What they came to when they were measured last.
@@ -74,7 +79,7 @@ impl Bulges {
         sources: &Sources<'_>,
         watch: &SharedWatch<'_>,
         faces: &[u32],
-        allowed: f64,
+        (allowed, max_levels): (f64, u32),
     ) -> Result<(), Cancelled> {
         let hopeless = HOPELESS * allowed;
         let emission = sources.emission;
@@ -84,11 +89,11 @@ impl Bulges {
                 let triangles = emission.triangles_of(face);
                 let found = Bulge::unknown(triangles.len(), scale(sources.control, face));
                 let (control, first) = (sources.control, triangles.start as u32);
-                let known = Known::of(self.0.get(face as usize));
+                let known = Known::of(self.0.get(face as usize), allowed);
                 let waiting = Waiting::default();
                 let mut looking = Looking { control, emission, first, waiting, known, found };
                 sources.show(face, is_stopped, &mut looking);
-                looking.end(face, hopeless)
+                looking.end(face, (hopeless, max_levels))
             });
             found.collect::<Vec<_>>()
         })?;
@@ -106,17 +111,28 @@ impl Bulges {
     ) -> Result<(), Cancelled> {
         watch.each(faces.iter().zip(found), |(&face, found)| {
             let Some(bulge) = self.0.get_mut(face as usize) else { return };
-            if !found.each.is_empty() {
-                bulge.found.copy_from_slice(&found.each);
+            let triangles = emission.triangles_of(face);
+            if found.each.is_empty() {
+                let known = bulge.found.iter_mut().zip(triangles);
+                known.for_each(|(known, at)| known.offsets = emission.offsets_of(at));
                 return;
             }
-            let triangles = emission.triangles_of(face);
-            bulge
-                .found
-                .iter_mut()
-                .zip(triangles)
-                .for_each(|(known, at)| known.offsets = emission.offsets_of(at));
+            bulge.found.copy_from_slice(&found.each);
+            bulge.waits =
+                found.each.iter().zip(triangles).any(|(known, at)| known.offsets != emission.offsets_of(at));
         })
+    }
+
+    /// Whether nothing of a control face that was not touched may have changed: triangles were measured as they are, and vertices on its
+    /// edges stay where they were.
+    pub(super) fn are_same(&self, face: u32, emission: &Emission) -> bool {
+        let (bulge, first) = (&self.0[face as usize], 3 * emission.triangles_of(face).start as u32);
+        let mut half_edges = (3 * face..3 * face + 3).flat_map(|h| emission.borders.along(h));
+        !bulge.waits
+            && half_edges.all(|&h| {
+                let (own, corner) = (((h - first) / 3) as usize, (h % 3) as usize);
+                bulge.found[own].offsets[corner] == emission.offsets_of(h as usize / 3)[corner]
+            })
     }
 
     /// The leaves that fail wherever their corners are moved, and what they come to at best.
@@ -130,6 +146,7 @@ impl Bulge {
         Self {
             ranges: vec![[f64::NAN; 2]; triangles],
             failing: Vec::new(),
+            waits: true,
             keys: vec![Key::default(); triangles],
             found: vec![FoundLast::NOTHING; triangles],
             parts: vec![BentFour::UNKNOWN; triangles.div_ceil(FOUR)],
@@ -182,7 +199,7 @@ impl Beholder for Looking<'_> {
                 let turn = self.found.keys[number].turn() as u32;
                 self.waiting.push(ground, (emitted, turn), (cell, spot));
             }
-            Over::General(pieces, _) => {
+            Over::General(pieces, ..) => {
                 let frame = TriangleFrame::new(self.corners(emitted));
                 let points = pieces.points(SAMPLED_LEVELS, rules).into_iter();
                 let inside =
@@ -201,16 +218,22 @@ impl Looking<'_> {
         emitted.vertices.map(|vertex| vector(self.emission.positions[vertex as usize]))
     }
 
-    /// What was found, with the leaves over which heights are in a greater range than this.
-    fn end(mut self, face: u32, hopeless: f64) -> Bulge {
+    /// What was found, with the leaves over which heights are in a greater range than this. These have no say where corners are moved as
+    /// long as they may be divided.
+    fn end(mut self, face: u32, (hopeless, max_levels): (f64, u32)) -> Bulge {
         self.waiting.look(self.emission, self.first, &mut self.found);
-        let mut failing = Vec::new();
-        for (number, [low, high]) in self.found.ranges.iter().enumerate() {
+        let found = &mut self.found;
+        for number in 0..found.ranges.len() {
+            let [low, high] = found.ranges[number];
             if hopeless > 0.0 && high - low > hopeless {
-                fail(&mut failing, self.found.place(face, number), 0.5 * (high - low));
+                let place = found.place(face, number);
+                fail(&mut found.failing, place, 0.5 * (high - low));
+                if place.level < max_levels {
+                    found.ranges[number] = ENDS;
+                }
             }
         }
-        Bulge { failing, ..self.found }
+        self.found
     }
 
     /// Whether no camera sees more of a triangle than its back, as far as the triangle and its piece tell.

@@ -4,46 +4,74 @@
 //! corners are moved off the surface it is known which were there before, and how these were moved then ([`super::bulges`]);
 //! of others, in which control faces all were.
 
-use super::bulges::Bulges;
+use super::bulges::{Bulges, ENDS};
 use super::emit::Emission;
+use super::quadtree::Edges;
 use crate::mesh::NONE;
 use crate::progress::{Cancelled, SharedWatch};
 
 /// Control faces that one call takes together.
 const BLOCK: usize = 256;
 
+/// What has become of a triangle.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Change {
+    None,
+    Some,
+    /// It is divided anyway, which nobody beside it knows yet.
+    Ends,
+}
+
 /// What has changed.
 pub(super) struct Changes {
     /// By triangle.
-    has_changed: Vec<bool>,
+    changes: Vec<Change>,
+    /// By control face, whether any triangle has.
+    have_changed: Vec<bool>,
     /// By control face, whether all of its triangles count as others.
     are_others: Vec<bool>,
 }
 
 impl Changes {
-    /// Since triangles were measured last, with the control faces whose triangles all count as others, and what is known of triangles whose
-    /// corners were moved.
+    /// Since triangles were measured last, with the control faces that were touched since, and what is known of triangles whose
+    /// corners were moved. Where that is all that counts, not all triangles of faces that were touched are others.
     pub(super) fn since(
-        bulges: Option<&Bulges>,
-        are_others: Vec<bool>,
+        (bulges, is_alone): (Option<&Bulges>, bool),
+        is_touched: &[bool],
         emission: &Emission,
         watch: &SharedWatch<'_>,
     ) -> Result<Self, Cancelled> {
-        let found = watch.pieces(are_others.len(), BLOCK, |faces| {
-            let mut changed = Vec::new();
+        let found = watch.pieces(is_touched.len(), BLOCK, |faces| {
+            let (mut changes, mut have_changed) = (Vec::new(), Vec::new());
             for face in faces {
                 let triangles = emission.triangles_of(face as u32);
-                match bulges.filter(|_| !are_others[face]) {
-                    None => changed.resize(changed.len() + triangles.len(), are_others[face]),
-                    Some(bulges) => {
-                        let known = triangles.zip(&bulges.0[face].found);
-                        changed.extend(known.map(|(at, found)| found.offsets != emission.offsets_of(at)));
+                let known = bulges.filter(|_| is_alone || !is_touched[face]);
+                let known = known.filter(|known| is_touched[face] || !known.are_same(face as u32, emission));
+                let Some(known) = known else {
+                    let is_other = is_touched[face] && !is_alone;
+                    let change = if is_other { Change::Some } else { Change::None };
+                    changes.resize(changes.len() + triangles.len(), change);
+                    have_changed.push(is_other);
+                    continue;
+                };
+                let mut has_changed = false;
+                let bulge = &known.0[face];
+                changes.extend(triangles.zip(&bulge.found).zip(&bulge.ranges).map(|((at, found), range)| {
+                    let is_same = found.offsets == emission.offsets_of(at);
+                    has_changed |= !is_same;
+                    match (is_alone && *range == ENDS, is_same) {
+                        (true, _) => Change::Ends,
+                        (false, true) => Change::None,
+                        (false, false) => Change::Some,
                     }
-                }
+                }));
+                have_changed.push(has_changed);
             }
-            changed
+            (changes, have_changed)
         })?;
-        Ok(Self { has_changed: found.concat(), are_others })
+        let (changes, have_changed): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        let are_others = is_touched.iter().map(|&is_touched| is_touched && !is_alone).collect();
+        Ok(Self { changes: changes.concat(), have_changed: have_changed.concat(), are_others })
     }
 
     /// Whether all triangles of a control face count as others.
@@ -53,18 +81,33 @@ impl Changes {
 
     /// Whether a triangle may come to something else.
     pub(super) fn concern(&self, emission: &Emission, triangle: u32) -> bool {
-        let is_changed = |triangle: u32| self.has_changed[triangle as usize];
         let twins = &emission.twins[3 * triangle as usize..3 * triangle as usize + 3];
-        is_changed(triangle) || twins.iter().any(|&twin| twin != NONE && is_changed(twin / 3))
+        let beside = twins.iter().filter(|&&twin| twin != NONE).map(|twin| self.changes[*twin as usize / 3]);
+        let mut change = self.changes[triangle as usize];
+        for other in beside {
+            change = match (change, other) {
+                (Change::Ends, _) | (_, Change::Ends) => Change::Ends,
+                (Change::None, other) => other,
+                (Change::Some, _) => Change::Some,
+            };
+        }
+        change == Change::Some
     }
 
     /// The control faces some of whose triangles may.
-    pub(super) fn faces(&self, emission: &Emission, watch: &SharedWatch<'_>) -> Result<Vec<u32>, Cancelled> {
-        let faces = emission.starts.len() - 1;
-        let found = watch.pieces(faces, BLOCK, |faces| {
+    pub(super) fn faces(
+        &self,
+        emission: &Emission,
+        edges: &Edges<'_>,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Vec<u32>, Cancelled> {
+        let has_changed = |face: u32| self.have_changed[face as usize];
+        let found = watch.pieces(self.have_changed.len(), BLOCK, |faces| {
             let concerned = faces.map(|face| face as u32).filter(|&face| {
+                let mut beyond = (3 * face..3 * face + 3).filter_map(|h| edges.twin(h)).map(|twin| twin / 3);
                 let mut triangles = emission.triangles_of(face);
-                triangles.any(|triangle| self.concern(emission, triangle as u32))
+                (has_changed(face) || beyond.any(has_changed))
+                    && triangles.any(|triangle| self.concern(emission, triangle as u32))
             });
             concerned.collect::<Vec<u32>>()
         })?;

@@ -9,7 +9,7 @@ use super::emit::Emission;
 use super::leaf::leaf_triangles;
 use super::quadtree::{Edges, Place, Trees};
 use super::rim::{Rim, bits};
-use super::surface::{Ground, Surface};
+use super::surface::{GeneralPiece, Ground, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
 use crate::certificate::{Cell, Pieces, SubTriangle};
 use crate::closure::{Diagonal, closure};
@@ -37,8 +37,8 @@ pub(super) struct Emitted {
 pub(super) enum Over<'e, 'p> {
     /// A part of a regular piece, and the place of the leaf.
     Regular(&'e Ground, Cell, Spot),
-    /// Any other, with the limits at the triangle's corners.
-    General(&'e mut Pieces<'p>, [LimitPoint; 3]),
+    /// Any other, with the limits at the triangle's corners, and the piece over the leaf.
+    General(&'e mut Pieces<'p>, [LimitPoint; 3], &'e GeneralPiece),
 }
 
 impl Over<'_, '_> {
@@ -46,7 +46,7 @@ impl Over<'_, '_> {
     pub(super) fn corners(&self) -> [LimitPoint; 3] {
         match self {
             Self::Regular(ground, cell, _) => ground.at(cell.0),
-            Self::General(_, corners) => *corners,
+            Self::General(_, corners, _) => *corners,
         }
     }
 }
@@ -202,7 +202,8 @@ impl<B: Beholder> Leaves<'_, B> {
                     let [d, e, f] = *piece.middles(rules);
                     let points = [a, b, c, d, e, f];
                     let limits = triangle.corners.map(|label| points[label]);
-                    self.beholder.triangle(&emitted, Over::General(&mut pieces, limits), self.rules);
+                    let over = Over::General(&mut pieces, limits, piece);
+                    self.beholder.triangle(&emitted, over, self.rules);
                 }
             }
         }
@@ -225,7 +226,7 @@ impl<B: Beholder> Leaves<'_, B> {
                 self.beholder.triangle(&emitted, over, self.rules);
             }
             Surface::General(piece, _) => {
-                let over = Over::General(&mut Pieces::of(&piece.patch), piece.corners);
+                let over = Over::General(&mut Pieces::of(&piece.patch), piece.corners, piece);
                 self.beholder.triangle(&emitted, over, self.rules);
             }
         }

@@ -19,6 +19,7 @@ use super::emitted::{Beholder, Emitted, Over, Sources};
 use super::judge::{DIVISIONS, Goal, HALVINGS};
 use super::quadtree::Place;
 use super::settle::{Neighbours, beside, neighbours, sharp_edges};
+use super::surface::GeneralPiece;
 use crate::certificate::{
     BesideEdges, Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
 };
@@ -140,7 +141,7 @@ impl Beholder for Measuring<'_> {
                 let heights = ground.jet().heights(cell, among.frame.normal());
                 Height::Regular(heights.lifted_range(among.lifts), heights)
             }
-            Over::General(pieces, _) => Height::General(self.attained(&among, emitted, pieces, rules)),
+            Over::General(_, _, piece) => Height::General(self.attained(&among, emitted, piece, rules)),
         };
         if self.fails_for_sure(height.least()) {
             let value = Value { bound: f64::INFINITY, value: height.least(), pixels: 0.0 };
@@ -168,7 +169,7 @@ impl Beholder for Measuring<'_> {
                 }
                 height
             }
-            (Over::General(pieces, _), height) => {
+            (Over::General(pieces, ..), height) => {
                 let deviation = self.by_pieces(&among, emitted, pieces, rules);
                 is_enough(deviation);
                 // What counts alone has no height of its own.
@@ -183,6 +184,19 @@ impl Beholder for Measuring<'_> {
 }
 
 impl Measured {
+    /// Before anything was measured.
+    pub(super) fn nothing(face: u32) -> Self {
+        let nowhere = (0.0, Place::root(face));
+        Self {
+            worst: nowhere,
+            highest: nowhere,
+            value: 0.0,
+            pixels: 0.0,
+            failing: Vec::new(),
+            each: Vec::new(),
+        }
+    }
+
     fn add(&mut self, place: Place, value: &Value, height: f64) {
         if exceeds(height, self.highest.0) {
             self.highest = (height, place);
@@ -228,7 +242,7 @@ impl<'a> Measuring<'a> {
         (goal, length): (&Goal, f64),
         changes: Option<&'a Changes>,
     ) -> Self {
-        let (control, emission, nowhere) = (sources.control, sources.emission, (0.0, Place::root(face)));
+        let (control, emission) = (sources.control, sources.emission);
         Self {
             emission,
             criteria: control.criteria.as_ref(),
@@ -240,14 +254,7 @@ impl<'a> Measuring<'a> {
             is_left: None,
             limit: goal.allowed(face),
             length,
-            found: Measured {
-                worst: nowhere,
-                highest: nowhere,
-                value: 0.0,
-                pixels: 0.0,
-                failing: Vec::new(),
-                each: Vec::new(),
-            },
+            found: Measured::nothing(face),
             failing: Vec::new(),
         }
     }
@@ -255,7 +262,7 @@ impl<'a> Measuring<'a> {
     /// What all come to.
     fn found(mut self, bulge: Option<&Bulge>) -> Measured {
         let each = core::mem::take(&mut self.found.each);
-        for (number, known) in each.iter().enumerate() {
+        for (number, known) in each.iter().enumerate().filter(|(_, known)| !known.offsets[0].is_nan()) {
             let found = &mut self.found;
             found.value = found.value.max(known.value);
             let fails = exceeds(known.value, self.limit);
@@ -303,7 +310,7 @@ impl<'a> Measuring<'a> {
         let effort = Effort::along_rim(self.limit.min(self.length), emitted.open);
         let deviation = match over {
             Over::Regular(ground, _, spot) => ground.net(spot, emitted.part).deviation(&frame, rules, effort),
-            Over::General(pieces, _) => pieces.deviation(emitted.part, &frame, rules, effort),
+            Over::General(pieces, ..) => pieces.deviation(emitted.part, &frame, rules, effort),
         };
         let bound = deviation.own;
         self.take((emitted.number, emitted.place), Value { bound, value: bound, pixels: 0.0 }, bound);
@@ -323,19 +330,11 @@ impl<'a> Measuring<'a> {
     }
 
     /// The greatest height of a few points of a piece that is not regular.
-    fn attained<'p>(
-        &self,
-        among: &Among,
-        emitted: &Emitted,
-        pieces: &mut Pieces<'p>,
-        rules: &'p Rules<'p>,
-    ) -> f64 {
+    fn attained(&self, among: &Among, emitted: &Emitted, piece: &GeneralPiece, rules: &Rules<'_>) -> f64 {
         if self.length.is_finite() || self.criteria.is_some() || emitted.part != SubTriangle::Whole {
             return 0.0;
         }
-        let refined = pieces.refined(rules);
-        let height = |edge| among.frame.height(refined.middle(edge).position).abs();
-        height(0).max(height(1)).max(height(2))
+        piece.middles(rules).iter().map(|point| among.frame.height(point.position).abs()).fold(0.0, f64::max)
     }
 
     /// The height over a triangle that is surely good enough, given the deviation for none: nobody needs to know it better. 0 where

@@ -32,21 +32,32 @@ impl Bulges {
         allowed: f64,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<f64>, Cancelled> {
-        let mut around = vec![Around::default(); emission.positions.len()];
-        let known = self.0.iter().flat_map(|face| face.ranges.iter().zip(&face.found));
-        watch.each(emission.triangles.iter().zip(known), |(triangle, (range, found))| {
+        let known = || self.0.iter().flat_map(|face| face.ranges.iter().zip(&face.found));
+        // Where all triangles around were there before.
+        let mut stays = vec![true; emission.positions.len()];
+        watch.each(emission.triangles.iter().zip(known()), |(triangle, (_, found))| {
+            if found.offsets[0].is_nan() {
+                triangle.iter().for_each(|&vertex| stays[vertex as usize] = false);
+            }
+        })?;
+        let mut offsets = vec![0.0; stays.len()];
+        let mut around = vec![Around::default(); stays.len()];
+        watch.each(emission.triangles.iter().zip(known()), |(triangle, (range, found))| {
             for (&vertex, offset) in triangle.iter().zip(found.offsets) {
-                let around = &mut around[vertex as usize];
-                if !range[0].is_nan() {
-                    around.add(*range);
-                }
+                let vertex = vertex as usize;
                 if !offset.is_nan() {
-                    around.before = Some(offset);
+                    offsets[vertex] = offset;
+                }
+                if !stays[vertex] {
+                    around[vertex].add(*range, offset);
                 }
             }
         })?;
-        let mut offsets = Vec::with_capacity(around.len());
-        watch.each(around, |around| offsets.push(around.offset(allowed)))?;
+        watch.each(stays.iter().zip(&around).zip(&mut offsets), |((&stays, around), offset)| {
+            if !stays {
+                *offset = around.offset(allowed);
+            }
+        })?;
         watch.each(0..control.mesh.face_count() as u32, |face| {
             let open = control.open(face);
             for edge in (0..3).filter(|&edge| open[edge as usize]) {
@@ -72,12 +83,19 @@ struct Around {
     /// Of twice the middles.
     sum: f64,
     triangles: u32,
-    /// How far the vertex was moved before.
+    /// How far the vertex was moved before, if it was.
     before: Option<f64>,
 }
 
 impl Around {
-    fn add(&mut self, [low, high]: [f64; 2]) {
+    /// Adds the heights over a triangle, where it has a say, and how far the vertex was moved with it.
+    fn add(&mut self, [low, high]: [f64; 2], before: f64) {
+        if !before.is_nan() {
+            self.before = Some(before);
+        }
+        if !low.is_finite() {
+            return;
+        }
         (self.low, self.high) = (self.low.smaller(low), self.high.larger(high));
         self.sum += low + high;
         self.triangles += 1;

@@ -1,7 +1,7 @@
 //! What is known of triangles that are there again after others were divided: they are told by their leaves and by which part of these they
 //! cover.
 
-use super::Bulge;
+use super::{Bulge, ENDS};
 use crate::certificate::{FOUR, SubTriangle};
 use crate::refine::adaptive::emit::Emission;
 use crate::refine::adaptive::emitted::Emitted;
@@ -40,6 +40,8 @@ impl Key {
 /// The triangles of a control face before, as they are looked for one after the other.
 pub(super) struct Known<'a> {
     before: Option<&'a Bulge>,
+    /// What came to more than this failed.
+    allowed: f64,
     /// Walks mostly go on where they were.
     next: usize,
     /// The numbers of all in the order of their keys, once one was not there.
@@ -47,8 +49,8 @@ pub(super) struct Known<'a> {
 }
 
 impl<'a> Known<'a> {
-    pub(super) fn of(before: Option<&'a Bulge>) -> Self {
-        Self { before, next: 0, in_order: Vec::new() }
+    pub(super) fn of(before: Option<&'a Bulge>, allowed: f64) -> Self {
+        Self { before, allowed, next: 0, in_order: Vec::new() }
     }
 
     /// Takes over what is known of a triangle, whose number now is given; says whether anything is.
@@ -58,6 +60,10 @@ impl<'a> Known<'a> {
             return false;
         };
         self.next = at + 1;
+        // What failed is there again where its face was divided anew.
+        if before.ranges[at] == ENDS || before.found[at].value > self.allowed {
+            return false;
+        }
         found.ranges[number] = before.ranges[at];
         found.found[number] = before.found[at];
         found.parts[number / FOUR].take(number % FOUR, &before.parts[at / FOUR], at % FOUR, 0);

@@ -152,9 +152,9 @@ fn rounds(name: &str, mesh: &Mesh, (share, seed): (f64, u64), counts: &mut [usiz
             let mut emission = engine.emit_all(&mut plan)?;
             assert_eq!((&emission.triangles, &emission.twins), (&anew.triangles, &anew.twins), "{name}");
             assert_eq!(emission.normals, anew.normals, "{name}");
-            bulges.look(&engine.sources(&plan, &emission), watch, &marked(&touched), limit)?;
+            bulges.look(&engine.sources(&plan, &emission), watch, &marked(&touched), (limit, 0))?;
             let mut all_bulges = Bulges::default();
-            all_bulges.look(&engine.sources(&plan, &emission), watch, &faces, limit)?;
+            all_bulges.look(&engine.sources(&plan, &emission), watch, &faces, (limit, 0))?;
             for (known, anew) in bulges.0.iter().zip(&all_bulges.0) {
                 let (known, anew) = (known.ranges.as_flattened(), anew.ranges.as_flattened());
                 assert_eq!(known.len(), anew.len(), "{name}");
@@ -163,11 +163,11 @@ fn rounds(name: &str, mesh: &Mesh, (share, seed): (f64, u64), counts: &mut [usiz
             }
             let offsets = bulges.offsets(engine.control, &emission, limit, watch)?;
             emission.shift(offsets, watch)?;
-            let changes = Changes::since(Some(&bulges), vec![false; touched.len()], &emission, watch)?;
+            let changes = Changes::since((Some(&bulges), true), &touched, &emission, watch)?;
             let sources = engine.sources(&plan, &emission);
             let sharp = sharp_edges(&emission, watch)?;
             let known: Vec<_> = faces.iter().map(|&face| listed(&sources, &sharp, face)).collect();
-            let changed = changes.faces(&emission, watch)?;
+            let changed = changes.faces(&emission, &engine.edges, watch)?;
             let nothing = Vec::new();
             for (&face, known) in faces.iter().zip(&known) {
                 let before = before.as_ref().map_or(&nothing, |before| &before[face as usize]);
