@@ -46,7 +46,7 @@ pub(super) struct Bulge {
     /// Leaves whose triangles bulge too far, and half of that.
     failing: Vec<(Place, f64)>,
     /// Whether triangles were not measured as they are.
-    waits: bool,
+    pub(super) waits: bool,
     /// Which triangles they are.
     keys: Vec<Key>,
     /// What they came to when they were measured last.

@@ -53,7 +53,7 @@ impl Over<'_, '_> {
 
 /// Who looks at the triangles.
 pub(super) trait Beholder {
-    /// Whether triangles with these numbers, those of the leaves below a node, are to be shown.
+    /// Whether any of the triangles with these numbers, which cover leaves below a node, is to be shown.
     fn wants(&self, _node: Place, _triangles: Range<u32>) -> bool {
         true
     }
@@ -125,7 +125,13 @@ impl<B: Beholder> Visitor for Leaves<'_, B> {
             return;
         }
         self.rim.set(node, knots);
+        let is_plain = node.is_plain();
         for j in 0..n {
+            let end = self.next + 2 * (n - j) as u32 - 1;
+            if is_plain && !self.beholder.wants(node.place, self.next..end) {
+                self.next = end;
+                continue;
+            }
             for i in 0..n - j {
                 self.upright(node, (i, j));
                 if i + j + 1 < n {

@@ -32,24 +32,29 @@ impl Bulges {
         allowed: f64,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<f64>, Cancelled> {
-        let known = || self.0.iter().flat_map(|face| face.ranges.iter().zip(&face.found));
         // Where all triangles around were there before.
         let mut stays = vec![true; emission.positions.len()];
-        watch.each(emission.triangles.iter().zip(known()), |(triangle, (_, found))| {
-            if found.offsets[0].is_nan() {
-                triangle.iter().for_each(|&vertex| stays[vertex as usize] = false);
+        let faces = || {
+            (0..).zip(&self.0).map(|(face, bulge)| (&emission.triangles[emission.triangles_of(face)], bulge))
+        };
+        watch.each(faces().filter(|(_, bulge)| bulge.waits), |(triangles, bulge)| {
+            for (triangle, found) in triangles.iter().zip(&bulge.found) {
+                if found.offsets[0].is_nan() {
+                    triangle.iter().for_each(|&vertex| stays[vertex as usize] = false);
+                }
             }
         })?;
         let mut offsets = vec![0.0; stays.len()];
         let mut around = vec![Around::default(); stays.len()];
-        watch.each(emission.triangles.iter().zip(known()), |(triangle, (range, found))| {
-            for (&vertex, offset) in triangle.iter().zip(found.offsets) {
-                let vertex = vertex as usize;
-                if !offset.is_nan() {
-                    offsets[vertex] = offset;
-                }
-                if !stays[vertex] {
-                    around[vertex].add(*range, offset);
+        watch.each(faces(), |(triangles, bulge)| {
+            for ((triangle, found), range) in triangles.iter().zip(&bulge.found).zip(&bulge.ranges) {
+                for (&vertex, offset) in triangle.iter().zip(found.offsets) {
+                    let vertex = vertex as usize;
+                    if stays[vertex] {
+                        offsets[vertex] = offset;
+                    } else {
+                        around[vertex].add(*range, offset);
+                    }
                 }
             }
         })?;
