@@ -64,9 +64,9 @@ impl Engine<'_> {
             let faces = changes.faces(&emission, &self.edges, self.watch)?;
             let found =
                 measure(&sources, self.watch, (goal, f64::INFINITY), (&faces, Some(&changes), known))?;
-            bulges.keep((&emission, &faces), &found, self.watch)?;
-            self.watch.each(faces.iter().zip(found), |(&face, found)| {
-                measured[face as usize].replace(found, changes.are_others(face));
+            self.watch.each(faces.iter().zip(found), |(&face, mut found)| {
+                let is_all = bulges.keep(face, &mut found, &emission) || changes.are_others(face);
+                measured[face as usize].replace(found, is_all);
             })?;
             let failing: Vec<(Place, f64)> =
                 measured.iter_mut().flat_map(|face| core::mem::take(&mut face.failing)).collect();

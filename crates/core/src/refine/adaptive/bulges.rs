@@ -102,25 +102,20 @@ impl Bulges {
         })
     }
 
-    /// Keeps what was found of the triangles of some control faces, at least how far their corners are moved.
-    pub(super) fn keep(
-        &mut self,
-        (emission, faces): (&Emission, &[u32]),
-        found: &[Measured],
-        watch: &SharedWatch<'_>,
-    ) -> Result<(), Cancelled> {
-        watch.each(faces.iter().zip(found), |(&face, found)| {
-            let Some(bulge) = self.0.get_mut(face as usize) else { return };
-            let triangles = emission.triangles_of(face);
-            if found.each.is_empty() {
-                let known = bulge.found.iter_mut().zip(triangles);
-                known.for_each(|(known, at)| known.offsets = emission.offsets_of(at));
-                return;
-            }
-            bulge.found.copy_from_slice(&found.each);
-            bulge.waits =
-                found.each.iter().zip(triangles).any(|(known, at)| known.offsets != emission.offsets_of(at));
-        })
+    /// Keeps what was found of the triangles of a control face, at least how far their corners are moved; says whether that is known of each of
+    /// them now.
+    pub(super) fn keep(&mut self, face: u32, found: &mut Measured, emission: &Emission) -> bool {
+        let Some(bulge) = self.0.get_mut(face as usize) else { return false };
+        let triangles = emission.triangles_of(face);
+        if found.each.is_empty() {
+            let known = bulge.found.iter_mut().zip(triangles);
+            known.for_each(|(known, at)| known.offsets = emission.offsets_of(at));
+            return false;
+        }
+        bulge.found = core::mem::take(&mut found.each);
+        let mut known = bulge.found.iter().zip(triangles);
+        bulge.waits = known.any(|(known, at)| known.offsets != emission.offsets_of(at));
+        true
     }
 
     /// Whether nothing of a control face that was not touched may have changed: triangles were measured as they are, and vertices on its

@@ -212,7 +212,7 @@ impl Measured {
 
     /// Takes what was found of all triangles of the control face, or adds what was of some while that of others is not kept.
     pub(super) fn replace(&mut self, found: Self, is_all: bool) {
-        if is_all || !found.each.is_empty() {
+        if is_all {
             *self = found;
             return;
         }

@@ -184,14 +184,13 @@ fn rounds(name: &str, mesh: &Mesh, (share, seed): (f64, u64), counts: &mut [usiz
                 measure(&sources, watch, (&goal, f64::INFINITY), (&changed, Some(&changes), Some(&bulges)))?;
             let anew = measure(&sources, watch, (&goal, f64::INFINITY), (&faces, None, Some(&bulges)))?;
             if measured.is_empty() {
-                measured = found.clone();
-            } else {
-                for (&face, found) in changed.iter().zip(found.clone()) {
-                    measured[face as usize].replace(found, false);
-                }
+                measured = faces.iter().map(|&face| Measured::nothing(face)).collect();
+            }
+            for (&face, mut found) in changed.iter().zip(found) {
+                let is_all = bulges.keep(face, &mut found, &emission);
+                measured[face as usize].replace(found, is_all);
             }
             assert_holds(&measured, &anew, &name);
-            bulges.keep((&emission, &changed), &found, watch)?;
             before = Some(known);
             plan.emission = Some(emission);
             divide(engine, &mut plan, &mut next);
