@@ -4,14 +4,11 @@
 //! not known here: what is tagged has to be looked at as a whole.
 
 use super::Neighbours;
-use super::pole::LARGEST_RING;
+use super::pole::LARGEST_RING as KEPT;
 use super::sector::{Centre, Far, VertexSector};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Topology};
 use crate::vector::{DVec3, vector};
-
-/// Neighbours that are kept at first: two more than a [`super::pole::PolePatch`] does, since a piece may be refined before it becomes one.
-const KEPT: usize = LARGEST_RING + 2;
 
 /// The vertices with more edges than are kept, ascending.
 #[derive(Clone, Debug, Default)]

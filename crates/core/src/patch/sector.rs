@@ -5,7 +5,7 @@
 //! vertex or a corner. One refinement gives the sectors of the four parts; all but the corner's own are regular then.
 //!
 //! Of very many neighbours only those near the face and what else the rules ask for are kept ([`Far`]), so that a piece takes no
-//! more than any other; see [`super::pole`] for how long that lasts.
+//! more than any other; see [`super::pole`] for why that is enough.
 
 use core::array::from_fn;
 
@@ -103,30 +103,6 @@ impl VertexSector {
                 (1.0 - valence as f64 * beta) * self.at + beta * sum
             }
         }
-    }
-
-    /// Leaves out the neighbours that a refinement has made from some that had been left out, as long as the face does not need
-    /// them: by then it makes no difference what stands for them.
-    fn without_unknown(mut self) -> Self {
-        let count = self.neighbours.len();
-        match self.far {
-            Far::Kept => {}
-            Far::Mean { .. } => {
-                if count > 4 {
-                    self.neighbours.drain(count / 2..count / 2 + 2).for_each(drop);
-                }
-            }
-            Far::Ends { after_first, before_last } => {
-                if before_last && count > self.slot + 4 {
-                    self.neighbours.remove(count - 2);
-                }
-                if after_first && self.slot > 2 {
-                    self.neighbours.remove(1);
-                    self.slot -= 1;
-                }
-            }
-        }
-        self
     }
 
     /// Adds the new vertices on the edges to the neighbours.
@@ -350,18 +326,15 @@ impl RefinedSectors<'_> {
             return SectorPatch([1, 2, 0].map(|edge| self.middle_sector(edge, 1)));
         }
         let old = &self.sectors.0[part];
-        let own = || {
-            VertexSector {
-                at: self.moved[part],
-                neighbours: Neighbours::from_slice(&self.edge_points[part]),
-                centre: old.centre,
-                slot: old.slot,
-                far: match old.far {
-                    Far::Mean { valence, mean } => Far::Mean { valence, mean: 0.375 * old.at + 0.625 * mean },
-                    far => far,
-                },
-            }
-            .without_unknown()
+        let own = || VertexSector {
+            at: self.moved[part],
+            neighbours: Neighbours::from_slice(&self.edge_points[part]),
+            centre: old.centre,
+            slot: old.slot,
+            far: match old.far {
+                Far::Mean { valence, mean } => Far::Mean { valence, mean: 0.375 * old.at + 0.625 * mean },
+                far => far,
+            },
         };
         SectorPatch(from_fn(|corner| match (corner + 3 - part) % 3 {
             0 => own(),
