@@ -93,7 +93,8 @@ impl<'a> LimitSurface<'a> {
     /// [`Self::without_normals`] by rules that may share what is found with those of other surfaces.
     fn by_rules(mesh: &'a Mesh, rules: Rules<'a>) -> Result<Self, LimitError> {
         let positions = rules.table().positions(mesh)?;
-        let (sharpness, large) = (Sharpness::of(mesh), LargeRings::of(mesh));
+        let sharpness = Sharpness::of(mesh);
+        let large = LargeRings::with_tags(mesh, &sharpness, &rules);
         Ok(Self { mesh, sharpness, large, rules, positions, normals: None })
     }
 

@@ -153,6 +153,34 @@ impl<'s> Neighbourhood<'s> {
         }
     }
 
+    /// Weights on the points after a refinement, as weights on those before it.
+    ///
+    /// # Errors
+    /// As for [`Self::row`].
+    pub(super) fn pulled_back(&self, weights: &[f64]) -> Result<Vec<f64>, LimitError> {
+        let mut before = vec![0.0; weights.len()];
+        let is_family = self.scheme.loop_family().is_some();
+        for (point, &weight) in weights.iter().enumerate().filter(|&(_, &weight)| weight != 0.0) {
+            if is_family && point > 0 {
+                // Rings of very many edges have no room for whole rows.
+                self.spoke_row(point - 1).into_iter().for_each(|(at, entry)| before[at] += weight * entry);
+            } else {
+                before.iter_mut().zip(self.row(point)?).for_each(|(sum, entry)| *sum += weight * entry);
+            }
+        }
+        Ok(before)
+    }
+
+    /// What is not 0 in the row of the new point on the edge to P_j, by the masks of the Loop family.
+    fn spoke_row(&self, j: usize) -> [(usize, f64); 4] {
+        let k = self.valence();
+        let is_boundary = self.shape.open && (j == 0 || j + 1 == k);
+        let sharp = if is_boundary { 1.0 } else { self.sharp.spokes[j].clamp(0.0, 1.0) };
+        let (ends, beside) = (sharp * 0.5 + (1.0 - sharp) * 0.375, (1.0 - sharp) * 0.125);
+        let [at, previous, next] = [j, j + k - 1, j + 1].map(|j| self.ring_point(j));
+        [(0, ends), (at, ends), (previous, beside), (next, beside)]
+    }
+
     fn vertex_row(&self, ring: &LabelledRing<usize>) -> Result<Vec<f64>, LimitError> {
         let mut row = vec![0.0; self.len()];
         let mut outside = None;

@@ -143,12 +143,7 @@ impl LimitTable<'_> {
 /// A row of weights on the points after all refinements, as weights on the points before them.
 fn pulled_back(mut weights: Vec<f64>, fading: &[Neighbourhood<'_>]) -> Result<Vec<f64>, LimitError> {
     for neighbourhood in fading.iter().rev() {
-        let mut before = vec![0.0; weights.len()];
-        for (point, &weight) in weights.iter().enumerate().filter(|&(_, &weight)| weight != 0.0) {
-            let row = neighbourhood.row(point)?;
-            before.iter_mut().zip(row).for_each(|(sum, entry)| *sum += weight * entry);
-        }
-        weights = before;
+        weights = neighbourhood.pulled_back(&weights)?;
     }
     Ok(weights)
 }

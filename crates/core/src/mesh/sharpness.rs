@@ -98,6 +98,12 @@ impl<'m> Sharpness<'m> {
         all.any(|s| s < INFINITELY_SHARP)
     }
 
+    /// Levels of refinement after which nothing fades any more.
+    pub(crate) fn fading_levels(&self) -> usize {
+        let all = self.half_edges.iter().map(|&(_, s)| s).chain(self.vertices.iter().map(|&(_, s)| s));
+        all.filter(|&s| s < INFINITELY_SHARP).fold(0.0, f64::max).ceil() as usize
+    }
+
     /// Whether an interior edge at `vertex` is sharp, or the vertex itself by its tag: whether it may follow other
     /// rules than its ring alone says.
     #[inline]

@@ -28,8 +28,11 @@ pub(crate) fn root_patch(
     if let Some(points) = regular(mesh, sharpness, corners) {
         return Patch::Regular(points);
     }
-    match fades(mesh, sharpness, corners) {
-        true => SemiSharpPatch::of(corners.map(|h| SemiSharpVertex::of(mesh, sharpness, h))),
+    match fades(mesh, sharpness, large, corners) {
+        true => SemiSharpPatch::of(corners.map(|h| match large.whole(mesh.topology().origin(h)) {
+            Some(ring) => ring.near(h),
+            None => SemiSharpVertex::of(mesh, sharpness, h),
+        })),
         false => patch_of(mesh, sharpness, large, corners),
     }
 }
@@ -57,16 +60,28 @@ fn regular(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> 
 }
 
 /// Whether a tag that fades decides the surface over a face, given its corners.
-pub(super) fn fades(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> bool {
-    let vertices = corners.map(|h| mesh.topology().origin(h));
-    vertices.into_iter().any(|v| sharpness.is_tagged(v) && sharpness.ring(v).fading() > 0.0)
+pub(super) fn fades(
+    mesh: &Mesh,
+    sharpness: &Sharpness<'_>,
+    large: &LargeRings,
+    corners: [HalfEdgeId; 3],
+) -> bool {
+    let fades = |vertex: VertexId| match large.whole(vertex) {
+        Some(ring) => ring.fades(),
+        None => sharpness.ring(vertex).fading() > 0.0,
+    };
+    let mut vertices = corners.into_iter().map(|h| mesh.topology().origin(h));
+    vertices.any(|vertex| sharpness.is_tagged(vertex) && fades(vertex))
 }
 
 /// The surface over a face, given its corners, for a scheme of the Loop family. No tag may fade there.
 fn patch_of(mesh: &Mesh, sharpness: &Sharpness<'_>, large: &LargeRings, corners: [HalfEdgeId; 3]) -> Patch {
     let near = |h: HalfEdgeId| {
-        let is_tagged = sharpness.is_tagged(mesh.topology().origin(h));
-        if is_tagged { None } else { large.sector(mesh, h) }
+        let vertex = mesh.topology().origin(h);
+        match sharpness.is_tagged(vertex) {
+            true => large.whole(vertex).map(|ring| ring.near(h).sector()),
+            false => large.sector(mesh, h),
+        }
     };
     Patch::of(SectorPatch(
         corners.map(|corner| near(corner).unwrap_or_else(|| sector(mesh, sharpness, corner))),

@@ -1,29 +1,55 @@
 //! The vertices of very many edges of a mesh, so that the pieces of their faces are made without looking at all of them.
 //!
-//! Takes a mesh; gives, for a face at such a vertex, the neighbours near the face and what the rules ask of the others. Sharp edges are
-//! not known here: what is tagged has to be looked at as a whole.
+//! Takes a mesh; gives, for a face at such a vertex, the neighbours near the face and what the rules ask of the others. What tags make of rings
+//! is found once for each vertex, if it is asked for; else what is tagged has to be looked at as a whole.
+
+use std::sync::Arc;
 
 use super::Neighbours;
+use super::Rules;
 use super::pole::LARGEST_RING as KEPT;
 use super::sector::{Centre, Far, VertexSector};
+use super::semi_sharp::WholeRing;
 use crate::index::{HalfEdgeId, VertexId};
-use crate::mesh::{Mesh, Topology};
+use crate::mesh::{Mesh, Sharpness, Topology};
 use crate::vector::{DVec3, vector};
 
 /// The vertices with more edges than are kept, ascending.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LargeRings(Vec<(VertexId, Ring)>);
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Ring {
     /// The number of neighbours, and their mean; of an open ring the first and the last.
     valence: usize,
     mean: DVec3,
     ends: Option<[VertexId; 2]>,
+    /// What becomes of it, where tags count.
+    whole: Option<Arc<WholeRing>>,
 }
 
 impl LargeRings {
-    /// Those of `mesh`.
+    /// Those of `mesh`, and what becomes of them beside tags.
+    pub(crate) fn with_tags(mesh: &Mesh, sharpness: &Sharpness<'_>, rules: &Rules<'_>) -> Self {
+        let mut large = Self::of(mesh);
+        if sharpness.is_empty() || !rules.is_certified() {
+            return large;
+        }
+        let levels = sharpness.fading_levels();
+        // Where something fades, it may do so beside any of them.
+        for (vertex, ring) in large.0.iter_mut().filter(|(v, _)| levels > 0 || sharpness.is_tagged(*v)) {
+            ring.whole = WholeRing::of(mesh, sharpness, *vertex, levels, rules).map(Arc::new);
+        }
+        large
+    }
+
+    /// What becomes of the ring of a vertex, if it is one of them and tags count.
+    pub(super) fn whole(&self, vertex: VertexId) -> Option<&Arc<WholeRing>> {
+        let number = self.0.binary_search_by_key(&vertex, |&(vertex, _)| vertex).ok()?;
+        self.0[number].1.whole.as_ref()
+    }
+
+    /// Those of `mesh`, whatever its tags.
     pub(crate) fn of(mesh: &Mesh) -> Self {
         let topology = mesh.topology();
         let mut faces = vec![0u32; mesh.vertex_count()];
@@ -99,7 +125,8 @@ impl Ring {
         let ring: Vec<VertexId> = mesh.topology().ring(vertex).collect();
         let sum: DVec3 = ring.iter().map(|v| vector(mesh.positions()[v.index()])).sum();
         let ends = ring.first().zip(ring.last()).filter(|_| mesh.topology().is_boundary(vertex));
-        Self { valence: ring.len(), mean: sum / ring.len() as f64, ends: ends.map(|(&a, &b)| [a, b]) }
+        let ends = ends.map(|(&a, &b)| [a, b]);
+        Self { valence: ring.len(), mean: sum / ring.len() as f64, ends, whole: None }
     }
 }
 

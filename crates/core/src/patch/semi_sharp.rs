@@ -4,13 +4,17 @@
 //! The rules are OpenSubdiv's (see [`SharpRing`]). Within the family a new point on an edge depends on that edge's
 //! sharpness alone and a vertex's on its own ring's, so that one refinement follows from the masks directly. New
 //! vertices have six edges, of which two may stay sharp for a while. As soon as nothing at a part's corners fades any
-//! more, it takes the form of other pieces.
+//! more, it takes the form of other pieces. Of rings of very many edges pieces have the part near the face; what the rules ask of the
+//! others is found once for all faces ([`WholeRing`]).
 
 mod lasting_twin;
 mod regular;
+mod whole_ring;
 
 use lasting_twin::Gaps;
 use regular::{RefinedRegular, RegularSemiSharp};
+use whole_ring::PartOfRing;
+pub(super) use whole_ring::WholeRing;
 
 use super::sector::{Centre, Far, SectorPatch, VertexSector};
 use super::{Limit, LimitPoint, Rules};
@@ -28,10 +32,12 @@ pub(crate) struct SemiSharpVertex {
     sharp: SharpRing,
     /// The neighbour that is the face's next corner; the one after it is the corner after that.
     slot: usize,
+    /// Which part of its ring that is, where the ring is too large for all of it to be there.
+    whole: Option<PartOfRing>,
 }
 
 impl SemiSharpVertex {
-    /// The origin of `h`, as a corner of the face of `h`.
+    /// The origin of `h`, as a corner of the face of `h`, with all of its ring.
     pub(super) fn of(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> Self {
         let topology = mesh.topology();
         let vertex = topology.origin(h);
@@ -41,6 +47,7 @@ impl SemiSharpVertex {
             neighbours: topology.ring(vertex).map(at).collect(),
             sharp: sharpness.ring(vertex),
             slot: topology.outgoing_ring(vertex).position(|other| other == h).unwrap_or(0),
+            whole: None,
         }
     }
 
@@ -50,7 +57,12 @@ impl SemiSharpVertex {
     }
 
     fn fades(&self) -> bool {
-        self.sharp.fading() > 0.0
+        self.whole.as_ref().map_or_else(|| self.sharp.fading() > 0.0, PartOfRing::fades)
+    }
+
+    /// The least sharpness that fades; [`INFINITELY_SHARP`] where nothing does.
+    fn fades_first(&self) -> f64 {
+        self.whole.as_ref().map_or_else(|| self.sharp.fades_first(), PartOfRing::fades_first)
     }
 
     /// Where the centre moves by the rules of a ring as sharp as `sharp`.
@@ -97,16 +109,21 @@ impl SemiSharpVertex {
     /// The same vertex after one refinement.
     fn refined(&self, rules: &Rules<'_>) -> Self {
         let sharp = self.sharp.refined();
+        let whole = self.whole.as_ref().map(PartOfRing::refined);
         Self {
-            at: self.moved(&sharp, rules),
+            at: whole.as_ref().map_or_else(|| self.moved(&sharp, rules), PartOfRing::at),
             neighbours: (0..self.neighbours.len()).map(|slot| self.edge_point(slot)).collect(),
             sharp,
             slot: self.slot,
+            whole,
         }
     }
 
     /// The sector that the face is in, where nothing fades.
-    fn sector(&self) -> VertexSector {
+    pub(super) fn sector(&self) -> VertexSector {
+        if let Some(whole) = &self.whole {
+            return whole.sector(&self.neighbours, self.slot);
+        }
         let count = self.neighbours.len();
         let place = |first: usize| (self.slot + count - first) % count;
         let sectors = self.sharp.sectors();
@@ -179,6 +196,7 @@ impl SemiSharpPatch {
             Self::Rings(corners) => corners.iter().for_each(|corner| {
                 visit(corner.at);
                 corner.neighbours.iter().for_each(|&point| visit(point));
+                corner.whole.iter().for_each(|whole| whole.for_each_point(corner.slot, &mut visit));
             }),
         }
     }
@@ -207,7 +225,7 @@ impl SemiSharpPatch {
 
 /// [`SemiSharpPatch::lasting_twin`] of the face with those corners.
 fn rings_twin(corners: &[SemiSharpVertex; 3], rules: &Rules<'_>) -> Option<(Patch, f64)> {
-    let fades = corners.iter().map(|corner| corner.sharp.fades_first()).fold(INFINITELY_SHARP, f64::min);
+    let fades = corners.iter().map(SemiSharpVertex::fades_first).fold(INFINITELY_SHARP, f64::min);
     let mut gaps = Gaps::new(fades);
     for corner in corners.iter().filter(|corner| corner.fades()) {
         gaps.add(corner, rules)?;
@@ -268,11 +286,11 @@ impl RefinedRings<'_> {
         let (at, vertex, along) = (self.on_edge(edge), 0.0, faded(sharpness));
         if sharpness >= INFINITELY_SHARP {
             let sharp = SharpRing { open: true, vertex, spokes: vec![along, 0.0, 0.0, along] };
-            return SemiSharpVertex { at, neighbours: near.to_vec(), sharp, slot };
+            return SemiSharpVertex { at, neighbours: near.to_vec(), sharp, slot, whole: None };
         }
         let beyond = [from.neighbours[from.neighbour(-1)], to.neighbours[to.neighbour(2)]];
         let sharp = SharpRing { open: false, vertex, spokes: vec![along, 0.0, 0.0, along, 0.0, 0.0] };
-        SemiSharpVertex { at, neighbours: [near.as_slice(), &beyond].concat(), sharp, slot }
+        SemiSharpVertex { at, neighbours: [near.as_slice(), &beyond].concat(), sharp, slot, whole: None }
     }
 
     fn part(&self, part: usize) -> Patch {

@@ -35,7 +35,7 @@ impl Support {
     /// That of a face of `mesh`, whose large rings are `large`. Of the three turns the one with the least key is taken.
     pub(crate) fn of(mesh: &Mesh, sharpness: &Sharpness<'_>, large: &LargeRings, face: FaceId) -> Self {
         let half_edges = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
-        let corners = match fades(mesh, sharpness, half_edges) {
+        let corners = match fades(mesh, sharpness, large, half_edges) {
             true => half_edges.map(|h| Corner::fading(mesh, sharpness, h)),
             false => half_edges.map(|h| Corner::lasting(mesh, sharpness, large, h)),
         };

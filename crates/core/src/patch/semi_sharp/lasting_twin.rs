@@ -34,6 +34,9 @@ const LEVELS: usize = 6;
 /// Levels of which something is known.
 const MOST: usize = crate::ring::INFINITELY_SHARP as usize + LEVELS;
 
+/// Sharp edges at a vertex up to which all pairs of them are looked at, as curves that may be left when others have faded.
+const FEW: usize = 8;
+
 /// What differs, level by level.
 pub(super) struct Gaps {
     /// The level of the first difference.
@@ -58,6 +61,9 @@ impl Gaps {
 
     /// Meets the ring of a corner where something fades; `None` if nothing is known of such.
     pub(super) fn add(&mut self, corner: &SemiSharpVertex, rules: &Rules<'_>) -> Option<()> {
+        if let Some(whole) = &corner.whole {
+            return whole.gaps().map(|gaps| self.add_known(gaps));
+        }
         let mut ring = Ring::of(corner, rules)?;
         let last = self.first + LEVELS;
         for level in 0..last {
@@ -69,6 +75,18 @@ impl Gaps {
         }
         self.rest = self.rest.max(5.0 / 3.0 * ring.size());
         Some(())
+    }
+
+    /// Meets a ring whose gaps are known.
+    fn add_known(&mut self, gaps: &RingGaps) {
+        let last = self.first + LEVELS;
+        for level in 0..last {
+            self.kinks[level] = self.kinks[level].max(gaps.kinks[level]);
+            if level >= self.first {
+                self.moves[level] = self.moves[level].max(gaps.moves[level]);
+            }
+        }
+        self.rest = self.rest.max(5.0 / 3.0 * gaps.sizes[last]);
     }
 
     /// Meets a kink at the middle of an edge.
@@ -89,6 +107,29 @@ impl Gaps {
             };
         }
         sum + self.rest + 0.125 * kink
+    }
+}
+
+/// What [`Gaps`] ask of the ring of one vertex, whatever fades first at the others.
+#[derive(Debug)]
+pub(super) struct RingGaps {
+    kinks: [f64; MOST],
+    moves: [f64; MOST],
+    sizes: [f64; MOST + 1],
+}
+
+impl RingGaps {
+    /// Those of a vertex at which something fades; `None` if nothing is known of such.
+    pub(super) fn of(vertex: &SemiSharpVertex, rules: &Rules<'_>) -> Option<Self> {
+        let mut ring = Ring::of(vertex, rules)?;
+        let mut gaps = Self { kinks: [0.0; MOST], moves: [0.0; MOST], sizes: [0.0; MOST + 1] };
+        for level in 0..MOST {
+            (gaps.kinks[level], gaps.moves[level], gaps.sizes[level]) =
+                (ring.kink(), ring.moves(), ring.size());
+            ring.refine();
+        }
+        gaps.sizes[MOST] = ring.size();
+        Some(gaps)
     }
 }
 
@@ -161,6 +202,11 @@ impl Ring {
         } else {
             (self.beta * self.neighbours.iter().sum::<DVec3>()).distance_squared(own)
         };
+        if self.sharp.len() > FEW {
+            // What is along two of them lies in the middle between what either would be twice.
+            let twice = self.sharp.iter().map(|&a| self.along(a, a).distance_squared(own));
+            return twice.fold(greatest, f64::max).sqrt();
+        }
         for (i, &a) in self.sharp.iter().enumerate() {
             for &b in &self.sharp[..i] {
                 greatest = greatest.max(self.along(a, b).distance_squared(own));

@@ -94,7 +94,10 @@ impl RegularSemiSharp {
     /// The face with those corners, if they are such.
     pub(super) fn of(corners: &[SemiSharpVertex; 3]) -> Option<Self> {
         let is_plain = |corner: &SemiSharpVertex| {
-            !corner.sharp.open && corner.sharp.vertex == 0.0 && corner.neighbours.len() == 6
+            !corner.sharp.open
+                && corner.sharp.vertex == 0.0
+                && corner.neighbours.len() == 6
+                && corner.whole.is_none()
         };
         if !corners.iter().all(is_plain) {
             return None;
@@ -125,6 +128,7 @@ impl RegularSemiSharp {
             neighbours: RINGS[corner].iter().map(|&at| self.points[at as usize]).collect(),
             sharp: SharpRing { open: false, vertex: 0.0, spokes: self.spokes(corner).to_vec() },
             slot: 0,
+            whole: None,
         })
     }
 
@@ -242,6 +246,6 @@ impl RefinedRegular {
         let start = MIDDLES[edge].1.iter().position(|&place| place == end).unwrap_or(0);
         ring.rotate_left(start);
         let sharp = SharpRing { open: false, vertex: 0.0, spokes: vec![along, 0.0, 0.0, along, 0.0, 0.0] };
-        SemiSharpVertex { at, neighbours: ring.to_vec(), sharp, slot: 0 }.limit(rules)
+        SemiSharpVertex { at, neighbours: ring.to_vec(), sharp, slot: 0, whole: None }.limit(rules)
     }
 }

@@ -228,7 +228,7 @@ fn with_engine<T>(
     let mut control = Control {
         mesh,
         sharpness: &sharpness,
-        large: LargeRings::of(mesh),
+        large: LargeRings::with_tags(mesh, &sharpness, &rules),
         lasting: &lasting,
         positions,
         sided,

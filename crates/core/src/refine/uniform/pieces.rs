@@ -120,7 +120,7 @@ impl<'a> Pieces<'a> {
         Self {
             mesh,
             sharpness,
-            large: LargeRings::of(mesh),
+            large: LargeRings::with_tags(mesh, sharpness, rules),
             rules,
             segments: grid.segments,
             slots: Slots::new(grid),
