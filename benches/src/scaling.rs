@@ -4,7 +4,7 @@ use core::f64::consts::{PI, TAU};
 
 use anyhow::Result;
 use limitmesh::Mesh;
-use limitmesh::mesh::{CornerTag, PolygonSoup};
+use limitmesh::mesh::{CornerTag, CreaseTag, PolygonSoup};
 use limitmesh::refine::{ExactOptions, exact};
 use limitmesh::scheme::Loop;
 
@@ -15,9 +15,6 @@ const TOLERANCE: f64 = 0.01;
 
 const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 
-/// Sizes of what takes time with the square of the size, too long beyond these.
-const SMALL_SIZES: [usize; 3] = [100, 1_000, 4_000];
-
 /// A mesh that is so large.
 type Shape = fn(usize) -> PolygonSoup;
 
@@ -27,15 +24,16 @@ pub(crate) fn scaling() -> Result<()> {
     println!(
         "shape                          size  control faces  triangles  ms         µs a face  µs a triangle"
     );
-    let shapes: [(&str, Shape, &[usize]); 5] = [
-        ("edges at one vertex", pole, &SIZES),
-        ("edges at a boundary's vertex", fan, &SIZES),
-        ("edges at a semi-sharp vertex", semi_sharp_pole, &SMALL_SIZES),
-        ("sheets at one edge", sheets, &SIZES),
-        ("faces of a sphere", sphere, &SIZES),
+    let shapes: [(&str, Shape); 6] = [
+        ("edges at one vertex", pole),
+        ("edges at a boundary's vertex", fan),
+        ("edges at a semi-sharp vertex", semi_sharp_pole),
+        ("semi-sharp edges at a vertex", semi_sharp_edges),
+        ("sheets at one edge", sheets),
+        ("faces of a sphere", sphere),
     ];
-    for (name, shape, sizes) in shapes {
-        for &size in sizes {
+    for (name, shape) in shapes {
+        for size in SIZES {
             let (control, _) = Mesh::from_soup(&shape(size), &Default::default())?;
             let options = ExactOptions::default().tolerance(TOLERANCE * control.diagonal());
             let (seconds, result) = one_thread(|| exact(&control, &Loop, &options))?;
@@ -74,6 +72,12 @@ fn pole(edges: usize) -> PolygonSoup {
 /// The same, one of them a corner for a while.
 fn semi_sharp_pole(edges: usize) -> PolygonSoup {
     PolygonSoup { corners: vec![CornerTag { vertex: 0, sharpness: 2.5 }], ..pole(edges) }
+}
+
+/// The same as smooth, but for every third edge at one of them, which is sharp for a while, and longer from one to the next.
+fn semi_sharp_edges(edges: usize) -> PolygonSoup {
+    let crease = |i: usize| CreaseTag { vertices: [0, 2 + i as u32], sharpness: 0.4 + 0.7 * (i % 5) as f64 };
+    PolygonSoup { creases: (0..edges).step_by(3).map(crease).collect(), ..pole(edges) }
 }
 
 /// A vertex of the boundary with so many edges.

@@ -274,3 +274,35 @@ pub fn difference_matrix(ring_matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let Some((centre, rest)) = ring_matrix.split_first() else { return Vec::new() };
     rest.iter().map(|row| row.iter().zip(centre).skip(1).map(|(&a, &b)| a - b).collect()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scheme::{Loop, LoopWarren};
+
+    /// The short rows are those that the family's masks give.
+    #[test]
+    fn spoke_rows_are_those_of_the_masks() {
+        let sharpness = [0.0, 0.3, 1.0, 1.6, f64::INFINITY];
+        for case in 0..400usize {
+            let (k, open, scheme) =
+                (3 + case % 7, case % 3 == 0, if case % 2 == 0 { &Loop } else { &LoopWarren });
+            let spokes = (0..k).map(|j| match case % 5 {
+                0 => 0.0,
+                _ => sharpness[(case / 5 + j * j * (1 + case % 4)) % 5],
+            });
+            let mut sharp = SharpRing { open, vertex: 0.0, spokes: spokes.collect() };
+            if open {
+                (sharp.spokes[0], sharp.spokes[k - 1]) = (f64::INFINITY, f64::INFINITY);
+            }
+            let neighbourhood = Neighbourhood::of_sharp(scheme, sharp.clone()).unwrap();
+            for j in 0..k {
+                let mut row = vec![0.0; k + 1];
+                neighbourhood.spoke_row(j).into_iter().for_each(|(at, entry)| row[at] += entry);
+                for (found, expected) in row.iter().zip(neighbourhood.row(1 + j).unwrap()) {
+                    assert!((found - expected).abs() < 1e-15, "{sharp:?}, {j}: {found} {expected}");
+                }
+            }
+        }
+    }
+}

@@ -131,15 +131,14 @@ impl Ring {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::index::FaceId;
-    use crate::mesh::Sharpness;
-    use crate::patch::{Patch, Rules, root_patch};
+    use crate::patch::{Patch, root_patch};
     use crate::scheme::Loop;
 
     /// A fan of so many faces around vertex 0, closed or not, over an uneven rim with a second fan around it.
-    fn fan(faces: usize, is_closed: bool) -> Mesh {
+    pub(in crate::patch) fn fan(faces: usize, is_closed: bool) -> Mesh {
         let rim = if is_closed { faces } else { faces + 1 };
         let turn = if is_closed { core::f64::consts::TAU } else { 3.0 };
         let point = |i: usize, radius: f64| {
@@ -159,7 +158,7 @@ mod tests {
     }
 
     /// The limits of the middles of all edges some levels down, in the same order for the same face.
-    fn limits(patch: &Patch, rules: &Rules<'_>, levels: usize, found: &mut Vec<DVec3>) {
+    pub(in crate::patch) fn limits(patch: &Patch, rules: &Rules<'_>, levels: usize, found: &mut Vec<DVec3>) {
         let refined = patch.refined(rules);
         (0..3).for_each(|edge| found.push(refined.middle(edge).position));
         if levels > 0 {

@@ -232,3 +232,6 @@ impl PartOfRing {
         }
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests;
