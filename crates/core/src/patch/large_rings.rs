@@ -7,14 +7,14 @@ use std::sync::Arc;
 
 use super::Neighbours;
 use super::Rules;
-use super::pole::LARGEST_RING as KEPT;
+use super::pole::{KEPT, LARGEST_RING};
 use super::sector::{Centre, Far, VertexSector};
 use super::semi_sharp::WholeRing;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sharpness, Topology};
 use crate::vector::{DVec3, vector};
 
-/// The vertices with more edges than are kept, ascending.
+/// The vertices of very many edges, ascending.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LargeRings(Vec<(VertexId, Ring)>);
 
@@ -54,7 +54,7 @@ impl LargeRings {
         let topology = mesh.topology();
         let mut faces = vec![0u32; mesh.vertex_count()];
         mesh.triangles().as_flattened().iter().for_each(|&v| faces[v as usize] += 1);
-        let large = topology.vertices().filter(|v| faces[v.index()] as usize > KEPT);
+        let large = topology.vertices().filter(|v| faces[v.index()] as usize > LARGEST_RING);
         Self(large.map(|vertex| (vertex, Ring::of(mesh, vertex))).collect())
     }
 
@@ -171,9 +171,13 @@ pub(super) mod tests {
     #[test]
     fn the_surface_does_not_ask_for_neighbours_far_away() {
         let rules = Rules::of(&Loop);
-        for (faces, is_closed) in
-            [(KEPT + 1, true), (500, true), (KEPT + 1, false), (KEPT + 4, false), (500, false)]
-        {
+        for (faces, is_closed) in [
+            (LARGEST_RING + 1, true),
+            (500, true),
+            (LARGEST_RING + 1, false),
+            (LARGEST_RING + 4, false),
+            (500, false),
+        ] {
             let mesh = fan(faces, is_closed);
             let (sharpness, large) = (Sharpness::of(&mesh), LargeRings::of(&mesh));
             assert_eq!(large.0.len(), 1);

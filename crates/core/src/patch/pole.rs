@@ -20,8 +20,12 @@ use crate::vector::DVec3;
 /// Neighbours that are kept on either side of those that the face needs.
 pub(super) const BEYOND: usize = 40;
 
-/// Rings up to this size are kept whole: of others the four that a refinement of the face needs, and those beyond.
-pub(super) const LARGEST_RING: usize = 4 + 2 * BEYOND;
+/// Neighbours that are kept of the others' rings: the four that a refinement of the face needs, and those beyond.
+pub(super) const KEPT: usize = 4 + 2 * BEYOND;
+
+/// Rings up to this size are kept whole: it would save little time, and faces of which some have all of their neighbours and some
+/// have not may take more triangles side by side.
+pub(super) const LARGEST_RING: usize = 172;
 
 /// The points around a face with one irregular corner of more than [`LARGEST_RING`] edges.
 #[derive(Clone, Debug)]
@@ -38,7 +42,7 @@ impl PolePatch {
     pub(super) fn of(mut whole: ExtraordinaryPatch) -> Self {
         let valence = whole.ring.len();
         let mean = whole.ring.iter().sum::<DVec3>() / valence as f64;
-        let half = LARGEST_RING / 2;
+        let half = KEPT / 2;
         // One more follows the face than goes before it.
         whole.ring.drain(half + 1..valence - (half - 1));
         Self { near: whole, valence, mean }
@@ -145,7 +149,7 @@ mod tests {
             let mut whole =
                 ExtraordinaryPatch { corner: valence % 3, at: points[0], ring: ring.into(), outer };
             let mut pole = PolePatch::of(whole.clone());
-            assert_eq!(pole.near.ring.len(), LARGEST_RING);
+            assert_eq!(pole.near.ring.len(), KEPT);
             for level in 0..4 * BEYOND {
                 let beta = rules.beta(valence);
                 let (expected, found) = (whole.refined(beta), pole.refined(beta));

@@ -11,7 +11,7 @@ use super::SemiSharpVertex;
 use super::lasting_twin::RingGaps;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sharpness};
-use crate::patch::pole::{BEYOND, LARGEST_RING};
+use crate::patch::pole::{BEYOND, KEPT};
 use crate::patch::sector::{Centre, Far, VertexSector};
 use crate::patch::{Neighbours, Rules};
 use crate::ring::{SharpRing, VertexRule};
@@ -105,7 +105,7 @@ impl WholeRing {
             let first = own.saturating_sub(1 + BEYOND);
             (first, (own + BEYOND + 3).min(count) - first)
         } else {
-            ((own + count - 1 - BEYOND) % count, LARGEST_RING)
+            ((own + count - 1 - BEYOND) % count, KEPT)
         };
         let around = (0..kept).map(|i| (first + i) % count);
         let spokes = around.clone().map(|slot| self.sharp.spokes[slot]).collect();

@@ -92,7 +92,7 @@ fn pieces_do_not_ask_for_neighbours_far_away() {
                 is_held(&patches[0], &expected, &what);
                 let mut points = 0;
                 patches[0].for_each_hull_point(|_| points += 1);
-                assert!(is_whole || points < LARGEST_RING + 40, "{what}: {points} points");
+                assert!(is_whole || points < KEPT + 40, "{what}: {points} points");
                 for _ in 0..5 {
                     let [Patch::SemiSharp(found), Patch::SemiSharp(expected)] = &patches else { break };
                     let both = [found.lasting_twin(&rules), expected.lasting_twin(&rules)];
