@@ -49,8 +49,8 @@ pub(super) struct Bulge {
     pub(super) waits: bool,
     /// Which triangles they are.
     keys: Vec<Key>,
-    /// What they came to when they were measured last.
-    pub(super) found: Vec<FoundLast>,
+    /// What they came to when they were measured last; empty as long as none of them was.
+    found: Vec<FoundLast>,
     /// What their parts of the surface are like, in a unit that makes so much of lengths.
     pub(super) parts: Vec<BentFour>,
     pub(super) scale: f64,
@@ -108,6 +108,7 @@ impl Bulges {
         let Some(bulge) = self.0.get_mut(face as usize) else { return false };
         let triangles = emission.triangles_of(face);
         if found.each.is_empty() {
+            bulge.found.resize(triangles.len(), FoundLast::NOTHING);
             let known = bulge.found.iter_mut().zip(triangles);
             known.for_each(|(known, at)| known.offsets = emission.offsets_of(at));
             return false;
@@ -143,10 +144,23 @@ impl Bulge {
             failing: Vec::new(),
             waits: true,
             keys: vec![Key::default(); triangles],
-            found: vec![FoundLast::NOTHING; triangles],
+            found: Vec::new(),
             parts: vec![BentFour::UNKNOWN; triangles.div_ceil(FOUR)],
             scale,
         }
+    }
+
+    /// What all came to when they were measured last.
+    pub(super) fn found_last(&self) -> Vec<FoundLast> {
+        let mut found = self.found.clone();
+        found.resize(self.keys.len(), FoundLast::NOTHING);
+        found
+    }
+
+    /// How far the corners of each were moved then; not numbers where it was not measured.
+    pub(super) fn offsets_last(&self) -> impl Iterator<Item = [f64; 3]> {
+        let nothing = self.keys.len() - self.found.len();
+        self.found.iter().map(|found| found.offsets).chain(core::iter::repeat_n([f64::NAN; 3], nothing))
     }
 
     /// The leaf whose triangle has this number in the control face.

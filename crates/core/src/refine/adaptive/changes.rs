@@ -56,8 +56,9 @@ impl Changes {
                 };
                 let mut has_changed = false;
                 let bulge = &known.0[face];
-                changes.extend(triangles.zip(&bulge.found).zip(&bulge.ranges).map(|((at, found), range)| {
-                    let is_same = found.offsets == emission.offsets_of(at);
+                let last = bulge.offsets_last().zip(&bulge.ranges);
+                changes.extend(triangles.zip(last).map(|(at, (last, range))| {
+                    let is_same = last == emission.offsets_of(at);
                     has_changed |= !is_same;
                     match (is_alone && *range == ENDS, is_same) {
                         (true, _) => Change::Ends,

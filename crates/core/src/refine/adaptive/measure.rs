@@ -70,7 +70,7 @@ pub(super) fn measure(
             let bulge = bulges.filter(|_| measuring.criteria.is_none() && !measuring.rim_alone);
             let bulge = bulge.map(|Bulges(bulges)| &bulges[face as usize]);
             if let Some(bulge) = bulge {
-                measuring.found.each.clone_from(&bulge.found);
+                measuring.found.each = bulge.found_last();
                 let is_left = measuring.at_once(face, bulge);
                 let is_done = !is_left.contains(&true);
                 measuring.is_left = Some(is_left);

@@ -38,17 +38,17 @@ impl Bulges {
             (0..).zip(&self.0).map(|(face, bulge)| (&emission.triangles[emission.triangles_of(face)], bulge))
         };
         watch.each(faces().filter(|(_, bulge)| bulge.waits), |(triangles, bulge)| {
-            for (triangle, found) in triangles.iter().zip(&bulge.found) {
-                if found.offsets[0].is_nan() {
+            for (triangle, last) in triangles.iter().zip(bulge.offsets_last()) {
+                if last[0].is_nan() {
                     triangle.iter().for_each(|&vertex| stays[vertex as usize] = false);
                 }
             }
         })?;
         let mut offsets = vec![0.0; stays.len()];
-        let mut around = vec![Around::default(); stays.len()];
+        let mut around = vec![Around::NOTHING; stays.len()];
         watch.each(faces(), |(triangles, bulge)| {
-            for ((triangle, found), range) in triangles.iter().zip(&bulge.found).zip(&bulge.ranges) {
-                for (&vertex, offset) in triangle.iter().zip(found.offsets) {
+            for ((triangle, last), range) in triangles.iter().zip(bulge.offsets_last()).zip(&bulge.ranges) {
+                for (&vertex, offset) in triangle.iter().zip(last) {
                     let vertex = vertex as usize;
                     if stays[vertex] {
                         offsets[vertex] = offset;
@@ -81,22 +81,24 @@ impl Bulges {
 }
 
 /// The heights over the triangles around a vertex.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Around {
     low: f64,
     high: f64,
     /// Of twice the middles.
     sum: f64,
     triangles: u32,
-    /// How far the vertex was moved before, if it was.
-    before: Option<f64>,
+    /// How far the vertex was moved before; not a number if it was not.
+    before: f64,
 }
 
 impl Around {
+    const NOTHING: Self = Self { low: 0.0, high: 0.0, sum: 0.0, triangles: 0, before: f64::NAN };
+
     /// Adds the heights over a triangle, where it has a say, and how far the vertex was moved with it.
     fn add(&mut self, [low, high]: [f64; 2], before: f64) {
         if !before.is_nan() {
-            self.before = Some(before);
+            self.before = before;
         }
         if !low.is_finite() {
             return;
@@ -108,8 +110,8 @@ impl Around {
 
     /// How far to move the vertex.
     fn offset(&self, allowed: f64) -> f64 {
-        let stays = STAYS * allowed;
-        if let Some(before) = self.before.filter(|&x| self.high - stays <= x && x <= self.low + stays) {
+        let (stays, before) = (STAYS * allowed, self.before);
+        if self.high - stays <= before && before <= self.low + stays {
             return before;
         }
         let easy = EASY * allowed;

@@ -1,7 +1,7 @@
 //! What is known of triangles that are there again after others were divided: they are told by their leaves and by which part of these they
 //! cover.
 
-use super::{Bulge, ENDS};
+use super::{Bulge, ENDS, FoundLast};
 use crate::certificate::{FOUR, SubTriangle};
 use crate::refine::adaptive::emit::Emission;
 use crate::refine::adaptive::emitted::Emitted;
@@ -61,11 +61,15 @@ impl<'a> Known<'a> {
         };
         self.next = at + 1;
         // What failed is there again where its face was divided anew.
-        if before.ranges[at] == ENDS || before.found[at].value > self.allowed {
+        let known = before.found.get(at);
+        if before.ranges[at] == ENDS || known.is_some_and(|known| known.value > self.allowed) {
             return false;
         }
         found.ranges[number] = before.ranges[at];
-        found.found[number] = before.found[at];
+        if let Some(known) = known {
+            found.found.resize(found.keys.len(), FoundLast::NOTHING);
+            found.found[number] = *known;
+        }
         found.parts[number / FOUR].take(number % FOUR, &before.parts[at / FOUR], at % FOUR, 0);
         true
     }
