@@ -7,7 +7,7 @@ use limitmesh::scheme::Scheme;
 use crate::arguments::{InterpolationArguments, Unit};
 use crate::format::{counted, number, upper_bound};
 use crate::progress::Progress;
-use crate::report::InterpolationReport;
+use crate::report::{InterpolationReport, percent};
 
 /// The control mesh whose limit surface passes through the vertices of `mesh`, if that is asked for, and what is reported of it.
 ///
@@ -30,7 +30,7 @@ pub(super) fn apply(
 
 fn in_words(found: &Interpolated, within: f64, diagonal: f64) -> String {
     let vertices = counted(found.mesh.vertex_count(), "vertex", "vertices");
-    let percent = 100.0 * found.displacement / diagonal.max(f64::MIN_POSITIVE);
+    let percent = percent(found.displacement, diagonal.max(f64::MIN_POSITIVE));
     let moved = format!(
         "control points moved by up to {} ({} %, vertex {})",
         number(found.displacement),

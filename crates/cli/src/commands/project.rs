@@ -16,10 +16,10 @@ use crate::input;
 use crate::output;
 use crate::points::{self, Points};
 use crate::progress::Progress;
-use crate::report::VERSION;
 use crate::report::projection::{
     ControlReport, DistancesReport, FarthestReport, PointsReport, ProjectionReport,
 };
+use crate::report::{VERSION, percent};
 use crate::vector::{dot, minus};
 
 /// Projects points.
@@ -211,7 +211,7 @@ fn in_words(report: &ProjectionReport) -> String {
     );
     let Some(distance) = &report.distance else { return text };
     let percent = |length: f64| {
-        let percent = 100.0 * length / control.diagonal;
+        let percent = percent(length, control.diagonal);
         if percent.is_finite() { format!("  ({} %)", number(percent)) } else { String::new() }
     };
     for (what, length) in [

@@ -3,6 +3,8 @@
 use limitmesh::interpolate::{Interpolated, InterpolationMethod};
 use serde::Serialize;
 
+use super::percent;
+
 /// How control points came about.
 #[derive(Debug, Serialize)]
 pub(crate) struct InterpolationReport {
@@ -40,7 +42,7 @@ impl InterpolationReport {
             iterations: found.iterations,
             residual: found.residual,
             displacement: found.displacement,
-            displacement_percent: 100.0 * found.displacement / diagonal.max(f64::MIN_POSITIVE),
+            displacement_percent: percent(found.displacement, diagonal.max(f64::MIN_POSITIVE)),
             most_displaced: found.most_displaced.index(),
             energy: found.fairness.map(|fairness| fairness.energy),
             least_energy: found.fairness.map(|fairness| fairness.least_energy),

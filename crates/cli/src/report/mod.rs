@@ -30,7 +30,7 @@ pub(crate) use refinement::{
     ExactParametersReport, InputDistanceReport, MeshReport, MethodReport, OutputReport, ParametersReport,
     PredictionReport, RefineReport, RoundEntry, SecondsReport, SizeReport, StepEntry, ViewReport,
 };
-pub(crate) use whole::Whole;
+pub(crate) use whole::{Whole, percent};
 
 use serde::Serialize;
 

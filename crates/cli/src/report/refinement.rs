@@ -8,7 +8,7 @@ use limitmesh::refine::{ErrorBounds, ExactStop, StepReport, Stop};
 use serde::Serialize;
 
 use super::diagnosis::DiagnosisReport;
-use super::{InputReport, InterpolationReport};
+use super::{InputReport, InterpolationReport, percent};
 use crate::arguments::{
     Boundary, ConcaveCorners, CreasesFrom, ExactArguments, Method, RefineArguments, RefiningScheme, Seam,
 };
@@ -251,7 +251,7 @@ impl ExactParametersReport {
     ) -> Self {
         Self {
             tolerance,
-            tolerance_percent: tolerance.map(|tolerance| 100.0 * tolerance / diagonal),
+            tolerance_percent: tolerance.map(|tolerance| percent(tolerance, diagonal)),
             triangles: arguments.triangles,
             pixels: None,
             cameras: Vec::new(),
@@ -376,7 +376,7 @@ impl ErrorReport {
 
     /// Of an interval whose upper end may be proven; one that is not finite is none.
     fn of([lower, upper]: [f64; 2], diagonal: f64, at: [f64; 3], is_proven: bool) -> Self {
-        let percent = |length: f64| 100.0 * length / diagonal;
+        let percent = |length: f64| percent(length, diagonal);
         let upper = Some(upper).filter(|upper| upper.is_finite());
         Self {
             lower,
@@ -415,7 +415,7 @@ impl ErrorReport {
 impl InputDistanceReport {
     /// Of a mesh whose control mesh has that diagonal.
     pub(crate) fn new(lower: f64, upper: f64, diagonal: f64) -> Self {
-        let percent = |length: f64| 100.0 * length / diagonal;
+        let percent = |length: f64| percent(length, diagonal);
         Self { lower, upper, lower_percent: percent(lower), upper_percent: percent(upper) }
     }
 

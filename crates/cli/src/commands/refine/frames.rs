@@ -24,7 +24,7 @@ use crate::input::{self, Input};
 use crate::output;
 use crate::progress::Progress;
 use crate::report::refinement::exact_stop_name;
-use crate::report::{ErrorReport, FrameReport, FramesReport, FramesSeconds, MethodReport, VERSION};
+use crate::report::{ErrorReport, FrameReport, FramesReport, FramesSeconds, MethodReport, VERSION, percent};
 
 /// Refines all inputs as frames of one mesh.
 pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::Result<Outcome> {
@@ -129,7 +129,7 @@ fn in_words(found: &Frames, (worst, diagonal): (f64, f64), name: &str, refining:
     let near = format!(
         "within {} of the limit surface of every frame ({:.4} % of the diagonal of {name})",
         upper_bound(worst),
-        100.0 * worst / diagonal,
+        percent(worst, diagonal),
     );
     let lines = [Some(made), Some(near), exact::open_cones(&found.refined)];
     lines.into_iter().flatten().collect::<Vec<_>>().join("\n  ")
