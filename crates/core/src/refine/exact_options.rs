@@ -30,7 +30,9 @@ pub struct ExactOptions {
     pub pixels: Option<f64>,
     /// The cameras that the distance in pixels is for; one mesh serves them all. Default: none.
     pub cameras: Vec<Camera>,
-    /// The best mesh with at most so many triangles. Default: none.
+    /// The best mesh with at most so many triangles. Up to 20,000 of them the face that is farthest off is divided next; of more, faces that
+    /// are about as far off are divided together. Then a 32nd may be left over, and more where many faces are alike, as on a
+    /// regular sphere: dividing some of those would bring the mesh no nearer. Default: none.
     pub triangles: Option<usize>,
     /// Moves vertices off the limit surface by about half the local error, so that the error lies on both sides and
     /// fewer triangles are needed. Default: no.
