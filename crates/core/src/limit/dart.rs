@@ -26,6 +26,9 @@ const MIRROR_TOLERANCE: f64 = 1e-11;
 /// Steps of the iteration for the position: the usual schemes need a hundred.
 const MOST_STEPS: usize = 10_000;
 
+/// Steps after which nothing shrinks any more but rounding that changes from one to the next.
+const STALLED: usize = 16;
+
 /// The limit stencil of a dart.
 ///
 /// # Errors
@@ -75,10 +78,13 @@ fn sparse(row: &[f64]) -> Vec<(usize, f64)> {
     row.iter().copied().enumerate().filter(|&(_, weight)| weight != 0.0).collect()
 }
 
-/// Weights of the limit position.
+/// Weights of the limit position. Sums of many terms may differ by their rounding from step to step for ever: the iteration has ended
+/// once what changes is no more than that and shrinks no longer.
 fn position(neighbourhood: &Neighbourhood<'_>, rows: &[Vec<(usize, f64)>]) -> Result<Vec<f64>, LimitError> {
     let mut weights = vec![0.0; rows.len()];
     weights[0] = 1.0;
+    let rounding = rows.len() as f64 * f64::EPSILON;
+    let (mut least_change, mut stalled) = (f64::INFINITY, 0);
     for _ in 0..MOST_STEPS {
         let mut next = vec![0.0; rows.len()];
         for (row, &weight) in rows.iter().zip(&weights).filter(|&(_, &weight)| weight != 0.0) {
@@ -88,7 +94,9 @@ fn position(neighbourhood: &Neighbourhood<'_>, rows: &[Vec<(usize, f64)>]) -> Re
         next.iter_mut().for_each(|weight| *weight /= sum);
         let change = next.iter().zip(&weights).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
         weights = next;
-        if change <= f64::EPSILON {
+        stalled = if change < least_change { 0 } else { stalled + 1 };
+        least_change = least_change.min(change);
+        if change <= f64::EPSILON || stalled >= STALLED && change <= rounding {
             return Ok(weights);
         }
     }
@@ -168,5 +176,36 @@ impl<'d> Parity<'d> {
         let most =
             all.rows(0, ring).iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
         (most != 0.0).then(|| all / most)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ring::SharpRing;
+    use crate::scheme::{Loop, LoopWarren, Scheme};
+
+    /// Numbers at the points of a dart's neighbourhood run to what the weights make of them, whatever the valence.
+    #[test]
+    fn positions_are_found_at_all_valences() {
+        for k in (3..350).chain([512, 600, 1024]) {
+            for scheme in [&Loop as &dyn Scheme, &LoopWarren] {
+                let mut spokes = vec![0.0; k];
+                spokes[0] = f64::INFINITY;
+                let sharp = SharpRing { open: false, vertex: 0.0, spokes };
+                let neighbourhood = Neighbourhood::of_sharp(scheme, sharp).unwrap();
+                let rows: Vec<_> =
+                    (0..neighbourhood.len()).map(|i| sparse(&neighbourhood.row(i).unwrap())).collect();
+                let weights = position(&neighbourhood, &rows).unwrap();
+                let mut numbers: Vec<f64> = (0..rows.len()).map(|i| (1.7 * (i * i) as f64).sin()).collect();
+                let found: f64 = weights.iter().zip(&numbers).map(|(weight, number)| weight * number).sum();
+                for _ in 0..200 {
+                    let refined =
+                        rows.iter().map(|row| row.iter().map(|&(at, entry)| entry * numbers[at]).sum());
+                    numbers = refined.collect();
+                }
+                assert!((found - numbers[0]).abs() < 1e-13, "{k}: {found} {}", numbers[0]);
+            }
+        }
     }
 }
