@@ -292,6 +292,20 @@ fn balanced_meshes_need_fewer_triangles() {
     }
 }
 
+/// Where normals decide, moved vertices would take more triangles than those on the surface.
+#[test]
+fn balanced_angles_take_no_more_triangles() {
+    for (name, angle) in [("cup", 6.0f64), ("head", 8.0), ("sphere", 4.0)] {
+        let control = model(name);
+        let options = ExactOptions::default().tolerance(0.005 * control.diagonal()).angle(angle.to_radians());
+        let plain = exact(&control, &Loop, &options).unwrap();
+        let balanced = exact(&control, &Loop, &options.balance(true)).unwrap();
+        assert_eq!(balanced.stop, plain.stop, "{name}");
+        let counts = [&balanced, &plain].map(|found| found.mesh.face_count());
+        assert!(counts[0] <= counts[1], "{name}: {counts:?}");
+    }
+}
+
 /// Leaves split by several levels at once, in nodes that are walked over row by row: faces closed again lost count of their triangles.
 #[test]
 fn balanced_budgets_conform() {

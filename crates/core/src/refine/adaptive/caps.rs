@@ -41,7 +41,9 @@ pub(super) fn once(
     }
     let plain = within_caps(mesh, scheme, (&plain_options, demands), observer)?;
     let is_better = match (plain.stop, found.stop) {
-        (ExactStop::Met, ExactStop::Met) => plain.mesh.face_count() <= count,
+        (ExactStop::Met, ExactStop::Met) | (ExactStop::Cones, ExactStop::Cones) => {
+            plain.mesh.face_count() <= count
+        }
         (ExactStop::Met, _) => true,
         (_, ExactStop::Met) => false,
         _ => plain.worst <= found.worst && plain.error.upper <= found.error.upper,
@@ -50,7 +52,7 @@ pub(super) fn once(
 }
 
 /// Whether vertices on the surface may do with fewer triangles than balanced ones: where flat regions are merged, which is done with these alone,
-/// and where hardly any face is divided. Of few triangles it takes little time to tell.
+/// where hardly any face is divided, and where normals decide, which moved vertices bring no nearer. Of few triangles it takes little time to tell.
 pub(super) fn may_do_with_fewer(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -58,7 +60,7 @@ pub(super) fn may_do_with_fewer(
     count: usize,
     observer: &mut Observer<'_>,
 ) -> Result<bool, RefineError> {
-    if count < FEW_BALANCED.max(2 * mesh.face_count()) {
+    if plain.0.angle.is_some() || count < FEW_BALANCED.max(2 * mesh.face_count()) {
         return Ok(true);
     }
     with_engine(mesh, scheme, plain, observer, |engine| {
