@@ -10,12 +10,6 @@ pub(crate) struct Whole {
     pub(crate) of: &'static str,
 }
 
-/// A length in per cent of a diagonal, however long both are.
-pub(crate) fn percent(length: f64, diagonal: f64) -> f64 {
-    let hundredfold = 100.0 * length;
-    if hundredfold.is_finite() { hundredfold / diagonal } else { 100.0 * (length / diagonal) }
-}
-
 impl Whole {
     /// The share of a length; none where the mesh has no extent.
     pub(crate) fn percent(self, length: f64) -> Option<f64> {
@@ -26,6 +20,12 @@ impl Whole {
     pub(crate) fn in_words(self) -> String {
         format!("the {}'s diagonal {}", self.of, number(self.diagonal))
     }
+}
+
+/// A length in per cent of a diagonal, however long both are.
+pub(crate) fn percent(length: f64, diagonal: f64) -> f64 {
+    let hundredfold = 100.0 * length;
+    if hundredfold.is_finite() { hundredfold / diagonal } else { 100.0 * (length / diagonal) }
 }
 
 #[cfg(test)]

@@ -79,7 +79,7 @@ fn sparse(row: &[f64]) -> Vec<(usize, f64)> {
 }
 
 /// Weights of the limit position. Sums of many terms may differ by their rounding from step to step for ever: the iteration has ended
-/// once what changes is no more than that and shrinks no longer.
+/// once what changes is no more than that and has not shrunk for some steps.
 fn position(neighbourhood: &Neighbourhood<'_>, rows: &[Vec<(usize, f64)>]) -> Result<Vec<f64>, LimitError> {
     let mut weights = vec![0.0; rows.len()];
     weights[0] = 1.0;

@@ -14,10 +14,9 @@ use std::time::Instant;
 
 use super::driver::Driver;
 use super::{RefineError, Refinement, StepReport, Stop};
-use crate::mesh::{MAX_FACES, Mesh, MeshError, Tags, check_finite};
+use crate::mesh::{MAX_FACES, Mesh, MeshError, Sharpness, check_finite};
 use crate::patch::Rules;
 use crate::progress::{Observer, Stage, Watch, unobserved};
-use crate::ring::INFINITELY_SHARP;
 use crate::scheme::Scheme;
 
 /// Levels that are done together at most: tables of the combined triangle then stay in the processor's caches.
@@ -162,15 +161,8 @@ fn levels_together(mesh: &Mesh, rules: &Rules<'_>, levels: usize) -> usize {
     if !rules.is_certified() || !mesh.junctions().is_empty() {
         return 0;
     }
-    let first = levels.saturating_sub(MOST_TOGETHER).max(1).max(fading_levels(mesh.tags()));
+    let first = levels.saturating_sub(MOST_TOGETHER).max(1).max(Sharpness::of(mesh).fading_levels());
     levels.saturating_sub(first)
-}
-
-/// Levels until only what is infinitely sharp is left.
-fn fading_levels(tags: &Tags) -> usize {
-    let all =
-        tags.creases.iter().map(|tag| tag.sharpness).chain(tags.corners.iter().map(|tag| tag.sharpness));
-    all.filter(|&sharpness| sharpness < INFINITELY_SHARP).fold(0.0, f64::max).ceil() as usize
 }
 
 /// The last levels after the first ones.

@@ -65,7 +65,8 @@ impl Engine<'_> {
             let found =
                 measure(&sources, self.watch, (goal, f64::INFINITY), (&faces, Some(&changes), known))?;
             self.watch.each(faces.iter().zip(found), |(&face, mut found)| {
-                let is_all = bulges.keep(face, &mut found, &emission) || changes.are_others(face);
+                let is_other = touched[face as usize] && !is_alone;
+                let is_all = bulges.keep(face, &mut found, &emission) || is_other;
                 measured[face as usize].replace(found, is_all);
             })?;
             let failing: Vec<(Place, f64)> =

@@ -28,8 +28,6 @@ pub(super) struct Changes {
     changes: Vec<Change>,
     /// By control face, whether any triangle has.
     have_changed: Vec<bool>,
-    /// By control face, whether all of its triangles count as others.
-    are_others: Vec<bool>,
 }
 
 impl Changes {
@@ -45,10 +43,9 @@ impl Changes {
             let (mut changes, mut have_changed) = (Vec::new(), Vec::new());
             for face in faces {
                 let triangles = emission.triangles_of(face as u32);
-                let known = bulges.filter(|_| is_alone || !is_touched[face]);
-                let known = known.filter(|known| is_touched[face] || !known.are_same(face as u32, emission));
-                let Some(known) = known else {
-                    let is_other = is_touched[face] && !is_alone;
+                let is_other = is_touched[face] && !is_alone;
+                let is_same = |known: &Bulges| !is_touched[face] && known.are_same(face as u32, emission);
+                let Some(known) = bulges.filter(|known| !is_other && !is_same(known)) else {
                     let change = if is_other { Change::Some } else { Change::None };
                     changes.resize(changes.len() + triangles.len(), change);
                     have_changed.push(is_other);
@@ -71,13 +68,7 @@ impl Changes {
             (changes, have_changed)
         })?;
         let (changes, have_changed): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-        let are_others = is_touched.iter().map(|&is_touched| is_touched && !is_alone).collect();
-        Ok(Self { changes: changes.concat(), have_changed: have_changed.concat(), are_others })
-    }
-
-    /// Whether all triangles of a control face count as others.
-    pub(super) fn are_others(&self, face: u32) -> bool {
-        self.are_others[face as usize]
+        Ok(Self { changes: changes.concat(), have_changed: have_changed.concat() })
     }
 
     /// Whether a triangle may come to something else.

@@ -1,6 +1,6 @@
 use super::*;
 use crate::limit::LimitTable;
-use crate::mesh::{CornerTag, CreaseTag};
+use crate::mesh::{CornerTag, CreaseTag, Tags};
 use crate::scheme::{Loop, LoopWarren};
 
 /// The same by steps, one after another, and stencils at every vertex.
