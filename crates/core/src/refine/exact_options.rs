@@ -56,6 +56,10 @@ pub struct ExactOptions {
     pub unfold: bool,
     /// Whether flat regions that are unfolded are judged by their rims alone; not where these could not be triangulated.
     pub(crate) by_rims: bool,
+    /// Whether triangles side by side in one plane are put together; with [`Self::flat_regions`].
+    pub(crate) strips: bool,
+    /// Whether bounds that are far above what was found are measured anew.
+    pub(crate) tightens: bool,
     /// What is to be met beside the shape ([`AttributeGoal`]): with goals on quality, without a number of triangles, [`Self::balance`] and
     /// [`Self::optimize`]; flat regions follow the hierarchy then. Default: none.
     pub attributes: Vec<AttributeGoal>,
@@ -96,6 +100,8 @@ impl Default for ExactOptions {
             flat_regions: true,
             unfold: false,
             by_rims: true,
+            strips: true,
+            tightens: true,
             attributes: Vec::new(),
             max_levels: USUAL_LEVELS,
             max_triangles: Some(USUAL_TRIANGLES),
@@ -195,9 +201,14 @@ impl ExactOptions {
         self
     }
 
+    /// Triangles for which there is memory, if that is limited.
+    pub(super) fn triangles_by_memory(&self) -> Option<usize> {
+        self.max_memory.map(|bytes| bytes / BYTES_PER_TRIANGLE)
+    }
+
     /// Triangles that must not be exceeded, and why.
     pub(super) fn budget(&self) -> (usize, ExactStop) {
-        let by_memory = self.max_memory.map(|bytes| bytes / BYTES_PER_TRIANGLE);
+        let by_memory = self.triangles_by_memory();
         let limits = [
             (self.triangles, ExactStop::Triangles),
             (self.max_triangles, ExactStop::TriangleCap),

@@ -31,7 +31,7 @@ pub enum ExactStop {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ErrorBounds {
-    /// A distance that was found.
+    /// Some point of the one is so far from the other.
     pub lower: f64,
     /// A distance that is not exceeded where [`Self::certified`] holds; infinite where nothing was asked of distances, nor a
     /// number of triangles, and nothing near [`Self::lower`] could be proven. Otherwise an estimate, the greatest distance of
@@ -40,7 +40,7 @@ pub struct ErrorBounds {
     /// Whether `upper` is proven: so it is for the Loop family ([`crate::scheme::LoopFamily`]), whose masks are convex
     /// combinations.
     pub certified: bool,
-    /// A point of the limit surface at the distance `lower` from the mesh.
+    /// That point: one of the mesh, or of the limit surface, give or take an eighth of `lower`.
     pub at: [f64; 3],
 }
 

@@ -111,6 +111,7 @@ pub fn limit_distance_observed(
             .max_triangles(Some(MOST_TRIANGLES))
             .unfold(options.unfold)
             .origins(false);
+        let goals = ExactOptions { tightens: false, ..goals };
         let stands = exact_observed(control, scheme, &goals, observer)?;
         let tree = Bvh::new_observed(stands.mesh.as_triangles(), observer)?;
         let search = search(options, tolerance);

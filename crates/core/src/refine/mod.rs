@@ -75,7 +75,7 @@ pub enum RefineError {
     },
     /// A distance could not be measured.
     #[error(transparent)]
-    Measure(#[from] MeasureError),
+    Measure(MeasureError),
     /// Edges could not be collapsed.
     #[error(transparent)]
     Simplify(SimplifyError),
@@ -85,6 +85,15 @@ pub enum RefineError {
     /// The observer asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl From<MeasureError> for RefineError {
+    fn from(error: MeasureError) -> Self {
+        match error {
+            MeasureError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Measure(error),
+        }
+    }
 }
 
 impl From<SimplifyError> for RefineError {

@@ -31,14 +31,14 @@ class ErrorBounds:
     Attributes
     ----------
     lower
-        A distance that was found.
+        Some point of the one is so far from the other.
     upper
         A distance that is not exceeded where ``certified`` holds; infinite where none was asked for and none near ``lower``
         could be proven. Otherwise an estimate.
     certified
         Whether ``upper`` is proven, as it is for Loop's schemes.
     at
-        A point of the limit surface at the distance ``lower``.
+        That point: one of the mesh, or of the limit surface, give or take an eighth of ``lower``.
     """
 
     lower: float

@@ -190,14 +190,51 @@ pub fn certified_hausdorff_between_observed(
     options: &CertifiedOptions,
     observer: &mut Observer<'_>,
 ) -> Result<CertifiedHausdorff, MeasureError> {
+    between([surface, reference], None, options, observer)
+}
+
+/// A symmetric distance of which something was known.
+pub(crate) struct KnownToBe {
+    /// No point is farther away.
+    pub(crate) upper: f64,
+    /// Some point is at least so far away, if that is more than was known, and which.
+    pub(crate) found: Option<(f64, [f64; 3])>,
+}
+
+/// Bounds a symmetric distance that is known to be at least so much: little time is spent on what is below.
+pub(crate) fn certified_known(
+    [surface, reference]: [&Bvh<'_>; 2],
+    known: f64,
+    options: &CertifiedOptions,
+    observer: &mut Observer<'_>,
+) -> Result<KnownToBe, MeasureError> {
+    let measured = between([surface, reference], Some(known), options, observer)?;
+    let CertifiedHausdorff { forward, backward, .. } = measured;
+    let (before, upper) = (known.max(forward.lower), measured.upper());
+    let found = match () {
+        () if backward.lower > before => Some((backward.lower, backward.at)),
+        () if forward.lower > known => Some((forward.lower, forward.at)),
+        () => None,
+    };
+    Ok(KnownToBe { upper, found })
+}
+
+/// Both directions; what is known of the greater one counts for each.
+fn between(
+    [surface, reference]: [&Bvh<'_>; 2],
+    known: Option<f64>,
+    options: &CertifiedOptions,
+    observer: &mut Observer<'_>,
+) -> Result<CertifiedHausdorff, MeasureError> {
     let reference_diagonal = reference.diagonal();
     let gap = options.gap.unwrap_or(DEFAULT_GAP * reference_diagonal);
     let watch = &mut Watch::new(observer, Stage::Bounding);
     let to_reference = target(surface, reference, "reference", watch)?;
-    let (forward, forward_work) = Search::run(surface, &to_reference, gap, options, watch)?;
+    let (forward, forward_work) = Search::run(surface, &to_reference, (gap, known), options, watch)?;
     drop(to_reference);
+    let known = known.map(|known| known.max(forward.lower));
     let to_surface = target(reference, surface, "measured", watch)?;
-    let (backward, backward_work) = Search::run(reference, &to_surface, gap, options, watch)?;
+    let (backward, backward_work) = Search::run(reference, &to_surface, (gap, known), options, watch)?;
     Ok(CertifiedHausdorff { forward, backward, reference_diagonal, work: forward_work + backward_work })
 }
 

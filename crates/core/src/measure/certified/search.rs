@@ -80,6 +80,8 @@ pub(super) struct Search<'t, 's, 'a> {
     gap: f64,
     relative_gap: f64,
     most_work: u64,
+    /// What the distance counts as at least; where it is known nobody looks for more than pieces and vertices show.
+    known: Option<f64>,
     farthest: Sample,
     waiting: BinaryHeap<Waiting>,
     number: u64,
@@ -89,11 +91,12 @@ pub(super) struct Search<'t, 's, 'a> {
 }
 
 impl<'t, 's, 'a> Search<'t, 's, 'a> {
-    /// The greatest distance from `from` to the target. `gap` is in the surfaces' unit.
+    /// The greatest distance from `from` to the target, or what is `known`, if that is more. `gap` and `known` are in the
+    /// surfaces' unit.
     pub(super) fn run(
         from: &'s Bvh<'a>,
         target: &'t Target<'s, 'a>,
-        gap: f64,
+        (gap, known): (f64, Option<f64>),
         options: &CertifiedOptions,
         watch: &mut Watch<'_>,
     ) -> Result<(Bounds, u64), Cancelled> {
@@ -105,6 +108,7 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
             gap: target.scale.length(gap).max(least),
             relative_gap: options.relative_gap.max(0.0),
             most_work: options.max_work,
+            known: known.map(|known| target.scale.length(known)),
             farthest: Sample { point: DVec3::ZERO, distance: f64::NEG_INFINITY },
             waiting: BinaryHeap::new(),
             number: 0,
@@ -121,7 +125,8 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
     /// The proven lower bound so far.
     fn lower(&self) -> f64 {
         let distance = self.farthest.distance;
-        (distance - self.target.scale.search_slack - distance * f64::EPSILON).max(0.0)
+        let found = distance - self.target.scale.search_slack - distance * f64::EPSILON;
+        found.max(self.known.unwrap_or(0.0))
     }
 
     /// What pieces need not exceed.
@@ -132,7 +137,7 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
 
     /// Measures samples and climbs from the farthest; returns the triangle nearest to each vertex in use.
     fn sample(&mut self, watch: &mut Watch<'_>) -> Result<Vec<u32>, Cancelled> {
-        let samples = Samples::new(self.from, SAMPLES);
+        let samples = Samples::new(self.from, if self.known.is_some() { 0 } else { SAMPLES });
         watch.stage(Stage::Sampling, Some(samples.len()))?;
         let runs = parallel::pieces_polled(samples.len(), RUN, &mut |done| watch.done(done), |range| {
             let mut points = Vec::with_capacity(range.len());
@@ -156,7 +161,9 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
         let scale = self.target.scale;
         let sample = |point, distance| Sample { point: scale.point(point), distance: scale.length(distance) };
         self.farthest = sample(samples.point(best), most);
-        if let Some((point, distance)) = climb(&samples, &distances, self.from, self.target.bvh, watch)? {
+        if self.known.is_none()
+            && let Some((point, distance)) = climb(&samples, &distances, self.from, self.target.bvh, watch)?
+        {
             self.farthest = self.farthest.farther(sample(point, distance));
         }
         Ok(faces)

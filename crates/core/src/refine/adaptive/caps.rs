@@ -2,6 +2,7 @@
 //! on the surface, where these may do with fewer triangles, the better.
 
 use super::demands::Demands;
+use super::judge::Goal;
 use super::{Engine, with_engine};
 use crate::mesh::Mesh;
 use crate::progress::Observer;
@@ -49,6 +50,25 @@ pub(super) fn once(
         _ => plain.worst <= found.worst && plain.error.upper <= found.error.upper,
     };
     Ok(if is_better { plain } else { found })
+}
+
+/// Refines until a distance is met, with vertices on the surface; `None` where that takes more triangles than there may be, or where
+/// flat regions cannot be triangulated from their rims.
+pub(in crate::refine) fn within(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    (options, most): (&ExactOptions, usize),
+    observer: &mut Observer<'_>,
+) -> Result<Option<Exact>, RefineError> {
+    let (found, has_gaps) = with_engine(mesh, scheme, (options, &Demands::default()), observer, |engine| {
+        let Some(plan) = engine.plan(Goal::Within(engine.floor(options.tolerance)), most)? else {
+            return Ok((None, false));
+        };
+        let outcome = engine.emit(plan, most, false)?;
+        let found = outcome.map(|outcome| outcome.finish(engine, ExactStop::Met, options)).transpose()?;
+        Ok((found, engine.control.flat.has_gaps()))
+    })?;
+    Ok(found.filter(|_| !has_gaps))
 }
 
 /// Whether vertices on the surface may do with fewer triangles than balanced ones: where flat regions are merged, which is done with these alone,

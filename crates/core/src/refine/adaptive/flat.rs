@@ -164,7 +164,10 @@ impl FlatRegions {
             off_planes = off_planes.max(off_plane + HEIGHT_ROUNDING * size);
         }
         let weight = if options.max_memory.is_some() { 1 } else { WEIGHT };
-        let straight = strips::straight_faces((control, edges), &normals, (&of_face, most), watch)?;
+        let straight = match options.strips {
+            true => strips::straight_faces((control, edges), &normals, (&of_face, most), watch)?,
+            false => Vec::new(),
+        };
         if regions.is_empty() && straight.is_empty() {
             return Ok(Self::default());
         }

@@ -72,6 +72,7 @@ use crate::patch::large_rings::LargeRings;
 use crate::progress::{Observer, SharedWatch, Stage};
 use crate::scheme::Scheme;
 use backs::BackFaces;
+pub(super) use caps::within;
 use caps::{may_do_with_fewer, once};
 use control::Control;
 use demands::{Demands, Functions, surfaces_of};

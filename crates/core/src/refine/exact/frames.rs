@@ -1,13 +1,13 @@
 //! Exact refinement of an animation: the same triangles for all frames, each frame within the goals.
 
-use super::scale;
-use crate::mesh::{Mesh, MeshError};
+use super::{scale, tighter};
+use crate::mesh::{Mesh, MeshError, Triangles};
 use crate::progress::{Observer, unobserved};
 use crate::refine::RefineError;
 use crate::refine::adaptive::frames;
 use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{ErrorBounds, Exact};
-use crate::refine::replay::Replay;
+use crate::refine::replay::{Frame, Replay};
 use crate::scheme::Scheme;
 
 /// A refinement that serves several frames.
@@ -81,13 +81,35 @@ pub fn exact_frames_observed(
         false => control.clone(),
     };
     let Some((scaled, options, factor)) = scale::scaled(&control, &options)? else {
-        let found = frames(&control, scheme, all, &options, observer)?;
-        return Ok(Frames { refined: found.refined, replay: found.replay, errors: found.errors });
+        return middling((&control, scheme), all, &options, observer);
     };
     let all: Vec<_> = all.iter().map(|frame| scale::positions(frame, factor)).collect();
-    let found = frames(&scaled, scheme, &all, &options, observer)?;
-    let errors = found.errors.into_iter().map(|error| scale::bounds(error, factor)).collect();
-    Ok(Frames { refined: scale::result(found.refined, factor)?, replay: found.replay, errors })
+    let Frames { refined, replay, errors } = middling((&scaled, scheme), &all, &options, observer)?;
+    let errors = errors.into_iter().map(|error| scale::bounds(error, factor)).collect();
+    Ok(Frames { refined: scale::result(refined, factor)?, replay, errors })
+}
+
+/// The same for models of a middling size.
+fn middling(
+    (control, scheme): (&Mesh, &dyn Scheme),
+    all: &[Vec<[f64; 3]>],
+    options: &ExactOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Frames, RefineError> {
+    let mut found = frames(control, scheme, all, options, observer)?;
+    let mut frame = Frame::default();
+    for (positions, error) in all.iter().zip(&mut found.errors) {
+        let control = control.clone().with_positions(positions.clone())?;
+        if !tighter::is_loose(error, &control) {
+            continue;
+        }
+        found.replay.frame(positions, &mut frame)?;
+        let triangles = found.refined.mesh.triangles();
+        let surface = (Triangles { positions: &frame.positions, triangles }, 0);
+        *error = tighter::tighter(*error, surface, (&control, scheme), options, observer)?;
+    }
+    let error = found.errors[0];
+    Ok(Frames { refined: Exact { error, ..found.refined }, replay: found.replay, errors: found.errors })
 }
 
 /// Refuses what has no meaning for frames.

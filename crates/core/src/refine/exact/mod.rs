@@ -5,6 +5,7 @@
 mod estimate;
 mod frames;
 pub(super) mod scale;
+mod tighter;
 
 pub use estimate::{exact_estimate, exact_estimate_observed};
 pub use frames::{Frames, exact_frames, exact_frames_observed};
@@ -42,10 +43,15 @@ pub fn exact_observed(
     if let Some((scaled, options, factor)) = scale::scaled(control, options)? {
         return scale::result(exact_observed(&scaled, scheme, &options, observer)?, factor);
     }
-    if options.optimize {
-        return simplified(control, scheme, options, observer);
+    let mut found = match options.optimize {
+        true => simplified(control, scheme, options, observer)?,
+        false => adaptive(control, scheme, options, observer)?,
+    };
+    if options.tightens {
+        let surface = (found.mesh.as_triangles(), found.unfolded);
+        found.error = tighter::tighter(found.error, surface, (control, scheme), options, observer)?;
     }
-    adaptive(control, scheme, options, observer)
+    Ok(found)
 }
 
 /// Whether the distances that [`exact`] reports for a scheme are proven: those of the Loop family are

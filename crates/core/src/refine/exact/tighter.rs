@@ -1,0 +1,149 @@
+//! Bounds that are far above what was found, measured anew.
+//!
+//! What refinement proves adds up from bounds of each triangle against its own part of the surface, as far as the neighbours leave
+//! room. Where triangles are small for another reason than their distance, edges were collapsed or the surface is folded, the
+//! mesh can be much nearer to the whole surface than that says. Then it is measured against a mesh that is nearer still, within e of
+//! the surface: a distance to that mesh and one to the surface differ by e at most (the triangle inequality, in either direction).
+
+use crate::measure::{Bvh, CertifiedOptions, KnownToBe, certified_known};
+use crate::mesh::{Mesh, Triangles};
+use crate::progress::Observer;
+use crate::refine::RefineError;
+use crate::refine::adaptive::within;
+use crate::refine::exact_options::ExactOptions;
+use crate::refine::exact_result::{ErrorBounds, Exact};
+use crate::scheme::Scheme;
+
+/// Bounds up to so many times a distance that was found are tight enough.
+const TIGHT: f64 = 1.25;
+
+/// The part of the distance that the nearer mesh may be off by: with less of it, that mesh has more triangles, with more the search has
+/// less to end with.
+const SHARE: f64 = 0.06;
+
+/// Distances below this part of the diagonal count as that.
+const LEAST: f64 = 1e-6;
+
+/// The first nearer mesh is off by this part of the bound that there is at least, the next ones by so many times less: meshes
+/// that would be far too fine are not begun with.
+const FIRST: f64 = 1.0 / 32.0;
+const FINER: f64 = 8.0;
+
+/// Where that is too fine, this part is tried.
+const COARSE: f64 = 1.0 / 8.0;
+
+/// Places of distances that were found there count where the distances are at least so many times what it is off by.
+const PLACED: f64 = 8.0;
+
+/// Triangles of the nearer mesh at most: so many in any case, and for each of the other one.
+const IN_ANY_CASE: usize = 200_000;
+const FOR_EACH: usize = 3;
+
+/// Meshes that are [`FINER`] times nearer have so many times the triangles at least: the square root of that where rims alone are curved.
+const GROWTH: usize = 2;
+
+/// Work of the search for each triangle of both meshes, where it ends by itself after some five.
+const WORK: u64 = 100;
+
+/// Whether there may be tighter bounds for triangles that stand for the limit surface of `control`.
+pub(super) fn is_loose(error: &ErrorBounds, control: &Mesh) -> bool {
+    let known = Known::new(*error, control);
+    error.certified && known.distance().is_normal() && !known.is_tight()
+}
+
+/// The bounds of a surface with so many regions unfolded, as tight as it is worth while to make them.
+pub(super) fn tighter(
+    error: ErrorBounds,
+    (surface, unfolded): (Triangles<'_>, usize),
+    (control, scheme): (&Mesh, &dyn Scheme),
+    options: &ExactOptions,
+    observer: &mut Observer<'_>,
+) -> Result<ErrorBounds, RefineError> {
+    if !is_loose(&error, control) {
+        return Ok(error);
+    }
+    let mut known = Known::new(error, control);
+    let count = surface.triangles.len();
+    let room = options.triangles_by_memory().map_or(usize::MAX, |most| most.saturating_sub(count));
+    let most = (IN_ANY_CASE + FOR_EACH * count).min(room);
+    let tree = Bvh::new_observed(surface, observer)?;
+    // Where there is no bound yet, one that is not tight is of no use.
+    let is_bounded = error.upper.is_finite();
+    let nearer = |near: f64, observer: &mut Observer<'_>| -> Result<Option<Exact>, RefineError> {
+        let goals = ExactOptions::default().unfold(unfolded > 0).origins(false).tolerance(near);
+        // Of use are few triangles to be made, not few to be left.
+        let goals = ExactOptions { strips: false, ..goals };
+        let found = within(control, scheme, (&goals, most), observer)?;
+        Ok(found.filter(|found| found.unfolded == unfolded && found.error.upper.is_finite()))
+    };
+    let coarse = if is_bounded { COARSE * error.upper } else { 0.0 };
+    let mut near = (FIRST / COARSE * coarse).max(known.finest());
+    let mut found = nearer(near, observer)?;
+    let is_too_fine = found.is_none();
+    if is_too_fine && near < coarse {
+        near = coarse;
+        found = nearer(near, observer)?;
+    }
+    while let Some(mesh) = found {
+        let (count, off) = (mesh.mesh.face_count(), mesh.error.upper);
+        known.measure([&tree, &Bvh::new_observed(mesh.mesh.as_triangles(), observer)?], off, observer)?;
+        let is_last = is_too_fine || near <= known.finest() || GROWTH * count > most;
+        if is_last || known.is_tight() {
+            break;
+        }
+        near = (near / FINER).max(known.finest());
+        found = nearer(near, observer)?;
+    }
+    Ok(if is_bounded || known.is_tight() { known.bounds } else { error })
+}
+
+/// What is known of a distance.
+struct Known {
+    bounds: ErrorBounds,
+    /// Distances below count as that.
+    least: f64,
+}
+
+impl Known {
+    fn new(bounds: ErrorBounds, control: &Mesh) -> Self {
+        Self { bounds, least: LEAST * control.diagonal() }
+    }
+
+    /// The distance that was found.
+    fn distance(&self) -> f64 {
+        self.bounds.lower.max(self.least)
+    }
+
+    fn is_tight(&self) -> bool {
+        self.bounds.upper <= TIGHT * self.distance()
+    }
+
+    /// As far as a nearer mesh may be off.
+    fn finest(&self) -> f64 {
+        SHARE * self.distance()
+    }
+
+    /// Measures the surface against one that is off by so much.
+    fn measure(
+        &mut self,
+        trees: [&Bvh<'_>; 2],
+        off: f64,
+        observer: &mut Observer<'_>,
+    ) -> Result<(), RefineError> {
+        let distance = self.distance();
+        // What is found is at most that much above the distance, or what turns out to be the distance.
+        let gap = ((TIGHT - 1.0) * distance - 2.0 * off).max(2.0 * off);
+        let count: usize = trees.iter().map(|tree| tree.surface().triangles.len()).sum();
+        let search =
+            CertifiedOptions::default().gap(Some(gap)).relative_gap(0.0).max_work(WORK * count as u64);
+        let KnownToBe { upper, found } = certified_known(trees, distance - off, &search, observer)?;
+        self.bounds.upper = self.bounds.upper.min((upper + off).next_up());
+        let raised = found.map(|(lower, at)| ((lower - off).next_down(), at));
+        if let Some((lower, at)) = raised
+            && lower > self.bounds.lower.max(PLACED * off)
+        {
+            (self.bounds.lower, self.bounds.at) = (lower, at);
+        }
+        Ok(())
+    }
+}
