@@ -70,7 +70,7 @@ impl Hausdorff {
 
     /// The symmetric distance in per cent of the reference's bounding-box diagonal.
     pub fn symmetric_percent(&self) -> f64 {
-        if self.reference_diagonal > 0.0 { 100.0 * self.symmetric() / self.reference_diagonal } else { 0.0 }
+        if self.reference_diagonal > 0.0 { 100.0 * (self.symmetric() / self.reference_diagonal) } else { 0.0 }
     }
 }
 

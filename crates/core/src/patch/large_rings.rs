@@ -12,6 +12,8 @@ use super::sector::{Centre, Far, VertexSector};
 use super::semi_sharp::WholeRing;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sharpness, Topology};
+use crate::parallel::Poll;
+use crate::progress::{Cancelled, uncancelled};
 use crate::vector::{DVec3, vector};
 
 /// The vertices of very many edges, ascending.
@@ -31,16 +33,26 @@ struct Ring {
 impl LargeRings {
     /// Those of `mesh`, and what becomes of them beside tags.
     pub(crate) fn with_tags(mesh: &Mesh, sharpness: &Sharpness<'_>, rules: &Rules<'_>) -> Self {
+        uncancelled(|_| Self::with_tags_polled(mesh, sharpness, rules, &mut |_| Ok(())))
+    }
+
+    /// [`Self::with_tags`] that can be cancelled, between the levels on which a ring fades.
+    pub(crate) fn with_tags_polled(
+        mesh: &Mesh,
+        sharpness: &Sharpness<'_>,
+        rules: &Rules<'_>,
+        poll: &mut Poll<'_>,
+    ) -> Result<Self, Cancelled> {
         let mut large = Self::of(mesh);
         if sharpness.is_empty() || !rules.is_certified() {
-            return large;
+            return Ok(large);
         }
         let levels = sharpness.fading_levels();
         // Where something fades, it may do so beside any of them.
         for (vertex, ring) in large.0.iter_mut().filter(|(v, _)| levels > 0 || sharpness.is_tagged(*v)) {
-            ring.whole = WholeRing::of(mesh, sharpness, *vertex, levels, rules).map(Arc::new);
+            ring.whole = WholeRing::of(mesh, sharpness, (*vertex, levels), rules, poll)?.map(Arc::new);
         }
-        large
+        Ok(large)
     }
 
     /// What becomes of the ring of a vertex, if it is one of them and tags count.

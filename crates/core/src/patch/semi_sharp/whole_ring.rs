@@ -11,9 +11,11 @@ use super::SemiSharpVertex;
 use super::lasting_twin::RingGaps;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sharpness};
+use crate::parallel::Poll;
 use crate::patch::pole::{BEYOND, KEPT};
 use crate::patch::sector::{Centre, Far, VertexSector};
 use crate::patch::{Neighbours, Rules};
+use crate::progress::Cancelled;
 use crate::ring::{SharpRing, VertexRule};
 use crate::vector::DVec3;
 
@@ -74,22 +76,23 @@ impl WholeRing {
     pub(crate) fn of(
         mesh: &Mesh,
         sharpness: &Sharpness<'_>,
-        vertex: VertexId,
-        levels: usize,
+        (vertex, levels): (VertexId, usize),
         rules: &Rules<'_>,
-    ) -> Option<Self> {
+        poll: &mut Poll<'_>,
+    ) -> Result<Option<Self>, Cancelled> {
         let topology = mesh.topology();
         let mut whole = SemiSharpVertex::of(mesh, sharpness, topology.outgoing(vertex));
         let mut slots: Vec<(HalfEdgeId, u32)> = topology.outgoing_ring(vertex).zip(0..).collect();
         slots.sort_unstable();
         let (neighbours, sharp) = (whole.neighbours.clone(), whole.sharp.clone());
         let mut found = vec![Level::of(&whole, rules)];
-        for _ in 0..levels {
+        for level in 0..levels {
+            poll(level)?;
             whole = whole.refined(rules);
             found.push(Level::of(&whole, rules));
         }
         let is_dart = whole.sharp.rule() == VertexRule::Dart;
-        (!is_dart).then_some(Self { slots, neighbours, sharp, levels: found })
+        Ok((!is_dart).then_some(Self { slots, neighbours, sharp, levels: found }))
     }
 
     /// Whether something fades.

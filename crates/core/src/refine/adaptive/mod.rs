@@ -229,7 +229,7 @@ fn with_engine<T>(
     let mut control = Control {
         mesh,
         sharpness: &sharpness,
-        large: LargeRings::with_tags(mesh, &sharpness, &rules),
+        large: LargeRings::with_tags_polled(mesh, &sharpness, &rules, &mut |_| watch.poll())?,
         lasting: &lasting,
         positions,
         sided,
