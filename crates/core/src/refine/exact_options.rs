@@ -201,6 +201,12 @@ impl ExactOptions {
         self
     }
 
+    /// Whether triangles are as large as their distance from the surface lets them be.
+    pub(super) fn asks_for_distances_alone(&self) -> bool {
+        let else_asked = self.angle.is_some() || self.pixels.is_some() || !self.attributes.is_empty();
+        !(else_asked || self.balance || self.optimize)
+    }
+
     /// Triangles for which there is memory, if that is limited.
     pub(super) fn triangles_by_memory(&self) -> Option<usize> {
         self.max_memory.map(|bytes| bytes / BYTES_PER_TRIANGLE)

@@ -39,6 +39,9 @@ const PLACED: f64 = 8.0;
 const IN_ANY_CASE: usize = 200_000;
 const FOR_EACH: usize = 3;
 
+/// Triangles of a mesh within a tolerance, of which nothing else was asked, that are measured at most: the tolerance is proven already.
+const WITHIN_A_TOLERANCE: usize = 50_000;
+
 /// Meshes that are [`FINER`] times nearer have so many times the triangles at least: the square root of that where rims alone are curved.
 const GROWTH: usize = 2;
 
@@ -64,6 +67,11 @@ pub(super) fn tighter(
     }
     let mut known = Known::new(error, control);
     let count = surface.triangles.len();
+    let is_all =
+        options.asks_for_distances_alone() && options.tolerance.is_some_and(|most| error.upper <= most);
+    if is_all && count > WITHIN_A_TOLERANCE {
+        return Ok(error);
+    }
     let room = options.triangles_by_memory().map_or(usize::MAX, |most| most.saturating_sub(count));
     let most = (IN_ANY_CASE + FOR_EACH * count).min(room);
     let tree = Bvh::new_observed(surface, observer)?;
