@@ -39,8 +39,10 @@ const PLACED: f64 = 8.0;
 const IN_ANY_CASE: usize = 200_000;
 const FOR_EACH: usize = 3;
 
-/// Triangles of a mesh within a tolerance, of which nothing else was asked, that are measured at most: the tolerance is proven already.
-const WITHIN_A_TOLERANCE: usize = 50_000;
+/// Where nothing but a tolerance was asked for, which is proven already, bounds up to so many times a distance that was found are
+/// tight enough, and so many triangles are measured at most.
+const MET_TIGHT: f64 = 1.4;
+const MET_MOST: usize = 20_000;
 
 /// Meshes that are [`FINER`] times nearer have so many times the triangles at least: the square root of that where rims alone are curved.
 const GROWTH: usize = 2;
@@ -67,9 +69,9 @@ pub(super) fn tighter(
     }
     let mut known = Known::new(error, control);
     let count = surface.triangles.len();
-    let is_all =
+    let is_met =
         options.asks_for_distances_alone() && options.tolerance.is_some_and(|most| error.upper <= most);
-    if is_all && count > WITHIN_A_TOLERANCE {
+    if is_met && (count > MET_MOST || error.upper <= MET_TIGHT * known.distance()) {
         return Ok(error);
     }
     let room = options.triangles_by_memory().map_or(usize::MAX, |most| most.saturating_sub(count));
