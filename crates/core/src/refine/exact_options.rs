@@ -201,10 +201,9 @@ impl ExactOptions {
         self
     }
 
-    /// Whether triangles are as large as their distance from the surface lets them be.
+    /// Whether nothing but distances decides how large triangles are.
     pub(super) fn asks_for_distances_alone(&self) -> bool {
-        let else_asked = self.angle.is_some() || self.pixels.is_some() || !self.attributes.is_empty();
-        !(else_asked || self.balance || self.optimize)
+        self.angle.is_none() && self.pixels.is_none() && self.attributes.is_empty()
     }
 
     /// Triangles for which there is memory, if that is limited.
