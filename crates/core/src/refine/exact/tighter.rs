@@ -40,9 +40,11 @@ const IN_ANY_CASE: usize = 200_000;
 const FOR_EACH: usize = 3;
 
 /// Where nothing but a tolerance was asked for, which is proven already, bounds up to so many times a distance that was found are
-/// tight enough, and so many triangles are measured at most.
+/// tight enough, and so many triangles are measured at most, against meshes of fewer, which are soon there.
 const MET_TIGHT: f64 = 1.4;
 const MET_MOST: usize = 20_000;
+const MET_IN_ANY_CASE: usize = 20_000;
+const MET_FOR_EACH: usize = 10;
 
 /// Meshes that are [`FINER`] times nearer have so many times the triangles at least: the square root of that where rims alone are curved.
 const GROWTH: usize = 2;
@@ -75,7 +77,8 @@ pub(super) fn tighter(
         return Ok(error);
     }
     let room = options.triangles_by_memory().map_or(usize::MAX, |most| most.saturating_sub(count));
-    let most = (IN_ANY_CASE + FOR_EACH * count).min(room);
+    let most = if is_met { MET_IN_ANY_CASE + MET_FOR_EACH * count } else { IN_ANY_CASE + FOR_EACH * count };
+    let most = most.min(room);
     let tree = Bvh::new_observed(surface, observer)?;
     // Where there is no bound yet, one that is not tight is of no use.
     let is_bounded = error.upper.is_finite();
