@@ -68,7 +68,7 @@ fn bounds_are_near_the_truth_where_no_distance_was_asked_for() {
 }
 
 /// Whatever ended the refinement, the greatest distance that dense samples find to a mesh of uniform refinement, which knows nothing of
-/// the engine, is at most a quarter below what is proven, but for what that mesh and the samples miss.
+/// the engine, is at most a quarter below what is proven, or a half where that is a tolerance, but for what that mesh and the samples miss.
 #[test]
 fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
     let sharp = |name: &str, degrees: f64| model(name).with_creases_above(degrees.to_radians()).unwrap();
@@ -108,9 +108,12 @@ fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
             let error = result.error;
             // The reference's chords leave the surface by 4/3 of the next level's distance in the end.
             let chords = 4.0 / 3.0 * chords;
+            // A tolerance that is met is proven already.
+            let is_met = options.tolerance.is_some() && options.angle.is_none() && !options.optimize;
+            let times = if is_met { 2.0 } else { 1.25 };
             assert!(
                 found <= error.upper + chords
-                    && error.upper <= 1.25 * 1.02 * (found + chords).max(1e-6 * diagonal),
+                    && error.upper <= times * 1.02 * (found + chords).max(1e-6 * diagonal),
                 "{name}, {goal}: {error:?}, samples find {found}, give or take {chords}"
             );
             let at = [&output, &tree].map(|of| of.closest(error.at).distance);

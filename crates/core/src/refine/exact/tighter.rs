@@ -41,8 +41,8 @@ const FOR_EACH: usize = 3;
 
 /// Where nothing but a tolerance was asked for, which is proven already, bounds up to so many times a distance that was found are
 /// tight enough, and so many triangles are measured at most, against meshes of fewer, which are soon there.
-const MET_TIGHT: f64 = 1.4;
-const MET_MOST: usize = 20_000;
+const MET_TIGHT: f64 = 2.0;
+const MET_MOST: usize = 5_000;
 const MET_IN_ANY_CASE: usize = 20_000;
 const MET_FOR_EACH: usize = 10;
 
@@ -71,8 +71,8 @@ pub(super) fn tighter(
     }
     let mut known = Known::new(error, control);
     let count = surface.triangles.len();
-    let is_met =
-        options.asks_for_distances_alone() && options.tolerance.is_some_and(|most| error.upper <= most);
+    let is_proven = options.tolerance.is_some_and(|most| error.upper <= most);
+    let is_met = is_proven && options.asks_for_distances_alone() && !options.optimize;
     if is_met && (count > MET_MOST || error.upper <= MET_TIGHT * known.distance()) {
         return Ok(error);
     }
