@@ -193,30 +193,18 @@ pub fn certified_hausdorff_between_observed(
     between([surface, reference], None, options, observer)
 }
 
-/// A symmetric distance of which something was known.
-pub(crate) struct KnownToBe {
-    /// No point is farther away.
-    pub(crate) upper: f64,
-    /// Some point is at least so far away, if that is more than was known, and which.
-    pub(crate) found: Option<(f64, [f64; 3])>,
-}
-
-/// Bounds a symmetric distance that is known to be at least so much: little time is spent on what is below.
+/// Bounds a symmetric distance that is known to be at least so much: little time is spent on what is below. Points are given where
+/// more was found than that.
 pub(crate) fn certified_known(
-    [surface, reference]: [&Bvh<'_>; 2],
+    trees: [&Bvh<'_>; 2],
     known: f64,
     options: &CertifiedOptions,
     observer: &mut Observer<'_>,
-) -> Result<KnownToBe, MeasureError> {
-    let measured = between([surface, reference], Some(known), options, observer)?;
+) -> Result<Bounds, MeasureError> {
+    let measured = between(trees, Some(known.max(0.0)), options, observer)?;
     let CertifiedHausdorff { forward, backward, .. } = measured;
-    let (before, upper) = (known.max(forward.lower), measured.upper());
-    let found = match () {
-        () if backward.lower > before => Some((backward.lower, backward.at)),
-        () if forward.lower > known => Some((forward.lower, forward.at)),
-        () => None,
-    };
-    Ok(KnownToBe { upper, found })
+    let greater = if backward.lower > forward.lower { backward } else { forward };
+    Ok(Bounds { upper: measured.upper(), converged: measured.converged(), ..greater })
 }
 
 /// Both directions; what is known of the greater one counts for each.

@@ -5,7 +5,7 @@
 //! mesh can be much nearer to the whole surface than that says. Then it is measured against a mesh that is nearer still, within e of
 //! the surface: a distance to that mesh and one to the surface differ by e at most (the triangle inequality, in either direction).
 
-use crate::measure::{Bvh, CertifiedOptions, KnownToBe, certified_known};
+use crate::measure::{Bvh, CertifiedOptions, certified_known};
 use crate::mesh::{Mesh, Triangles};
 use crate::progress::Observer;
 use crate::refine::RefineError;
@@ -143,19 +143,16 @@ impl Known {
         off: f64,
         observer: &mut Observer<'_>,
     ) -> Result<(), RefineError> {
-        let distance = self.distance();
-        // What is found is at most that much above the distance, or what turns out to be the distance.
-        let gap = ((TIGHT - 1.0) * distance - 2.0 * off).max(2.0 * off);
+        let lower = self.bounds.lower;
+        // What is found is at most that much above what was, or what turns out to be the distance.
+        let gap = (TIGHT * self.distance() - lower - 2.0 * off).max(2.0 * off);
         let count: usize = trees.iter().map(|tree| tree.surface().triangles.len()).sum();
         let search =
             CertifiedOptions::default().gap(Some(gap)).relative_gap(0.0).max_work(WORK * count as u64);
-        let KnownToBe { upper, found } = certified_known(trees, distance - off, &search, observer)?;
-        self.bounds.upper = self.bounds.upper.min((upper + off).next_up());
-        let raised = found.map(|(lower, at)| ((lower - off).next_down(), at));
-        if let Some((lower, at)) = raised
-            && lower > self.bounds.lower.max(PLACED * off)
-        {
-            (self.bounds.lower, self.bounds.at) = (lower, at);
+        let found = certified_known(trees, lower - off, &search, observer)?.widened(off);
+        self.bounds.upper = self.bounds.upper.min(found.upper);
+        if found.lower > lower.max(PLACED * off) {
+            (self.bounds.lower, self.bounds.at) = (found.lower, found.at);
         }
         Ok(())
     }
