@@ -196,6 +196,14 @@ impl<'a> SharedWatch<'a> {
         self.watch.borrow_mut().poll()
     }
 
+    /// An observer for functions that take one: what these tell is not passed on, whether to go on is.
+    pub(crate) fn observer(&self) -> impl FnMut(&Progress) -> ControlFlow<()> + '_ {
+        |_| match self.poll() {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(Cancelled) => ControlFlow::Break(()),
+        }
+    }
+
     /// Goes through items one after the other, polling now and then.
     pub(crate) fn each<I: IntoIterator>(
         &self,

@@ -44,6 +44,14 @@ pub struct ErrorBounds {
     pub at: [f64; 3],
 }
 
+impl ErrorBounds {
+    /// Upper bounds up to so many times what was found are tight enough.
+    pub(crate) const TIGHT: f64 = 1.25;
+
+    /// Distances below this part of the control mesh's diagonal count as that.
+    pub(crate) const LEAST: f64 = 1e-6;
+}
+
 /// A point of the control mesh: where a vertex came from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Origin {

@@ -207,6 +207,19 @@ pub(crate) fn certified_known(
     Ok(Bounds { upper: measured.upper(), converged: measured.converged(), ..greater })
 }
 
+/// Bounds the greatest distance from one surface to another in the same way.
+pub(crate) fn certified_from_known(
+    [from, to]: [&Bvh<'_>; 2],
+    known: f64,
+    options: &CertifiedOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Bounds, MeasureError> {
+    let watch = &mut Watch::new(observer, Stage::Bounding);
+    let gap = options.gap.unwrap_or(DEFAULT_GAP * to.diagonal());
+    let target = target(from, to, "reference", watch)?;
+    Ok(Search::run(from, &target, (gap, Some(known.max(0.0))), options, watch)?.0)
+}
+
 /// Both directions; what is known of the greater one counts for each.
 fn between(
     [surface, reference]: [&Bvh<'_>; 2],

@@ -4,6 +4,7 @@
 //! worst leaves to the nearest triangle of the mesh, which is looked for in all control faces whose points come near.
 
 mod farthest;
+mod nearer_mesh;
 mod nearest_triangle;
 
 use core::cmp::Ordering;
@@ -18,6 +19,7 @@ use crate::certificate::TriangleFrame;
 use crate::index::VertexId;
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, SharedWatch};
+use crate::refine::RefineError;
 use crate::refine::exact_result::ErrorBounds;
 use farthest::{SAMPLED_LEVELS, farthest, sample};
 use nearest_triangle::Nearest;
@@ -86,7 +88,7 @@ pub(super) fn probe(
     plan: &Plan,
     emission: &Emission,
     (measured, is_met): (Option<&[Measured]>, bool),
-) -> Result<ErrorBounds, Cancelled> {
+) -> Result<ErrorBounds, RefineError> {
     let watch = engine.watch;
     let mut best =
         ErrorBounds { lower: 0.0, upper: 0.0, at: [0.0; 3], certified: engine.control.rules.is_certified() };
@@ -150,6 +152,8 @@ pub(super) fn probe(
             break;
         }
         let found = again(NARROW * best.lower, &loose)?;
+        let heights = greatest(found.iter().map(|face| face.highest), PROBED, watch)?;
+        lower(engine, (plan, emission), &mesh, (&heights, |_| true, &mut probed), &mut best)?;
         let found: HashMap<u32, (f64, Place)> =
             loose.into_iter().zip(found.into_iter().map(|found| found.worst)).collect();
         for known in &mut candidates {
@@ -161,6 +165,9 @@ pub(super) fn probe(
                 *known = *found;
             }
         }
+    }
+    if best.certified {
+        best = loose_anew(engine, (plan, emission, &mesh), &candidates, best)?;
     }
     if !best.certified {
         best.upper = estimated(engine, &worst, &mesh, &mut best)?;
@@ -266,6 +273,27 @@ fn lower(
         }
     }
     Ok(())
+}
+
+/// The same interval, made narrower where few control faces have bounds that are far above what was found; `greatest` are the greatest
+/// bounds, and all that may be.
+fn loose_anew(
+    engine: &Engine<'_>,
+    sources: (&Plan, &Emission, &Nearest<'_, '_>),
+    greatest: &[(f64, Place)],
+    known: ErrorBounds,
+) -> Result<ErrorBounds, RefineError> {
+    let lower = known.lower.max(ErrorBounds::LEAST * engine.control.mesh.diagonal());
+    if known.upper <= ErrorBounds::TIGHT * lower {
+        return Ok(known);
+    }
+    let (loose, others): (Vec<_>, Vec<_>) =
+        greatest.iter().copied().partition(|&(bound, _)| bound > WIDE * lower);
+    let mut faces: Vec<u32> = loose.into_iter().map(|(_, place)| place.face).collect();
+    faces.sort_unstable();
+    let Some(found) = nearer_mesh::anew(engine, sources, &faces, (&known, lower))? else { return Ok(known) };
+    let rest = others.into_iter().map(|(bound, _)| bound).fold(0.0, f64::max);
+    Ok(ErrorBounds { upper: known.upper.min(found.upper.max(rest)), ..found })
 }
 
 /// Where nothing is certain: the greatest distance of samples over the faces that may be worse than what was found; after

@@ -20,9 +20,6 @@ use crate::vector::vector;
 /// What rounding may do to an angle against its limit, relative: normals are taken anew from what is emitted.
 const CONE_ROUNDING: f64 = 1e-6;
 
-/// Bounds up to so many times a distance that was found are worth telling.
-const WORTH: f64 = 1.25;
-
 /// A plan that was emitted, with what its triangles come to by control face where all were looked at among their neighbours.
 pub(super) struct Outcome {
     pub(super) plan: Plan,
@@ -58,7 +55,10 @@ impl Outcome {
         let is_met = stop == ExactStop::Met && options.tolerance.is_some();
         let mut error = probe::probe(engine, &plan, &emission, (measured.as_deref(), is_met))?;
         // Where nothing was asked of distances, a bound far from the truth says nothing.
-        if options.tolerance.is_none() && options.triangles.is_none() && error.upper > WORTH * error.lower {
+        if options.tolerance.is_none()
+            && options.triangles.is_none()
+            && error.upper > ErrorBounds::TIGHT * error.lower
+        {
             error.upper = f64::INFINITY;
         }
         let failed = options.tolerance.filter(|&tolerance| exceeds(error.upper, tolerance));

@@ -14,15 +14,9 @@ use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{ErrorBounds, Exact};
 use crate::scheme::Scheme;
 
-/// Bounds up to so many times a distance that was found are tight enough.
-const TIGHT: f64 = 1.25;
-
 /// The part of the distance that the nearer mesh may be off by: with less of it, that mesh has more triangles, with more the search has
 /// less to end with.
 const SHARE: f64 = 0.06;
-
-/// Distances below this part of the diagonal count as that.
-const LEAST: f64 = 1e-6;
 
 /// The first nearer mesh is off by this part of the bound that there is at least, the next ones by so many times less: meshes
 /// that would be far too fine are not begun with.
@@ -39,12 +33,10 @@ const PLACED: f64 = 8.0;
 const IN_ANY_CASE: usize = 200_000;
 const FOR_EACH: usize = 3;
 
-/// Where nothing but a tolerance was asked for, which is proven already, bounds up to so many times a distance that was found are
-/// tight enough, and so many triangles are measured at most, against meshes of fewer, which are soon there.
-const MET_TIGHT: f64 = 2.0;
-const MET_MOST: usize = 5_000;
-const MET_IN_ANY_CASE: usize = 20_000;
-const MET_FOR_EACH: usize = 10;
+/// Where nothing but a tolerance was asked for, which is proven already, so many triangles are measured at most, against meshes of fewer.
+const MET_MOST: usize = 20_000;
+const MET_IN_ANY_CASE: usize = 100_000;
+const MET_FOR_EACH: usize = 5;
 
 /// Meshes that are [`FINER`] times nearer have so many times the triangles at least: the square root of that where rims alone are curved.
 const GROWTH: usize = 2;
@@ -73,7 +65,7 @@ pub(super) fn tighter(
     let count = surface.triangles.len();
     let is_proven = options.tolerance.is_some_and(|most| error.upper <= most);
     let is_met = is_proven && options.asks_for_distances_alone() && !options.optimize;
-    if is_met && (count > MET_MOST || error.upper <= MET_TIGHT * known.distance()) {
+    if is_met && count > MET_MOST {
         return Ok(error);
     }
     let room = options.triangles_by_memory().map_or(usize::MAX, |most| most.saturating_sub(count));
@@ -119,7 +111,7 @@ struct Known {
 
 impl Known {
     fn new(bounds: ErrorBounds, control: &Mesh) -> Self {
-        Self { bounds, least: LEAST * control.diagonal() }
+        Self { bounds, least: ErrorBounds::LEAST * control.diagonal() }
     }
 
     /// The distance that was found.
@@ -128,7 +120,7 @@ impl Known {
     }
 
     fn is_tight(&self) -> bool {
-        self.bounds.upper <= TIGHT * self.distance()
+        self.bounds.upper <= ErrorBounds::TIGHT * self.distance()
     }
 
     /// As far as a nearer mesh may be off.
@@ -145,7 +137,7 @@ impl Known {
     ) -> Result<(), RefineError> {
         let lower = self.bounds.lower;
         // What is found is at most that much above what was, or what turns out to be the distance.
-        let gap = (TIGHT * self.distance() - lower - 2.0 * off).max(2.0 * off);
+        let gap = (ErrorBounds::TIGHT * self.distance() - lower - 2.0 * off).max(2.0 * off);
         let count: usize = trees.iter().map(|tree| tree.surface().triangles.len()).sum();
         let search =
             CertifiedOptions::default().gap(Some(gap)).relative_gap(0.0).max_work(WORK * count as u64);

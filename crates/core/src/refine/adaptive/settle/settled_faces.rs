@@ -53,7 +53,7 @@ impl SettledFaces {
     }
 
     /// There is nothing left to look at in a face.
-    pub(super) fn settle(&mut self, face: u32) {
+    pub(in super::super) fn settle(&mut self, face: u32) {
         let number = &mut self.numbers[face as usize];
         if *number == OPEN {
             *number = NOTHING;

@@ -1,0 +1,238 @@
+//! What a few control faces come to, taken anew: against a mesh over these and what is around them that is nearer to the surface.
+//!
+//! What a triangle comes to by itself, or with its neighbours' help, can be far above its distance: where neighbours are turned much,
+//! where nets at irregular vertices are long. Where that is so of few control faces, F, a mesh N is made whose triangles over F and around it
+//! come within e of the surface, and distances between N and the triangles over F are searched for, as
+//! [`crate::measure::certified_hausdorff`] does. By [`crate::certificate`]
+//! * a point of the surface over F is within e of a triangle of N over F or of one beside such a triangle: these are measured to the mesh;
+//! * a point of a triangle of N is within e of the surface where its neighbours are bounded, too: to such triangles alone are those of the
+//!   mesh over F measured. So are those beside them, since what covers these may be a part of the surface over F.
+//!
+//! Everything else keeps its bounds. The farthest points that were found raise the lower bound, too.
+
+use std::collections::HashMap;
+
+use super::super::area::Areas;
+use super::super::emit::{Emission, Scope};
+use super::super::judge::Goal;
+use super::super::measure::measure;
+use super::super::{Engine, Plan};
+use super::nearest_triangle::Nearest;
+use crate::geometry::nearer;
+use crate::measure::{Bounds, Bvh, CertifiedOptions, MeasureError, certified_from_known};
+use crate::mesh::{NONE, Triangles};
+use crate::progress::{Cancelled, Observer, SharedWatch};
+use crate::refine::RefineError;
+use crate::refine::exact_result::ErrorBounds;
+use crate::vector::vector;
+
+/// The part of the distance that the nearer mesh may be off by: with less it has more triangles, with more less is gained.
+const SHARE: f64 = 0.1;
+
+/// It is of no use where it is off by more than this part: no more than its points may be off as those of the surface ([`ErrorBounds::at`]).
+const MOST_OFF: f64 = 0.125;
+
+/// What is found is known to this part of the distance: the search takes little of the time.
+const GAP: f64 = 0.04;
+
+/// Triangles over F at most: so many in any case, and one for so many of the mesh, but no more than that. Others would take longer than
+/// all that was done before.
+const IN_ANY_CASE: usize = 200;
+const FOR_SO_MANY: usize = 16;
+const MOST: usize = 2_000;
+
+/// Triangles of the nearer mesh at most: so many in any case, and for each of the other one over the same control faces.
+const NEARER_IN_ANY_CASE: usize = 10_000;
+const NEARER_FOR_EACH: usize = 100;
+
+/// Work of the search for each triangle of both meshes, where it ends by itself after some five.
+const WORK: u64 = 100;
+
+/// What these control faces come to, and a lower bound that is no less than there was; `None` where that would take too long, or
+/// where more counts than the distances of triangles. `known` bounds the distance of the whole mesh, `lower` is what counts as found.
+pub(super) fn anew(
+    engine: &Engine<'_>,
+    (plan, emission, mesh): (&Plan, &Emission, &Nearest<'_, '_>),
+    faces: &[u32],
+    (known, lower): (&ErrorBounds, f64),
+) -> Result<Option<ErrorBounds>, RefineError> {
+    let (control, watch) = (engine.control, engine.watch);
+    let count: usize = faces.iter().map(|&face| emission.triangles_of(face).len()).sum();
+    let most = (IN_ANY_CASE + emission.triangles.len() / FOR_SO_MANY).min(MOST);
+    if count > most || control.criteria.is_some() {
+        return Ok(None);
+    }
+    let is_around = around(engine, faces);
+    let is_wanted = |face: &u32| is_around[*face as usize];
+    let wanted: Vec<u32> = (0..is_around.len() as u32).filter(is_wanted).collect();
+    // Of what is merged later rims are all that is known.
+    if wanted.iter().any(|&face| control.flat.is_its_rim(face)) {
+        return Ok(None);
+    }
+    let Some(close) = Close::of(engine, plan, (&wanted, &is_around), emission, SHARE * lower)? else {
+        return Ok(None);
+    };
+    let off = close.off;
+    if off > MOST_OFF * lower {
+        return Ok(None);
+    }
+    let search = CertifiedOptions::default().gap(Some(GAP * lower)).relative_gap(0.0);
+    let mut observer = watch.observer();
+    let mut distance = |from: Vec<usize>, of: &Emission, to: Vec<usize>, other: &Emission| {
+        let search = search.max_work(WORK * (from.len() + to.len()) as u64);
+        Part::of(of, &from).distance(&Part::of(other, &to), lower - off, &search, &mut observer)
+    };
+    let nearer = &close.emission;
+    let is_bounded =
+        |triangle: &usize| beside(nearer, *triangle).all(|other| is_wanted(&nearer.parents[other]));
+    let bounded = over(nearer, &wanted).filter(is_bounded).collect();
+    let forward = distance(with_beside(emission, faces), emission, bounded, nearer)?;
+    let over_wanted = over(emission, &wanted).collect();
+    let backward = distance(with_beside(nearer, faces), nearer, over_wanted, emission)?;
+    let mut found = ErrorBounds { upper: (forward.upper.max(backward.upper) + off).next_up(), ..*known };
+    // The point is that far from the surface, at most.
+    let from_surface = mesh.distance(vector(backward.at), faces[0])? - off;
+    if from_surface > found.lower {
+        (found.lower, found.at) = (from_surface, backward.at);
+    }
+    // Surface over what is around is as near to the one mesh, all other surface to the other one.
+    if forward.lower - off > found.lower {
+        let is_outer = |triangle: usize| !is_wanted(&emission.parents[triangle]);
+        let others = (0..emission.triangles.len())
+            .filter(|&triangle| is_outer(triangle) || beside(emission, triangle).any(is_outer));
+        let all = 0..nearer.triangles.len();
+        let from_mesh = (least_distance(forward.at, nearer, all, watch)? - off)
+            .min(least_distance(forward.at, emission, others, watch)? - known.upper);
+        if from_mesh > found.lower {
+            (found.lower, found.at) = (from_mesh, forward.at);
+        }
+    }
+    Ok(Some(found))
+}
+
+/// A mesh that is near to the surface over some control faces.
+struct Close {
+    /// What is there over these, and over those beside them.
+    emission: Emission,
+    /// As far as its triangles over these are off at most.
+    off: f64,
+}
+
+impl Close {
+    /// Divides what is wanted until it is that near; `None` where that takes too many triangles.
+    fn of(
+        engine: &Engine<'_>,
+        plan: &Plan,
+        (wanted, is_wanted): (&[u32], &[bool]),
+        emission: &Emission,
+        near: f64,
+    ) -> Result<Option<Self>, RefineError> {
+        let watch = engine.watch;
+        let count: usize = wanted.iter().map(|&face| emission.triangles_of(face).len()).sum();
+        let most = plan.triangles + NEARER_IN_ANY_CASE + NEARER_FOR_EACH * count;
+        let goal = Goal::Partly(f64::INFINITY, near, is_wanted.to_vec());
+        let Some(mut finer) = engine.finer(plan, goal, wanted, most)? else { return Ok(None) };
+        // Nobody asks what others come to.
+        let others = (0..).zip(is_wanted).filter(|(_, is_wanted)| !**is_wanted);
+        watch.each(others, |(face, _)| finer.settled.settle(face))?;
+        if !engine.settle(&mut finer, most)? {
+            return Ok(None);
+        }
+        let mut areas = Areas::default();
+        for &face in wanted {
+            let beyond = (3 * face..3 * face + 3).filter_map(|h| engine.edges.twin(h)).map(|twin| twin / 3);
+            for face in beyond.chain([face]) {
+                areas.0.entry(face).or_default();
+            }
+        }
+        let emission = engine.emit_some(&finer, Scope::Faces(&areas))?;
+        let sources = engine.sources(&finer, &emission);
+        let nothing = Goal::Within(f64::INFINITY);
+        let measured = measure(&sources, watch, (&nothing, near), (wanted, None, None))?;
+        let off = measured.iter().map(|face| face.worst.0).fold(0.0, f64::max);
+        Ok(Some(Self { emission, off }))
+    }
+}
+
+/// Which control faces share a corner with one of some.
+fn around(engine: &Engine<'_>, faces: &[u32]) -> Vec<bool> {
+    let mesh = engine.control.mesh;
+    let mut is_corner = vec![false; mesh.vertex_count()];
+    let corners = faces.iter().flat_map(|&face| mesh.triangles()[face as usize]);
+    corners.for_each(|corner| is_corner[corner as usize] = true);
+    mesh.triangles().iter().map(|face| face.iter().any(|&corner| is_corner[corner as usize])).collect()
+}
+
+/// The triangles over control faces.
+fn over<'a>(emission: &'a Emission, faces: &'a [u32]) -> impl Iterator<Item = usize> + 'a {
+    faces.iter().flat_map(|&face| emission.triangles_of(face))
+}
+
+/// The triangles beyond a triangle's edges.
+fn beside(emission: &Emission, triangle: usize) -> impl Iterator<Item = usize> + '_ {
+    let twins = emission.twins[3 * triangle..3 * triangle + 3].iter().filter(|&&twin| twin != NONE);
+    twins.map(|&twin| twin as usize / 3)
+}
+
+/// The triangles over control faces, and those beside them.
+fn with_beside(emission: &Emission, faces: &[u32]) -> Vec<usize> {
+    let mut found: Vec<usize> = over(emission, faces).collect();
+    found.extend(over(emission, faces).flat_map(|triangle| beside(emission, triangle)));
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// The least distance of a point to some triangles.
+fn least_distance(
+    point: [f64; 3],
+    emission: &Emission,
+    triangles: impl Iterator<Item = usize>,
+    watch: &SharedWatch<'_>,
+) -> Result<f64, Cancelled> {
+    let (point, mut least) = (vector(point), f64::INFINITY);
+    watch.each(triangles, |triangle| {
+        let corners = emission.triangles[triangle];
+        least = nearer(least, corners.map(|vertex| vector(emission.positions[vertex as usize]) - point));
+    })?;
+    Ok(least.sqrt())
+}
+
+/// Some triangles of a mesh, with the vertices that they have.
+struct Part {
+    positions: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Part {
+    fn of(emission: &Emission, triangles: &[usize]) -> Self {
+        let (mut numbers, mut positions) = (HashMap::new(), Vec::new());
+        let mut number = |vertex: u32| {
+            *numbers.entry(vertex).or_insert_with(|| {
+                positions.push(emission.positions[vertex as usize]);
+                positions.len() as u32 - 1
+            })
+        };
+        let triangles = triangles.iter().map(|&triangle| emission.triangles[triangle].map(&mut number));
+        let triangles = triangles.collect();
+        Self { positions, triangles }
+    }
+
+    fn tree(&self, observer: &mut Observer<'_>) -> Result<Bvh<'_>, MeasureError> {
+        Bvh::new_observed(Triangles { positions: &self.positions, triangles: &self.triangles }, observer)
+    }
+
+    /// The greatest distance of a point from another part, of which so much is known.
+    fn distance(
+        &self,
+        other: &Self,
+        known: f64,
+        search: &CertifiedOptions,
+        observer: &mut Observer<'_>,
+    ) -> Result<Bounds, MeasureError> {
+        certified_from_known([&self.tree(observer)?, &other.tree(observer)?], known, search, observer)
+    }
+}
+
+#[cfg(test)]
+mod tests;
