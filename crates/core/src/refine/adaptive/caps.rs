@@ -40,6 +40,10 @@ pub(super) fn once(
     if !may_do_with_fewer(mesh, scheme, (&plain_options, demands), count, observer)? {
         return Ok(found);
     }
+    let is_met = found.stop == ExactStop::Met;
+    if is_met && needs_more(mesh, scheme, (&plain_options, demands), count, observer)? {
+        return Ok(found);
+    }
     let plain = within_caps(mesh, scheme, (&plain_options, demands), observer)?;
     let is_better = match (plain.stop, found.stop) {
         (ExactStop::Met, ExactStop::Met) | (ExactStop::Cones, ExactStop::Cones) => {
@@ -85,6 +89,21 @@ pub(super) fn may_do_with_fewer(
     }
     with_engine(mesh, scheme, plain, observer, |engine| {
         Ok(MERGED_SHARE * engine.control.flat.merged_faces() >= mesh.face_count())
+    })
+}
+
+/// Whether it certainly takes more triangles than this to meet a distance, or an angle: nothing is emitted to tell, and where triangles are
+/// merged afterwards nobody can.
+fn needs_more(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    (options, demands): (&ExactOptions, &Demands),
+    count: usize,
+    observer: &mut Observer<'_>,
+) -> Result<bool, RefineError> {
+    with_engine(mesh, scheme, (options, demands), observer, |engine| {
+        let goal = Goal::Within(engine.floor(options.tolerance));
+        Ok(engine.control.flat.merged_faces() == 0 && engine.plan(goal, count)?.is_none())
     })
 }
 

@@ -238,6 +238,11 @@ impl FlatRegions {
         self.region(face).is_some_and(|region| self.by_rim[region as usize])
     }
 
+    /// Whether there is such a region.
+    pub(super) fn has_rims_alone(&self) -> bool {
+        self.by_rim.contains(&true)
+    }
+
     /// Whether some of these could not be triangulated from their rims, so that nothing is known of what stands for them.
     pub(super) fn has_gaps(&self) -> bool {
         self.has_gaps.load(Ordering::Relaxed)

@@ -62,13 +62,15 @@ pub(super) fn anew(
     if count > most || control.criteria.is_some() {
         return Ok(None);
     }
-    let is_around = around(engine, faces);
-    let is_wanted = |face: &u32| is_around[*face as usize];
-    let wanted: Vec<u32> = (0..is_around.len() as u32).filter(is_wanted).collect();
-    // Of what is merged later rims are all that is known.
-    if wanted.iter().any(|&face| control.flat.is_its_rim(face)) {
+    // Of what gives way to triangulations of rims nothing but these is known. All around that is sharp, so nobody counts on it.
+    let is_its_rim = |face: &u32| control.flat.is_its_rim(*face);
+    if faces.iter().any(is_its_rim) {
         return Ok(None);
     }
+    let mut is_around = around(engine, faces);
+    (0..).zip(&mut is_around).for_each(|(face, is_around)| *is_around &= !is_its_rim(&face));
+    let is_wanted = |face: &u32| is_around[*face as usize];
+    let wanted: Vec<u32> = (0..is_around.len() as u32).filter(is_wanted).collect();
     let Some(close) = Close::of(engine, plan, (&wanted, &is_around), emission, SHARE * lower)? else {
         return Ok(None);
     };
@@ -83,31 +85,46 @@ pub(super) fn anew(
         Part::of(of, &from).distance(&Part::of(other, &to), lower - off, &search, &mut observer)
     };
     let nearer = &close.emission;
+    let is_known = |face: &u32| is_wanted(face) || is_its_rim(face);
     let is_bounded =
-        |triangle: &usize| beside(nearer, *triangle).all(|other| is_wanted(&nearer.parents[other]));
+        |triangle: &usize| beside(nearer, *triangle).all(|other| is_known(&nearer.parents[other]));
     let bounded = over(nearer, &wanted).filter(is_bounded).collect();
-    let forward = distance(with_beside(emission, faces), emission, bounded, nearer)?;
+    let measured = |emission: &Emission| {
+        let found = with_beside(emission, faces).into_iter();
+        found.filter(|&triangle| !is_its_rim(&emission.parents[triangle])).collect()
+    };
+    let forward = distance(measured(emission), emission, bounded, nearer)?;
     let over_wanted = over(emission, &wanted).collect();
-    let backward = distance(with_beside(nearer, faces), nearer, over_wanted, emission)?;
+    let backward = distance(measured(nearer), nearer, over_wanted, emission)?;
     let mut found = ErrorBounds { upper: (forward.upper.max(backward.upper) + off).next_up(), ..*known };
     // The point is that far from the surface, at most.
     let from_surface = mesh.distance(vector(backward.at), faces[0])? - off;
     if from_surface > found.lower {
         (found.lower, found.at) = (from_surface, backward.at);
     }
-    // Surface over what is around is as near to the one mesh, all other surface to the other one.
-    if forward.lower - off > found.lower {
-        let is_outer = |triangle: usize| !is_wanted(&emission.parents[triangle]);
-        let others = (0..emission.triangles.len())
-            .filter(|&triangle| is_outer(triangle) || beside(emission, triangle).any(is_outer));
-        let all = 0..nearer.triangles.len();
-        let from_mesh = (least_distance(forward.at, nearer, all, watch)? - off)
-            .min(least_distance(forward.at, emission, others, watch)? - known.upper);
+    if forward.lower - off > found.lower && !control.flat.has_rims_alone() {
+        let from_mesh = to_surface(forward.at, (&close, emission), (&is_around, known.upper), watch)?;
         if from_mesh > found.lower {
             (found.lower, found.at) = (from_mesh, forward.at);
         }
     }
     Ok(Some(found))
+}
+
+/// How far a point is from the surface at least: the one over what is around is near to the nearer mesh, all other surface to the
+/// other one, of whose triangles it may be near to those beside its own, too.
+fn to_surface(
+    point: [f64; 3],
+    (close, emission): (&Close, &Emission),
+    (is_around, upper): (&[bool], f64),
+    watch: &SharedWatch<'_>,
+) -> Result<f64, Cancelled> {
+    let is_outer = |triangle: usize| !is_around[emission.parents[triangle] as usize];
+    let others = (0..emission.triangles.len())
+        .filter(|&triangle| is_outer(triangle) || beside(emission, triangle).any(is_outer));
+    let all = 0..close.emission.triangles.len();
+    let to_nearer = least_distance(point, &close.emission, all, watch)? - close.off;
+    Ok(to_nearer.min(least_distance(point, emission, others, watch)? - upper))
 }
 
 /// A mesh that is near to the surface over some control faces.
