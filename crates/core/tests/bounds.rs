@@ -175,3 +175,32 @@ fn the_certified_measurement_agrees_with_what_is_proven() {
         }
     }
 }
+
+/// With fewer triangles than it takes to prove a tolerance triangle by triangle, or fewer levels, it may be met all the same, as the whole is
+/// measured anew: then that is why the refinement ended.
+#[test]
+fn tolerances_that_are_proven_are_met_whatever_ended_the_division() {
+    let (mut met, mut missed) = (0, 0);
+    for name in ["cup", "torus", "bunny", "sheet"] {
+        let control = model(name);
+        for share in [0.01, 0.004] {
+            let tolerance = share * control.diagonal();
+            let options = ExactOptions::default().tolerance(tolerance);
+            let count = exact(&control, &Loop, &options).unwrap().mesh.face_count();
+            let caps = [0.97, 0.9, 0.8, 0.5].map(|part| Some((part * count as f64) as usize));
+            let capped = caps.map(|most| options.clone().max_triangles(most));
+            for options in capped.into_iter().chain([options.clone().max_levels(1)]) {
+                let found = exact(&control, &Loop, &options).unwrap();
+                let is_proven = found.error.upper <= tolerance;
+                assert_eq!(found.stop == ExactStop::Met, is_proven, "{name} {share}: {:?}", found.error);
+                assert_eq!(found.worst <= 1.0, is_proven, "{name} {share}: {}", found.worst);
+                if is_proven {
+                    let (least, _) = true_distance(&control, &found);
+                    assert!(least <= tolerance, "{name} {share}: {least}");
+                }
+                *(if is_proven { &mut met } else { &mut missed }) += 1;
+            }
+        }
+    }
+    assert!(met > 5 && missed > 5, "{met}, {missed}");
+}

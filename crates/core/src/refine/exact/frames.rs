@@ -1,6 +1,6 @@
 //! Exact refinement of an animation: the same triangles for all frames, each frame within the goals.
 
-use super::{scale, tighter};
+use super::{met, scale, tighter};
 use crate::mesh::{Mesh, MeshError, Triangles};
 use crate::progress::{Observer, unobserved};
 use crate::refine::RefineError;
@@ -108,8 +108,9 @@ fn middling(
         let surface = (Triangles { positions: &frame.positions, triangles }, 0);
         *error = tighter::tighter(*error, surface, (&control, scheme), options, observer)?;
     }
-    let error = found.errors[0];
-    Ok(Frames { refined: Exact { error, ..found.refined }, replay: found.replay, errors: found.errors })
+    let upper = found.errors.iter().map(|error| error.upper).fold(0.0, f64::max);
+    let refined = met(Exact { error: found.errors[0], ..found.refined }, upper, options);
+    Ok(Frames { refined, replay: found.replay, errors: found.errors })
 }
 
 /// Refuses what has no meaning for frames.

@@ -13,7 +13,7 @@ pub use frames::{Frames, exact_frames, exact_frames_observed};
 use super::RefineError;
 use super::adaptive::adaptive;
 use super::exact_options::ExactOptions;
-use super::exact_result::Exact;
+use super::exact_result::{Exact, ExactStop};
 use super::simplified::simplified;
 use crate::mesh::Mesh;
 use crate::progress::{Observer, unobserved};
@@ -51,7 +51,18 @@ pub fn exact_observed(
         let surface = (found.mesh.as_triangles(), found.unfolded);
         found.error = tighter::tighter(found.error, surface, (control, scheme), options, observer)?;
     }
-    Ok(found)
+    let upper = found.error.upper;
+    Ok(met(found, upper, options))
+}
+
+/// The same, met where a tolerance is all that is asked and `upper` shows that it is: what triangles come to one by one can be more.
+fn met(found: Exact, upper: f64, options: &ExactOptions) -> Exact {
+    match options.tolerance {
+        Some(tolerance) if upper <= tolerance && options.asks_for_distances_alone() => {
+            Exact { stop: ExactStop::Met, worst: found.worst.min(upper / tolerance), ..found }
+        }
+        _ => found,
+    }
 }
 
 /// Whether the distances that [`exact`] reports for a scheme are proven: those of the Loop family are
