@@ -88,7 +88,7 @@ impl Sources<'_> {
             rules: control.rules,
             triangles: &emission.triangles,
             next: emission.triangles_of(face).start as u32,
-            open: control.open(face),
+            open: control.flat.counting(edges, face, control.open(face)),
             diagonals: closed[face as usize].diagonals(),
             rim: Rim::default(),
             is_stopped,

@@ -21,6 +21,7 @@
 //! save, and for regions that turn out to have no triangulation and keep their triangles.
 
 mod flattened;
+mod joined;
 mod merge;
 mod planar;
 mod replace;
@@ -94,6 +95,8 @@ pub(super) struct FlatRegions {
     unfolds: bool,
     /// By region, whether its triangles are judged by the rim alone.
     by_rim: Vec<bool>,
+    /// By region, the first of those with which it is judged together.
+    joined: Vec<u32>,
     /// How far beyond its rim the surface over such a region may reach for all that was proven.
     beyond_rims: f64,
     /// Whether the rim of such a region enclosed nothing that could be triangulated.
@@ -184,12 +187,14 @@ impl FlatRegions {
             off_planes,
             unfolds,
             by_rim: Vec::new(),
+            joined: Vec::new(),
             beyond_rims: 0.0,
             has_gaps: AtomicBool::new(false),
             is_merged,
             weight,
         };
         found.by_rim = found.by_rim((control, edges), (options, most), watch)?;
+        found.join((control, edges), &normals, (most, size), watch)?;
         Ok(found)
     }
 

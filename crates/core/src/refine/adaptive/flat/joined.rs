@@ -1,0 +1,150 @@
+//! Regions in one plane side by side, such as the parts of a face that sharp edges divide at its concave corners.
+//!
+//! Where both are what their rims enclose, and so are the triangles that stand for them, what counts is what encloses them
+//! together: a point of the surface and not of the triangles, or the other way round, is one round which their rims, taken together, wind
+//! but not the chords of these, or the other way round. What two regions share runs the one way for the one and the other way for the
+//! other, so it winds round nothing.
+
+use super::{FlatRegions, HEIGHT_ROUNDING, height_over};
+use crate::progress::{Cancelled, SharedWatch};
+use crate::refine::adaptive::control::Control;
+use crate::refine::adaptive::quadtree::Edges;
+use crate::vector::DVec3;
+
+impl FlatRegions {
+    /// By region that is judged by its rim, the first of those that lie in one plane, within `most`, and hang together; others are their own.
+    /// How far that takes them off the planes is counted. `normals` are those of the control faces, `size` the greatest coordinate.
+    pub(super) fn join(
+        &mut self,
+        (control, edges): (&Control<'_>, &Edges<'_>),
+        normals: &[DVec3],
+        (most, size): (f64, f64),
+        watch: &SharedWatch<'_>,
+    ) -> Result<(), Cancelled> {
+        let count = self.regions.len();
+        let mut joined: Vec<usize> = (0..count).collect();
+        let mut is_done = vec![false; count];
+        for first in 0..count {
+            if is_done[first] || !self.by_rim[first] {
+                continue;
+            }
+            is_done[first] = true;
+            let (mut waiting, plane) = (vec![first], self.regions[first].1);
+            while let Some(region) = waiting.pop() {
+                for &face in &self.regions[region].0 {
+                    watch.poll()?;
+                    for h in 3 * face..3 * face + 3 {
+                        let other = edges.twin(h).and_then(|twin| self.region(twin / 3));
+                        let Some(other) = other.map(|region| region as usize) else { continue };
+                        if is_done[other] || !self.by_rim[other] {
+                            continue;
+                        }
+                        let height =
+                            |&face: &u32| height_over((control, edges), (normals, face), &plane, most);
+                        let mut heights = self.regions[other].0.iter().map(height);
+                        let greatest = heights.try_fold(0.0, |most: f64, height| Some(most.max(height?)));
+                        let Some(off) = greatest else { continue };
+                        self.off_planes = self.off_planes.max(off + HEIGHT_ROUNDING * size);
+                        (is_done[other], joined[other]) = (true, first);
+                        waiting.push(other);
+                    }
+                }
+            }
+        }
+        self.joined = joined.into_iter().map(|region| region as u32).collect();
+        Ok(())
+    }
+
+    /// Which edges of a face of a region that is judged by its rim count, given those that are sharp or boundaries: all that have no
+    /// part of the same plane beyond.
+    pub(in super::super) fn counting(&self, edges: &Edges<'_>, face: u32, open: [bool; 3]) -> [bool; 3] {
+        let joined = |face: u32| {
+            let region = self.region(face).filter(|&region| self.by_rim[region as usize])?;
+            Some(self.joined[region as usize])
+        };
+        let Some(own) = joined(face) else { return open };
+        [0, 1, 2].map(|edge| {
+            let beyond = edges.twin(3 * face + edge as u32).and_then(|twin| joined(twin / 3));
+            open[edge] && beyond != Some(own)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::demands::Demands;
+    use super::super::super::judge::Goal;
+    use super::super::super::measure::measure;
+    use super::super::super::with_engine;
+    use crate::index::VertexId;
+    use crate::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Mesh, Tags};
+    use crate::progress::unobserved;
+    use crate::refine::ExactOptions;
+    use crate::scheme::Loop;
+
+    const SIDE: u32 = 8;
+
+    fn at(i: u32, j: u32) -> u32 {
+        (SIDE + 1) * j + i
+    }
+
+    /// A square that a zigzag of sharp edges divides, lifted by a parabola beyond it.
+    fn divided_square(bend: f64) -> Mesh {
+        let inside = |i: u32, j: u32| i == SIDE / 2 && 0 < j && j < SIDE;
+        let shift = |i: u32, j: u32| if inside(i, j) { 0.3 * f64::from(j % 2) } else { 0.0 };
+        let lift = |i: u32| bend * f64::from(i.saturating_sub(SIDE / 2)).powi(2);
+        let point = |i: u32, j: u32| [f64::from(i) + shift(i, j), f64::from(j), lift(i)];
+        let positions = (0..=SIDE).flat_map(|j| (0..=SIDE).map(move |i| point(i, j))).collect();
+        let squares = (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (i, j)));
+        let halves = |(i, j)| {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        };
+        let mesh = Mesh::from_triangles(positions, squares.flat_map(halves).collect()).unwrap();
+        let corners = [at(0, 0), at(SIDE, 0), at(0, SIDE), at(SIDE, SIDE)];
+        let corners = corners.map(|vertex| CornerTag { vertex, sharpness: INFINITELY_SHARP });
+        let crease =
+            |j| CreaseTag { vertices: [at(SIDE / 2, j), at(SIDE / 2, j + 1)], sharpness: INFINITELY_SHARP };
+        let tags = Tags { creases: (0..SIDE).map(crease).collect(), corners: corners.to_vec() };
+        mesh.with_tags(tags).unwrap()
+    }
+
+    /// The zigzag is far from its chords, but not from the square that is on both sides of it; where one of them is bent it counts.
+    #[test]
+    fn what_divides_a_plane_is_no_rim() {
+        for bend in [0.0, 1e-3] {
+            let mesh = divided_square(bend);
+            let options = ExactOptions::default().tolerance(0.3);
+            with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
+                let flat = &engine.control.flat;
+                assert_eq!(flat.regions.len(), if bend == 0.0 { 2 } else { 1 });
+                assert!(flat.by_rim.iter().all(|&by_rim| by_rim));
+                let mut plan = engine.plan(Goal::Within(0.3), usize::MAX)?.unwrap();
+                let emission = engine.emit_all(&mut plan)?;
+                let sources = engine.sources(&plan, &emission);
+                let faces: Vec<u32> = (0..mesh.face_count() as u32).collect();
+                let nothing = Goal::Within(f64::INFINITY);
+                let found = measure(&sources, engine.watch, (&nothing, 1e-12), (&faces, None, None))?;
+                let topology = mesh.topology();
+                let is_beside = |face: &u32| {
+                    let corners = topology.triangles()[*face as usize].map(VertexId);
+                    corners.iter().filter(|corner| corner.0 % (SIDE + 1) == SIDE / 2).count() == 2
+                };
+                let worst = |face: u32| found[face as usize].worst.0;
+                let rims =
+                    faces.iter().copied().filter(|&face| flat.region(face).is_some()).filter(is_beside);
+                let (mut counted, mut planned) = (0.0f64, 0.0f64);
+                for face in rims {
+                    (counted, planned) = (counted.max(worst(face)), planned.max(plan.bound(face)));
+                }
+                assert!(planned > 0.02, "{planned}");
+                match bend == 0.0 {
+                    true => assert!(counted < 1e-9, "{counted}"),
+                    false => assert!(counted > 0.02, "{counted}"),
+                }
+                Ok(())
+            })
+            .unwrap();
+        }
+    }
+}
