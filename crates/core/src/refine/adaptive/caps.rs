@@ -102,8 +102,9 @@ fn needs_more(
     observer: &mut Observer<'_>,
 ) -> Result<bool, RefineError> {
     with_engine(mesh, scheme, (options, demands), observer, |engine| {
-        let goal = Goal::Within(engine.floor(options.tolerance));
-        Ok(engine.control.flat.merged_faces() == 0 && engine.plan(goal, count)?.is_none())
+        let floor = engine.floor(options.tolerance);
+        let is_told = floor > 0.0 && engine.control.flat.merged_faces() == 0;
+        Ok(is_told && engine.plan(Goal::Within(floor), count)?.is_none())
     })
 }
 
