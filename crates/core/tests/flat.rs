@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use limitmesh::Mesh;
 use limitmesh::index::FaceId;
 use limitmesh::measure::{SamplingOptions, hausdorff};
-use limitmesh::mesh::{CornerTag, INFINITELY_SHARP, Tags};
+use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate};
 use limitmesh::scheme::Loop;
@@ -373,4 +373,49 @@ fn budgets_of_flat_faces_are_not_guessed_from_rounding() {
         before = result.error.upper;
     }
     assert!(rounds < 200, "{rounds}");
+}
+
+/// A plate below a thin roof of the same plane: the curve that they share bulges over the roof's own rim, while the chords do not. Where what rims
+/// enclose is asked for, the one winds forwards there and the other backwards, but no triangle is where the plate's surface reaches.
+#[test]
+fn what_two_rims_undo_counts() {
+    let plate = [[-1.0, -5.0], [0.0, -2.0], [1.0, 1.0], [2.0, 1.0], [3.0, -2.0], [4.0, -5.0]];
+    let left = [[-22.8, -5.0], [-23.1, -5.0], [-22.8, -4.925], [-18.3, -3.8], [-11.7, -2.15], [-5.1, -0.5]];
+    let right =
+        [[1.5, 1.15], [8.1, -0.5], [14.7, -2.15], [21.3, -3.8], [25.8, -4.925], [26.1, -5.0], [25.8, -5.0]];
+    let positions = plate.iter().chain(&left).chain(&right).map(|&[x, y]| [x, y, 0.0]).collect();
+    let triangles = [
+        [0, 5, 4],
+        [1, 0, 4],
+        [1, 4, 3],
+        [3, 2, 1],
+        [18, 17, 16],
+        [8, 7, 6],
+        [6, 0, 1],
+        [4, 5, 18],
+        [6, 1, 2],
+        [3, 4, 18],
+        [9, 8, 6],
+        [18, 16, 15],
+        [18, 15, 14],
+        [10, 9, 6],
+        [10, 6, 2],
+        [3, 18, 14],
+        [3, 14, 13],
+        [3, 13, 12],
+        [2, 3, 12],
+        [2, 12, 11],
+        [2, 11, 10],
+    ];
+    let mesh = Mesh::from_triangles(positions, triangles.to_vec()).unwrap();
+    let crease = |first| CreaseTag { vertices: [first, first + 1], sharpness: INFINITELY_SHARP };
+    let mesh = mesh.with_tags(Tags { creases: (0..5).map(crease).collect(), corners: Vec::new() }).unwrap();
+    let reference = limit_reference(&mesh, &Loop, 6).unwrap();
+    for options in [within(0.8), within(0.4), within(0.2), ExactOptions::default().triangles(22)] {
+        let found = exact(&mesh, &Loop, &options.unfold(true)).unwrap();
+        let sampled =
+            hausdorff(found.mesh.as_triangles(), reference.as_triangles(), &SamplingOptions::default());
+        let sampled = sampled.unwrap().symmetric();
+        assert!(found.error.upper >= 0.99 * sampled, "{:?}, {sampled}", found.error);
+    }
 }

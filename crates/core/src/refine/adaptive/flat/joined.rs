@@ -3,13 +3,16 @@
 //! Where both are what their rims enclose, and so are the triangles that stand for them, what counts is what encloses them
 //! together: a point of the surface and not of the triangles, or the other way round, is one round which their rims, taken together, wind
 //! but not the chords of these, or the other way round. What two regions share runs the one way for the one and the other way for the
-//! other, so it winds round nothing.
+//! other, so it winds round nothing. That takes regions round whose points rims wind forwards alone, or one could undo what the other does: those
+//! that are proven not to fold, also where what rims enclose is asked for.
 
-use super::{FlatRegions, HEIGHT_ROUNDING, height_over};
+use super::unfolded::is_unfolded;
+use super::{FlatRegions, HEIGHT_ROUNDING, MOST_UNFOLDED, Plane, height_over};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
 use crate::refine::adaptive::quadtree::Edges;
 use crate::vector::DVec3;
+use std::collections::HashSet;
 
 impl FlatRegions {
     /// By region that is judged by its rim, the first of those that lie in one plane, within `most`, and hang together; others are their own.
@@ -22,6 +25,21 @@ impl FlatRegions {
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
         let count = self.regions.len();
+        // Elsewhere what is judged by its rim is proven already.
+        let mut left = MOST_UNFOLDED;
+        let mut is_unfolded = |faces: &[u32], plane: &Plane| {
+            if !self.unfolds {
+                return Ok(true);
+            }
+            left = left.saturating_sub(faces.len());
+            for &face in faces {
+                watch.poll()?;
+                if left == 0 || !is_unfolded(control, face, plane, most) {
+                    return Ok(false);
+                }
+            }
+            Ok(true)
+        };
         let mut joined: Vec<usize> = (0..count).collect();
         let mut is_done = vec![false; count];
         for first in 0..count {
@@ -30,13 +48,14 @@ impl FlatRegions {
             }
             is_done[first] = true;
             let (mut waiting, plane) = (vec![first], self.regions[first].1);
+            let (mut is_first_unfolded, mut is_failed) = (None, HashSet::new());
             while let Some(region) = waiting.pop() {
                 for &face in &self.regions[region].0 {
                     watch.poll()?;
                     for h in 3 * face..3 * face + 3 {
                         let other = edges.twin(h).and_then(|twin| self.region(twin / 3));
                         let Some(other) = other.map(|region| region as usize) else { continue };
-                        if is_done[other] || !self.by_rim[other] {
+                        if is_done[other] || is_failed.contains(&other) || !self.by_rim[other] {
                             continue;
                         }
                         let height =
@@ -44,6 +63,15 @@ impl FlatRegions {
                         let mut heights = self.regions[other].0.iter().map(height);
                         let greatest = heights.try_fold(0.0, |most: f64, height| Some(most.max(height?)));
                         let Some(off) = greatest else { continue };
+                        if is_first_unfolded.is_none() {
+                            is_first_unfolded = Some(is_unfolded(&self.regions[first].0, &plane)?);
+                        }
+                        if is_first_unfolded == Some(false) || !is_unfolded(&self.regions[other].0, &plane)? {
+                            // Neither is it told apart by another edge.
+                            is_failed.insert(other);
+                            continue;
+                        }
+                        self.beyond_rims = self.beyond_rims.max(most);
                         self.off_planes = self.off_planes.max(off + HEIGHT_ROUNDING * size);
                         (is_done[other], joined[other]) = (true, first);
                         waiting.push(other);
