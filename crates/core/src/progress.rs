@@ -152,6 +152,19 @@ impl<'a> Watch<'a> {
             ControlFlow::Break(()) => Err(Cancelled),
         }
     }
+
+    /// An observer for functions that take one: what these tell is not passed on, whether to go on is.
+    pub(crate) fn observer(&mut self) -> impl FnMut(&Progress) -> ControlFlow<()> + '_ {
+        |_| flow(self.poll())
+    }
+}
+
+/// What an observer says to go on, or not.
+fn flow(polled: Result<(), Cancelled>) -> ControlFlow<()> {
+    match polled {
+        Ok(()) => ControlFlow::Continue(()),
+        Err(Cancelled) => ControlFlow::Break(()),
+    }
 }
 
 /// A watch of functions that know each other by `&` alone. It stays on the calling thread: other threads cannot hold it.
@@ -196,12 +209,9 @@ impl<'a> SharedWatch<'a> {
         self.watch.borrow_mut().poll()
     }
 
-    /// An observer for functions that take one: what these tell is not passed on, whether to go on is.
+    /// [`Watch::observer`].
     pub(crate) fn observer(&self) -> impl FnMut(&Progress) -> ControlFlow<()> + '_ {
-        |_| match self.poll() {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(Cancelled) => ControlFlow::Break(()),
-        }
+        |_| flow(self.poll())
     }
 
     /// Goes through items one after the other, polling now and then.

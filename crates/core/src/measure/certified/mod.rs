@@ -193,15 +193,15 @@ pub fn certified_hausdorff_between_observed(
     between([surface, reference], None, options, observer)
 }
 
-/// Bounds a symmetric distance that is known to be at least so much: little time is spent on what is below. Points are given where
-/// more was found than that.
+/// Bounds a symmetric distance that is known to be at least so much, to within `gap`: little time is spent on what is below. Points are
+/// given where more was found than that.
 pub(crate) fn certified_known(
     trees: [&Bvh<'_>; 2],
     known: f64,
-    options: &CertifiedOptions,
+    gap: f64,
     observer: &mut Observer<'_>,
 ) -> Result<Bounds, MeasureError> {
-    let measured = between(trees, Some(known.max(0.0)), options, observer)?;
+    let measured = between(trees, Some(known.max(0.0)), &where_known(trees, gap), observer)?;
     let CertifiedHausdorff { forward, backward, .. } = measured;
     let greater = if backward.lower > forward.lower { backward } else { forward };
     Ok(Bounds { upper: measured.upper(), converged: measured.converged(), ..greater })
@@ -209,15 +209,21 @@ pub(crate) fn certified_known(
 
 /// Bounds the greatest distance from one surface to another in the same way.
 pub(crate) fn certified_from_known(
-    [from, to]: [&Bvh<'_>; 2],
+    trees: [&Bvh<'_>; 2],
     known: f64,
-    options: &CertifiedOptions,
+    gap: f64,
     observer: &mut Observer<'_>,
 ) -> Result<Bounds, MeasureError> {
     let watch = &mut Watch::new(observer, Stage::Bounding);
-    let gap = options.gap.unwrap_or(DEFAULT_GAP * to.diagonal());
-    let target = target(from, to, "reference", watch)?;
-    Ok(Search::run(from, &target, (gap, Some(known.max(0.0))), options, watch)?.0)
+    Ok(one_way(trees, "reference", (gap, Some(known.max(0.0))), &where_known(trees, gap), watch)?.0)
+}
+
+/// Work of a search with something known, for each triangle of both surfaces: it ends by itself after some five.
+const KNOWN_WORK: u64 = 100;
+
+fn where_known(trees: [&Bvh<'_>; 2], gap: f64) -> CertifiedOptions {
+    let count: usize = trees.iter().map(|tree| tree.surface().triangles.len()).sum();
+    CertifiedOptions { gap: Some(gap), relative_gap: 0.0, max_work: KNOWN_WORK * count as u64 }
 }
 
 /// Both directions; what is known of the greater one counts for each.
@@ -230,13 +236,21 @@ fn between(
     let reference_diagonal = reference.diagonal();
     let gap = options.gap.unwrap_or(DEFAULT_GAP * reference_diagonal);
     let watch = &mut Watch::new(observer, Stage::Bounding);
-    let to_reference = target(surface, reference, "reference", watch)?;
-    let (forward, forward_work) = Search::run(surface, &to_reference, (gap, known), options, watch)?;
-    drop(to_reference);
+    let (forward, forward_work) = one_way([surface, reference], "reference", (gap, known), options, watch)?;
     let known = known.map(|known| known.max(forward.lower));
-    let to_surface = target(reference, surface, "measured", watch)?;
-    let (backward, backward_work) = Search::run(reference, &to_surface, (gap, known), options, watch)?;
+    let (backward, backward_work) = one_way([reference, surface], "measured", (gap, known), options, watch)?;
     Ok(CertifiedHausdorff { forward, backward, reference_diagonal, work: forward_work + backward_work })
+}
+
+/// One direction, to the surface that is called `which` in errors, and the work that it took.
+fn one_way(
+    [from, to]: [&Bvh<'_>; 2],
+    which: &'static str,
+    (gap, known): (f64, Option<f64>),
+    options: &CertifiedOptions,
+    watch: &mut Watch<'_>,
+) -> Result<(Bounds, u64), MeasureError> {
+    Ok(Search::run(from, &target(from, to, which, watch)?, (gap, known), options, watch)?)
 }
 
 /// Share of the diagonal that a gap is by default.

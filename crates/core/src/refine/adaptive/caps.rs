@@ -40,8 +40,9 @@ pub(super) fn once(
     if !may_do_with_fewer(mesh, scheme, (&plain_options, demands), count, observer)? {
         return Ok(found);
     }
-    let is_met = found.stop == ExactStop::Met;
-    if is_met && needs_more(mesh, scheme, (&plain_options, demands), count, observer)? {
+    // Of many triangles only those of meshes that are merged afterwards come so far.
+    let is_told = found.stop == ExactStop::Met && is_soon_told(mesh, &plain_options, count);
+    if is_told && needs_more(mesh, scheme, (&plain_options, demands), count, observer)? {
         return Ok(found);
     }
     let plain = within_caps(mesh, scheme, (&plain_options, demands), observer)?;
@@ -84,12 +85,17 @@ pub(super) fn may_do_with_fewer(
     count: usize,
     observer: &mut Observer<'_>,
 ) -> Result<bool, RefineError> {
-    if plain.0.angle.is_some() || count < FEW_BALANCED.max(2 * mesh.face_count()) {
+    if is_soon_told(mesh, plain.0, count) {
         return Ok(true);
     }
     with_engine(mesh, scheme, plain, observer, |engine| {
         Ok(MERGED_SHARE * engine.control.flat.merged_faces() >= mesh.face_count())
     })
+}
+
+/// Whether it takes little to tell, or normals decide.
+fn is_soon_told(mesh: &Mesh, plain: &ExactOptions, count: usize) -> bool {
+    plain.angle.is_some() || count < FEW_BALANCED.max(2 * mesh.face_count())
 }
 
 /// Whether it certainly takes more triangles than this to meet a distance, or an angle: nothing is emitted to tell, and where triangles are

@@ -148,7 +148,7 @@ fn proven(
     let greatest = |of: fn(&Measured) -> f64| measured.iter().map(of).fold(0.0, f64::max);
     let value = greatest(|face| face.value);
     let is_met = options.tolerance.is_some() && value <= floor;
-    let error = probe::probe(engine, plan, &emission, (Some(&measured), is_met))?;
+    let error = probe::probe(engine, plan, &emission, (Some(&measured), is_met, options.tightens))?;
     engine.check(&emission)?;
     let beyond = options.tolerance.map_or(0.0, |tolerance| error.upper / tolerance);
     let criteria = engine.control.criteria.as_ref();

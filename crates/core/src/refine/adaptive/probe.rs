@@ -82,12 +82,12 @@ struct Probed {
 }
 
 /// The certified interval; `measured` by control face where all triangles were looked at among their neighbours, `is_met` if a
-/// tolerance is: then nobody waits for a tighter bound.
+/// tolerance is: then nobody waits for a tighter bound. What is loose all the same is measured anew where that is asked for.
 pub(super) fn probe(
     engine: &Engine<'_>,
     plan: &Plan,
     emission: &Emission,
-    (measured, is_met): (Option<&[Measured]>, bool),
+    (measured, is_met, tightens): (Option<&[Measured]>, bool, bool),
 ) -> Result<ErrorBounds, RefineError> {
     let watch = engine.watch;
     let mut best =
@@ -166,7 +166,7 @@ pub(super) fn probe(
             }
         }
     }
-    if best.certified {
+    if best.certified && tightens {
         best = loose_anew(engine, (plan, emission, &mesh), &candidates, best)?;
     }
     if !best.certified {

@@ -53,7 +53,8 @@ impl Outcome {
         let stop = if stop == ExactStop::Met && plan.has_failed { ExactStop::LevelCap } else { stop };
         engine.check(&emission)?;
         let is_met = stop == ExactStop::Met && options.tolerance.is_some();
-        let mut error = probe::probe(engine, &plan, &emission, (measured.as_deref(), is_met))?;
+        let mut error =
+            probe::probe(engine, &plan, &emission, (measured.as_deref(), is_met, options.tightens))?;
         // Where nothing was asked of distances, a bound far from the truth says nothing.
         if options.tolerance.is_none()
             && options.triangles.is_none()

@@ -5,7 +5,7 @@
 //! mesh can be much nearer to the whole surface than that says. Then it is measured against a mesh that is nearer still, within e of
 //! the surface: a distance to that mesh and one to the surface differ by e at most (the triangle inequality, in either direction).
 
-use crate::measure::{Bvh, CertifiedOptions, certified_known};
+use crate::measure::{Bvh, certified_known};
 use crate::mesh::{Mesh, Triangles};
 use crate::progress::Observer;
 use crate::refine::RefineError;
@@ -41,9 +41,6 @@ const MET_FOR_EACH: usize = 5;
 /// Meshes that are [`FINER`] times nearer have so many times the triangles at least: the square root of that where rims alone are curved.
 const GROWTH: usize = 2;
 
-/// Work of the search for each triangle of both meshes, where it ends by itself after some five.
-const WORK: u64 = 100;
-
 /// Whether there may be tighter bounds for triangles that stand for the limit surface of `control`.
 pub(super) fn is_loose(error: &ErrorBounds, control: &Mesh) -> bool {
     let known = Known::new(*error, control);
@@ -76,8 +73,8 @@ pub(super) fn tighter(
     let is_bounded = error.upper.is_finite();
     let nearer = |near: f64, observer: &mut Observer<'_>| -> Result<Option<Exact>, RefineError> {
         let goals = ExactOptions::default().unfold(unfolded > 0).origins(false).tolerance(near);
-        // Of use are few triangles to be made, not few to be left.
-        let goals = ExactOptions { strips: false, ..goals };
+        // Of use are few triangles to be made, not few to be left, and bounds that are met, not tight ones.
+        let goals = ExactOptions { strips: false, tightens: false, ..goals };
         let found = within(control, scheme, (&goals, most), observer)?;
         Ok(found.filter(|found| found.unfolded == unfolded && found.error.upper.is_finite()))
     };
@@ -138,10 +135,7 @@ impl Known {
         let lower = self.bounds.lower;
         // What is found is at most that much above what was, or what turns out to be the distance.
         let gap = (ErrorBounds::TIGHT * self.distance() - lower - 2.0 * off).max(2.0 * off);
-        let count: usize = trees.iter().map(|tree| tree.surface().triangles.len()).sum();
-        let search =
-            CertifiedOptions::default().gap(Some(gap)).relative_gap(0.0).max_work(WORK * count as u64);
-        let found = certified_known(trees, lower - off, &search, observer)?.widened(off);
+        let found = certified_known(trees, lower - off, gap, observer)?.widened(off);
         self.bounds.upper = self.bounds.upper.min(found.upper);
         if found.lower > lower.max(PLACED * off) {
             (self.bounds.lower, self.bounds.at) = (found.lower, found.at);

@@ -5,7 +5,7 @@
 //! (`grid.rs`), positions and normals from the exact surface over each face (`pieces.rs`), and each face fills
 //! slots of its own, so that the result does not depend on threads.
 
-use core::ops::{ControlFlow, Range};
+use core::ops::Range;
 
 use limitmesh_pages::defaults;
 
@@ -17,7 +17,7 @@ use crate::mesh::{CreaseTag, Junctions, Mesh, Sharpness, Tags, Topology};
 use crate::parallel;
 use crate::patch::Rules;
 use crate::patch::submesh::submesh;
-use crate::progress::{Cancelled, Progress, Watch};
+use crate::progress::{Cancelled, Watch};
 use crate::refine::RefineError;
 use crate::refine::tags::less_sharp;
 use crate::vector::{unit_or_zero, vector};
@@ -276,11 +276,7 @@ impl<'a> Work<'a> {
         let seeds: Vec<HalfEdgeId> = flat.iter().map(|&face| HalfEdgeId::of(FaceId(face), 0)).collect();
         let around = submesh(self.mesh, self.sharpness, &seeds, 1);
         let options = super::UniformOptions::default().levels(self.grid.levels);
-        let mut observer = |_: &Progress| match watch.poll() {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(Cancelled) => ControlFlow::Break(()),
-        };
-        let around = super::uniform_observed(&around, rules.scheme(), &options, &mut observer)?.mesh;
+        let around = super::uniform_observed(&around, rules.scheme(), &options, &mut watch.observer())?.mesh;
         let averages = rules.table().sided_normals_polled(&around, &mut |_| watch.poll())??;
         let mut numbers = vec![0u32; self.grid.places.len()];
         let half_edges = self.grid.half_edge_count();

@@ -19,68 +19,101 @@ impl FlatRegions {
     /// How far that takes them off the planes is counted. `normals` are those of the control faces, `size` the greatest coordinate.
     pub(super) fn join(
         &mut self,
-        (control, edges): (&Control<'_>, &Edges<'_>),
+        mesh: (&Control<'_>, &Edges<'_>),
         normals: &[DVec3],
         (most, size): (f64, f64),
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
-        let count = self.regions.len();
-        // Elsewhere what is judged by its rim is proven already.
+        let count = self.regions.len() as u32;
+        let mut joined: Vec<u32> = (0..count).collect();
+        let mut is_done: Vec<bool> = self.by_rim.iter().map(|by_rim| !by_rim).collect();
+        // Faces that may still be proven not to fold.
         let mut left = MOST_UNFOLDED;
-        let mut is_unfolded = |faces: &[u32], plane: &Plane| {
-            if !self.unfolds {
-                return Ok(true);
-            }
-            left = left.saturating_sub(faces.len());
-            for &face in faces {
-                watch.poll()?;
-                if left == 0 || !is_unfolded(control, face, plane, most) {
-                    return Ok(false);
-                }
-            }
-            Ok(true)
-        };
-        let mut joined: Vec<usize> = (0..count).collect();
-        let mut is_done = vec![false; count];
         for first in 0..count {
-            if is_done[first] || !self.by_rim[first] {
+            if core::mem::replace(&mut is_done[first as usize], true) {
                 continue;
             }
-            is_done[first] = true;
-            let (mut waiting, plane) = (vec![first], self.regions[first].1);
-            let (mut is_first_unfolded, mut is_failed) = (None, HashSet::new());
+            let (mut waiting, plane) = (vec![first], self.regions[first as usize].1);
+            // Whether the first one folds is asked once there is another one in its plane.
+            let (mut is_proven, mut rejected) = (None, HashSet::new());
             while let Some(region) = waiting.pop() {
-                for &face in &self.regions[region].0 {
-                    watch.poll()?;
-                    for h in 3 * face..3 * face + 3 {
-                        let other = edges.twin(h).and_then(|twin| self.region(twin / 3));
-                        let Some(other) = other.map(|region| region as usize) else { continue };
-                        if is_done[other] || is_failed.contains(&other) || !self.by_rim[other] {
-                            continue;
-                        }
-                        let height =
-                            |&face: &u32| height_over((control, edges), (normals, face), &plane, most);
-                        let mut heights = self.regions[other].0.iter().map(height);
-                        let greatest = heights.try_fold(0.0, |most: f64, height| Some(most.max(height?)));
-                        let Some(off) = greatest else { continue };
-                        if is_first_unfolded.is_none() {
-                            is_first_unfolded = Some(is_unfolded(&self.regions[first].0, &plane)?);
-                        }
-                        if is_first_unfolded == Some(false) || !is_unfolded(&self.regions[other].0, &plane)? {
-                            // Neither is it told apart by another edge.
-                            is_failed.insert(other);
-                            continue;
-                        }
-                        self.beyond_rims = self.beyond_rims.max(most);
-                        self.off_planes = self.off_planes.max(off + HEIGHT_ROUNDING * size);
-                        (is_done[other], joined[other]) = (true, first);
-                        waiting.push(other);
+                for other in self.beyond(mesh.1, region, watch)? {
+                    if is_done[other as usize] || rejected.contains(&other) {
+                        continue;
                     }
+                    let off = self.height_over(mesh, normals, (other, &plane), most);
+                    let mut is_sound =
+                        |region: u32| self.is_sound(mesh.0, (region, &plane), most, &mut left, watch);
+                    let may_join = off.is_some() && {
+                        let is_first_sound = match is_proven {
+                            Some(is_proven) => is_proven,
+                            None => *is_proven.insert(is_sound(first)?),
+                        };
+                        is_first_sound && is_sound(other)?
+                    };
+                    let Some(off) = off.filter(|_| may_join) else {
+                        rejected.insert(other);
+                        continue;
+                    };
+                    self.beyond_rims = self.beyond_rims.max(most);
+                    self.off_planes = self.off_planes.max(off + HEIGHT_ROUNDING * size);
+                    (is_done[other as usize], joined[other as usize]) = (true, first);
+                    waiting.push(other);
                 }
             }
         }
-        self.joined = joined.into_iter().map(|region| region as u32).collect();
+        self.joined = joined;
         Ok(())
+    }
+
+    /// The regions beyond the edges of one, each as often as there are such edges.
+    fn beyond(&self, edges: &Edges<'_>, region: u32, watch: &SharedWatch<'_>) -> Result<Vec<u32>, Cancelled> {
+        let mut beyond = Vec::new();
+        watch.each(&self.regions[region as usize].0, |&face| {
+            let twins = (3 * face..3 * face + 3).filter_map(|h| edges.twin(h));
+            let others = twins.filter_map(|twin| self.region(twin / 3)).filter(|&other| other != region);
+            beyond.extend(others);
+        })?;
+        Ok(beyond)
+    }
+
+    /// How far the surface over a region is off a plane at most, if that is no more than `most` and it looks the same way.
+    fn height_over(
+        &self,
+        mesh: (&Control<'_>, &Edges<'_>),
+        normals: &[DVec3],
+        (region, plane): (u32, &Plane),
+        most: f64,
+    ) -> Option<f64> {
+        let mut heights = self.regions[region as usize]
+            .0
+            .iter()
+            .map(|&face| height_over(mesh, (normals, face), plane, most));
+        heights.try_fold(0.0, |greatest: f64, height| Some(greatest.max(height?)))
+    }
+
+    /// Whether a region is proven not to fold. Where rims are not taken for what they enclose, those that are judged by them are.
+    fn is_sound(
+        &self,
+        control: &Control<'_>,
+        (region, plane): (u32, &Plane),
+        most: f64,
+        left: &mut usize,
+        watch: &SharedWatch<'_>,
+    ) -> Result<bool, Cancelled> {
+        if !self.unfolds {
+            return Ok(true);
+        }
+        let faces = &self.regions[region as usize].0;
+        let Some(rest) = left.checked_sub(faces.len()) else { return Ok(false) };
+        *left = rest;
+        for &face in faces {
+            watch.poll()?;
+            if !is_unfolded(control, face, plane, most) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// Which edges of a face of a region that is judged by its rim count, given those that are sharp or boundaries: all that have no

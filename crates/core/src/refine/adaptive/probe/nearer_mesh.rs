@@ -19,7 +19,7 @@ use super::super::measure::measure;
 use super::super::{Engine, Plan};
 use super::nearest_triangle::Nearest;
 use crate::geometry::nearer;
-use crate::measure::{Bounds, Bvh, CertifiedOptions, MeasureError, certified_from_known};
+use crate::measure::{Bvh, MeasureError, certified_from_known};
 use crate::mesh::{NONE, Triangles};
 use crate::progress::{Cancelled, Observer, SharedWatch};
 use crate::refine::RefineError;
@@ -45,9 +45,6 @@ const MOST: usize = 2_000;
 const NEARER_IN_ANY_CASE: usize = 10_000;
 const NEARER_FOR_EACH: usize = 100;
 
-/// Work of the search for each triangle of both meshes, where it ends by itself after some five.
-const WORK: u64 = 100;
-
 /// What these control faces come to, and a lower bound that is no less than there was; `None` where that would take too long, or
 /// where more counts than the distances of triangles. `known` bounds the distance of the whole mesh, `lower` is what counts as found.
 pub(super) fn anew(
@@ -59,9 +56,8 @@ pub(super) fn anew(
     let (control, watch) = (engine.control, engine.watch);
     let count: usize = faces.iter().map(|&face| emission.triangles_of(face).len()).sum();
     let most = (IN_ANY_CASE + emission.triangles.len() / FOR_SO_MANY).min(MOST);
-    if count > most || control.criteria.is_some() {
-        return Ok(None);
-    }
+    let first = faces.first().filter(|_| count <= most && control.criteria.is_none());
+    let Some(&first) = first else { return Ok(None) };
     // Of what gives way to triangulations of rims nothing but these is known. All around that is sharp, so nobody counts on it.
     let is_its_rim = |face: &u32| control.flat.is_its_rim(*face);
     if faces.iter().any(is_its_rim) {
@@ -71,18 +67,18 @@ pub(super) fn anew(
     (0..).zip(&mut is_around).for_each(|(face, is_around)| *is_around &= !is_its_rim(&face));
     let is_wanted = |face: &u32| is_around[*face as usize];
     let wanted: Vec<u32> = (0..is_around.len() as u32).filter(is_wanted).collect();
-    let Some(close) = Close::of(engine, plan, (&wanted, &is_around), emission, SHARE * lower)? else {
+    let Some(close) = NearerMesh::of(engine, plan, (&wanted, &is_around), emission, SHARE * lower)? else {
         return Ok(None);
     };
     let off = close.off;
     if off > MOST_OFF * lower {
         return Ok(None);
     }
-    let search = CertifiedOptions::default().gap(Some(GAP * lower)).relative_gap(0.0);
     let mut observer = watch.observer();
     let mut distance = |from: Vec<usize>, of: &Emission, to: Vec<usize>, other: &Emission| {
-        let search = search.max_work(WORK * (from.len() + to.len()) as u64);
-        Part::of(of, &from).distance(&Part::of(other, &to), lower - off, &search, &mut observer)
+        let parts = [Part::of(of, &from), Part::of(other, &to)];
+        let trees = [parts[0].tree(&mut observer)?, parts[1].tree(&mut observer)?];
+        certified_from_known([&trees[0], &trees[1]], lower - off, GAP * lower, &mut observer)
     };
     let nearer = &close.emission;
     let is_known = |face: &u32| is_wanted(face) || is_its_rim(face);
@@ -98,7 +94,7 @@ pub(super) fn anew(
     let backward = distance(measured(nearer), nearer, over_wanted, emission)?;
     let mut found = ErrorBounds { upper: (forward.upper.max(backward.upper) + off).next_up(), ..*known };
     // The point is that far from the surface, at most.
-    let from_surface = mesh.distance(vector(backward.at), faces[0])? - off;
+    let from_surface = mesh.distance(vector(backward.at), first)? - off;
     if from_surface > found.lower {
         (found.lower, found.at) = (from_surface, backward.at);
     }
@@ -115,7 +111,7 @@ pub(super) fn anew(
 /// other one, of whose triangles it may be near to those beside its own, too.
 fn to_surface(
     point: [f64; 3],
-    (close, emission): (&Close, &Emission),
+    (close, emission): (&NearerMesh, &Emission),
     (is_around, upper): (&[bool], f64),
     watch: &SharedWatch<'_>,
 ) -> Result<f64, Cancelled> {
@@ -128,14 +124,14 @@ fn to_surface(
 }
 
 /// A mesh that is near to the surface over some control faces.
-struct Close {
+struct NearerMesh {
     /// What is there over these, and over those beside them.
     emission: Emission,
     /// As far as its triangles over these are off at most.
     off: f64,
 }
 
-impl Close {
+impl NearerMesh {
     /// Divides what is wanted until it is that near; `None` where that takes too many triangles.
     fn of(
         engine: &Engine<'_>,
@@ -237,17 +233,6 @@ impl Part {
 
     fn tree(&self, observer: &mut Observer<'_>) -> Result<Bvh<'_>, MeasureError> {
         Bvh::new_observed(Triangles { positions: &self.positions, triangles: &self.triangles }, observer)
-    }
-
-    /// The greatest distance of a point from another part, of which so much is known.
-    fn distance(
-        &self,
-        other: &Self,
-        known: f64,
-        search: &CertifiedOptions,
-        observer: &mut Observer<'_>,
-    ) -> Result<Bounds, MeasureError> {
-        certified_from_known([&self.tree(observer)?, &other.tree(observer)?], known, search, observer)
     }
 }
 
