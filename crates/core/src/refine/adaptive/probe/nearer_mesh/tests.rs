@@ -30,7 +30,7 @@ fn greatest(points: &[[f64; 3]], mesh: &Mesh) -> f64 {
 /// points of the finer one tell, which lie on the surface; that one is off by less.
 fn reference(mesh: &Mesh, most: f64) -> (Mesh, f64) {
     let options = UniformOptions::default().limit(true);
-    let at_level = |levels| uniform(mesh, &Loop, &options.clone().levels(levels)).unwrap().mesh;
+    let at_level = |levels| uniform(mesh, &Loop, &options.levels(levels)).unwrap().mesh;
     let mut coarse = at_level(4);
     for levels in 5.. {
         let fine = at_level(levels);
