@@ -4,6 +4,7 @@
 
 mod support;
 
+use std::collections::HashSet;
 use std::f64::consts::TAU;
 
 use limitmesh::Mesh;
@@ -13,7 +14,7 @@ use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate};
 use limitmesh::scheme::Loop;
-use support::{creased, cross, dot, peg};
+use support::{creased, cross, distance, dot, minus, peg};
 
 /// A slab with a hole through it, both round, and with vertices inside its flat sides where `has_inner`.
 fn washer(facets: u32, has_inner: bool) -> Mesh {
@@ -168,10 +169,8 @@ fn boundaries_are_rims_too() {
 }
 
 /// A plate with a round hole whose triangles are slivers, as programs for design write them: the rules turn some over where two
-/// fans meet. What is handed out covers what the rims enclose, once.
-#[test]
-fn plates_with_holes_do_not_fold() {
-    let facets = 24;
+/// fans meet. The hole's vertices are those from the seventh on.
+fn plate_of_slivers(facets: u32) -> Mesh {
     let on_circle = |radius: f64, turn: f64| {
         let (s, c) = (TAU * turn).sin_cos();
         [radius * c, radius * s, 0.0]
@@ -195,7 +194,15 @@ fn plates_with_holes_do_not_fold() {
     }
     let corners = (0..3).map(|vertex| CornerTag { vertex, sharpness: INFINITELY_SHARP }).collect();
     let plate = Mesh::from_triangles(positions, triangles).unwrap();
-    let plate = plate.with_tags(Tags { corners, ..Tags::default() }).unwrap();
+    plate.with_tags(Tags { corners, ..Tags::default() }).unwrap()
+}
+
+/// What is handed out covers what the rims enclose, once.
+#[test]
+fn plates_with_holes_do_not_fold() {
+    let facets = 24;
+    let plate = plate_of_slivers(facets);
+    let hole = |i: u32| 6 + i % facets;
     let [whole, folded] = [true, false].map(|flat| exact(&plate, &Loop, &within(1e-4).unfold(flat)).unwrap());
     assert!(folded.inverted_triangles() > 0 && folded.unfolded == 0);
     assert_eq!((whole.inverted_triangles(), whole.unfolded, whole.stop), (0, 1, ExactStop::Met));
@@ -229,6 +236,61 @@ fn plates_with_holes_do_not_fold() {
     assert!((area - (outside - inside)).abs() < TAU * 0.5 * 1e-4, "{area} {inside}");
     // What folds over has the rim divided as well.
     assert!(whole.mesh.topology().boundary_edge_count() < folded.mesh.topology().boundary_edge_count());
+}
+
+/// The ends of a mesh's boundary edges.
+fn rims(mesh: &Mesh) -> Vec<[[f64; 3]; 2]> {
+    let edges = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
+    let all: HashSet<[u32; 2]> = mesh.triangles().iter().flat_map(edges).collect();
+    let open = all.iter().filter(|&&[from, to]| !all.contains(&[to, from]));
+    open.map(|ends| ends.map(|vertex| mesh.positions()[vertex as usize])).collect()
+}
+
+/// How far a point is from the nearest of some segments.
+fn to_segments(point: [f64; 3], segments: &[[[f64; 3]; 2]]) -> f64 {
+    let distance = |&[from, to]: &[[f64; 3]; 2]| {
+        let along = minus(to, from);
+        let t = (dot(minus(point, from), along) / dot(along, along)).clamp(0.0, 1.0);
+        distance(point, [0, 1, 2].map(|i| from[i] + t * along[i]))
+    };
+    segments.iter().map(distance).fold(f64::INFINITY, f64::min)
+}
+
+/// A thin ring whose rims' chords cross while the curves do not, beside a plate that the rules fold over: the ring's rims are divided until it
+/// can be triangulated, and the plate is measured as what its rim encloses all the same.
+#[test]
+fn rims_whose_chords_cross_are_divided() {
+    let plate = plate_of_slivers(24);
+    let shift = plate.vertex_count() as u32;
+    let mut positions = plate.positions().to_vec();
+    for (radius, facets) in [(1.0, 6), (0.84, 12)] {
+        positions.extend((0..facets).map(|i| {
+            let (s, c) = (TAU * f64::from(i) / f64::from(facets)).sin_cos();
+            [5.0 + radius * c, radius * s, 0.0]
+        }));
+    }
+    let mut triangles = plate.triangles().to_vec();
+    let of_ring = |i: u32| {
+        let [o, p] = [i, (i + 1) % 6].map(|i| shift + i);
+        let [a, b, c] = [2 * i, 2 * i + 1, (2 * i + 2) % 12].map(|i| shift + 6 + i);
+        [[o, p, b], [o, b, a], [p, c, b]]
+    };
+    triangles.extend((0..6).flat_map(of_ring));
+    let mesh = Mesh::from_triangles(positions, triangles).unwrap().with_tags(plate.tags().clone()).unwrap();
+    let reference = limit_reference(&mesh, &Loop, 6).unwrap();
+    let curves = rims(&reference);
+    for (tolerance, budget) in [(0.3, None), (0.1, None), (0.1, Some(70)), (0.003, None)] {
+        let options = within(tolerance).unfold(true);
+        let options = budget.map_or(options.clone(), |most| options.triangles(most));
+        let found = exact(&mesh, &Loop, &options).unwrap();
+        assert!(found.inverted_triangles() == 0 && found.unfolded > 0, "{tolerance} {budget:?}");
+        assert!(found.error.upper <= tolerance);
+        let estimate = exact_estimate(&mesh, &Loop, &options).unwrap();
+        assert_eq!(estimate.triangles, found.mesh.face_count());
+        let chords = rims(&found.mesh);
+        let farthest = curves.iter().map(|&[point, _]| to_segments(point, &chords)).fold(0.0, f64::max);
+        assert!(found.error.lower <= farthest + 1e-9, "{:?} {farthest}", found.error);
+    }
 }
 
 /// Two flat sheets that share a rim: no edge comes to have four faces, and caps hold though a region keeps its triangles.

@@ -52,10 +52,8 @@ pub struct ExactOptions {
     pub flat_regions: bool,
     /// Where the scheme's rules fold the surface over in a flat region, as they do where slivers of a fan meet a hole, what the
     /// region's rim encloses is taken for the surface: what people mean, and what [`Exact::unfolded`](super::Exact::unfolded)
-    /// counts. Else it is the scheme's. Default: no.
+    /// counts. Where nothing can be triangulated from the rim, even if that is divided further, and else, it is the scheme's. Default: no.
     pub unfold: bool,
-    /// Whether flat regions that are unfolded are judged by their rims alone; not where these could not be triangulated.
-    pub(crate) by_rims: bool,
     /// Whether triangles side by side in one plane are put together; with [`Self::flat_regions`].
     pub(crate) strips: bool,
     /// Whether bounds that are far above what was found are measured anew.
@@ -99,7 +97,6 @@ impl Default for ExactOptions {
             origins: true,
             flat_regions: true,
             unfold: false,
-            by_rims: true,
             strips: true,
             tightens: true,
             attributes: Vec::new(),

@@ -1,6 +1,8 @@
 //! One refinement, within its caps and budgets, also where flat regions keep more triangles than plans count; of balanced vertices and those
 //! on the surface, where these may do with fewer triangles, the better.
 
+use std::borrow::Cow;
+
 use super::demands::Demands;
 use super::judge::Goal;
 use super::{Engine, with_engine};
@@ -65,15 +67,15 @@ pub(in crate::refine) fn within(
     (options, most): (&ExactOptions, usize),
     observer: &mut Observer<'_>,
 ) -> Result<Option<Exact>, RefineError> {
-    let (found, has_gaps) = with_engine(mesh, scheme, (options, &Demands::default()), observer, |engine| {
+    with_engine(mesh, scheme, (options, &Demands::default()), observer, |engine| {
         let Some(plan) = engine.plan(Goal::Within(engine.floor(options.tolerance)), most)? else {
-            return Ok((None, false));
+            return Ok(None);
         };
         let outcome = engine.emit(plan, most, false)?;
         let found = outcome.map(|outcome| outcome.finish(engine, ExactStop::Met, options)).transpose()?;
-        Ok((found, engine.control.flat.has_gaps()))
-    })?;
-    Ok(found.filter(|_| !has_gaps))
+        let has_gaps = !engine.control.flat.gaps(engine.control, engine.watch)?.are_none();
+        Ok(found.filter(|_| !has_gaps))
+    })
 }
 
 /// Whether vertices on the surface may do with fewer triangles than balanced ones: where flat regions are merged, which is done with these alone,
@@ -150,24 +152,41 @@ fn within_room(
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
     let (_, cap) = options.budget();
-    let (found, has_gaps) = with_engine(mesh, scheme, (options, demands), observer, |engine| {
+    without_gaps(mesh, scheme, ((options, demands), most), observer, |engine| {
         let engine = &Engine { guess, ..engine.clone() };
         let floor = engine.floor(options.tolerance);
         if !options.balance {
-            let found = engine.finest(floor, (most, cap), options)?;
-            return Ok((found, engine.control.flat.has_gaps()));
+            return engine.finest(floor, (most, cap), options);
         }
         if floor > 0.0
             && let Some(outcome) = engine.balanced(floor, most)?
         {
-            return Ok((outcome.finish(engine, ExactStop::Met, options)?, false));
+            return outcome.finish(engine, ExactStop::Met, options);
         }
         let plain = Engine { is_balanced: false, ..engine.clone() }.finest(floor, (most, cap), options)?;
-        Ok((engine.least_balanced(plain, floor, (most, cap), options)?, false))
-    })?;
-    if has_gaps {
-        let options = ExactOptions { by_rims: false, ..options.clone() };
-        return within_room(mesh, scheme, (&options, demands), (most, guess), observer);
+        engine.least_balanced(plain, floor, (most, cap), options)
+    })
+}
+
+/// What an engine finds where all flat regions that are judged by their rims could be triangulated from these: where they could not it is run again,
+/// with rims that are divided further, or with regions that are judged by their triangles. There may be so many triangles.
+pub(super) fn without_gaps<T>(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    ((options, demands), most): ((&ExactOptions, &Demands), usize),
+    observer: &mut Observer<'_>,
+    run: impl Fn(&Engine<'_>) -> Result<T, RefineError>,
+) -> Result<T, RefineError> {
+    let (mut demands, mut attempt) = (Cow::Borrowed(demands), 0);
+    loop {
+        let (found, gaps) = with_engine(mesh, scheme, (options, &demands), observer, |engine| {
+            let found = run(engine)?;
+            Ok((found, engine.control.flat.gaps(engine.control, engine.watch)?))
+        })?;
+        if gaps.are_none() {
+            return Ok(found);
+        }
+        gaps.close(demands.to_mut(), (attempt, most.saturating_sub(mesh.face_count())));
+        attempt += 1;
     }
-    Ok(found)
 }

@@ -3,9 +3,9 @@
 //!
 //! Takes the goals; gives, before anything is refined, the nodes over which the linear function is too far off, which depends on
 //! nothing but their places. Triangles that close gaps are looked at once they are emitted: a leaf with one that fails is divided,
-//! too.
+//! too. So are those along rims of flat regions that could not be triangulated (`flat::gaps`).
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::leaves::{Covering, Descent, Leaves};
@@ -31,10 +31,12 @@ const HALVINGS: usize = 2;
 /// The chord of angles at which neighbours do not help: none that counts is as great.
 const ALONE: f64 = 4.0;
 
-/// Nodes that are divided.
+/// Nodes that are divided, and flat regions that are judged by their triangles though their rims would do.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Demands {
     divided: HashSet<Place>,
+    by_triangles: BTreeSet<u32>,
+    all_by_triangles: bool,
 }
 
 impl Demands {
@@ -54,6 +56,21 @@ impl Demands {
             above = parent;
         }
         is_new
+    }
+
+    /// Has a flat region judged by its triangles.
+    pub(super) fn judge_by_triangles(&mut self, region: u32) {
+        self.by_triangles.insert(region);
+    }
+
+    /// The same with all of them.
+    pub(super) fn judge_all_by_triangles(&mut self) {
+        self.all_by_triangles = true;
+    }
+
+    /// Whether a flat region is judged by its triangles in any case.
+    pub(super) fn judges_by_triangles(&self, region: u32) -> bool {
+        self.all_by_triangles || self.by_triangles.contains(&region)
     }
 
     pub(super) fn len(&self) -> usize {
@@ -148,7 +165,7 @@ impl<'a> Functions<'a> {
         watch.each(blocks.into_iter().flatten(), |place| {
             divided.insert(place);
         })?;
-        Ok(Some(Demands { divided }))
+        Ok(Some(Demands { divided, ..Demands::default() }))
     }
 
     /// What the triangles hold of the functions.

@@ -21,6 +21,7 @@
 //! save, and for regions that turn out to have no triangulation and keep their triangles.
 
 mod flattened;
+mod gaps;
 mod joined;
 mod merge;
 mod planar;
@@ -41,7 +42,8 @@ use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_options::ExactOptions;
 use crate::vector::{DVec3, vector};
-use core::sync::atomic::{AtomicBool, Ordering};
+use std::collections::BTreeMap;
+use std::sync::{Mutex, OnceLock};
 
 /// How far control points may be off a plane, as a part of the greatest coordinate: files in single precision round to half of this.
 /// How far they are is measured, and counted with every distance.
@@ -52,6 +54,10 @@ const OF_TOLERANCE: f64 = 1e-3;
 
 /// Heights over a plane are known to this part of the greatest coordinate.
 const HEIGHT_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Pieces of the surface may be turned over unnoticed that are smaller than this part of the greatest coordinate, or than what the regions may be off
+/// their planes: what that does to distances is counted.
+const NEGLIGIBLE: f64 = 1e-10;
 
 /// Faces whose unit normals differ by more than this are not looked at any closer.
 const ALIKE: f64 = 1e-3;
@@ -66,6 +72,9 @@ const BLOCK: usize = 1024;
 /// The same where each takes some tenths of a millisecond, and how many may take that.
 const UNFOLDED: usize = 16;
 const MOST_UNFOLDED: usize = 4096;
+
+/// The same of one region between two calls of the observer.
+const FEW_UNFOLDED: usize = 256;
 
 /// A plane through a point.
 #[derive(Clone, Copy, Debug)]
@@ -95,12 +104,14 @@ pub(super) struct FlatRegions {
     unfolds: bool,
     /// By region, whether its triangles are judged by the rim alone.
     by_rim: Vec<bool>,
+    /// By region, whether the surface may fold over it; looked at where it matters.
+    may_fold: Vec<OnceLock<bool>>,
     /// By region, the first of those with which it is judged together.
     joined: Vec<u32>,
     /// How far beyond its rim the surface over such a region may reach for all that was proven.
     beyond_rims: f64,
-    /// Whether the rim of such a region enclosed nothing that could be triangulated.
-    has_gaps: AtomicBool,
+    /// Such regions of which nothing was found that could be triangulated, with the chords of their rims by control face.
+    gaps: Mutex<BTreeMap<u32, BTreeMap<u32, u32>>>,
     /// By control face, whether it is part of a region or there may be strips over it; empty where there are neither.
     is_merged: Vec<bool>,
     /// So many leaves of such a face count as one while faces are divided.
@@ -180,6 +191,7 @@ impl FlatRegions {
         let mut is_merged: Vec<bool> = of_face.iter().map(|&region| region != NONE).collect();
         straight.iter().for_each(|&face| is_merged[face as usize] = true);
         let unfolds = options.unfold;
+        let may_fold = regions.iter().map(|_| OnceLock::new()).collect();
         let mut found = Self {
             of_face,
             straight,
@@ -187,13 +199,17 @@ impl FlatRegions {
             off_planes,
             unfolds,
             by_rim: Vec::new(),
+            may_fold,
             joined: Vec::new(),
             beyond_rims: 0.0,
-            has_gaps: AtomicBool::new(false),
+            gaps: Mutex::default(),
             is_merged,
             weight,
         };
         found.by_rim = found.by_rim((control, edges), (options, most), watch)?;
+        if unfolds && found.by_rim.contains(&false) {
+            found.beyond_rims = most.min(NEGLIGIBLE * size);
+        }
         found.join((control, edges), &normals, (most, size), watch)?;
         Ok(found)
     }
@@ -207,14 +223,15 @@ impl FlatRegions {
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
         let mut by_rim = vec![false; self.regions.len()];
-        let is_asked = options.by_rims && options.angle.is_none() && options.pixels.is_none();
+        let is_asked = options.angle.is_none() && options.pixels.is_none();
         if !is_asked || !control.rules.is_certified() {
             return Ok(by_rim);
         }
-        watch.each(by_rim.iter_mut().zip(&self.regions), |(by_rim, (faces, _))| {
+        watch.each((0..).zip(by_rim.iter_mut()).zip(&self.regions), |((region, by_rim), (faces, _))| {
             let is_smooth =
                 |h: u32| self.is_rim((control, edges), h) && control.lasting.edge(HalfEdgeId(h)) <= 0.0;
-            *by_rim = !faces.iter().any(|&face| (3 * face..3 * face + 3).any(is_smooth));
+            *by_rim = !control.demands.judges_by_triangles(region)
+                && !faces.iter().any(|&face| (3 * face..3 * face + 3).any(is_smooth));
         })?;
         let is_by_rim = |face: u32| self.region(face).is_some_and(|region| by_rim[region as usize]);
         let faces: Vec<u32> = (0..self.of_face.len() as u32).filter(|&face| is_by_rim(face)).collect();
@@ -243,14 +260,21 @@ impl FlatRegions {
         self.region(face).is_some_and(|region| self.by_rim[region as usize])
     }
 
-    /// Whether there is such a region.
-    pub(super) fn has_rims_alone(&self) -> bool {
-        self.by_rim.contains(&true)
+    /// Whether nothing but its rim is certainly part of the surface over a face: its region is judged by that alone, or may fold and be told
+    /// to be unfolded once it is triangulated.
+    pub(super) fn is_within_rim(&self, control: &Control<'_>, face: u32) -> bool {
+        let Some(region) = self.region(face).filter(|_| self.unfolds || self.is_its_rim(face)) else {
+            return false;
+        };
+        let (faces, plane) = &self.regions[region as usize];
+        let folds = |&face: &u32| !is_unfolded(control, face, plane, self.beyond_rims);
+        let may_fold = || faces.len() > FEW_UNFOLDED || faces.iter().any(folds);
+        self.is_its_rim(face) || *self.may_fold[region as usize].get_or_init(may_fold)
     }
 
-    /// Whether some of these could not be triangulated from their rims, so that nothing is known of what stands for them.
-    pub(super) fn has_gaps(&self) -> bool {
-        self.has_gaps.load(Ordering::Relaxed)
+    /// Whether there is a region that is judged by its rim alone.
+    pub(super) fn has_rims_alone(&self) -> bool {
+        self.by_rim.contains(&true)
     }
 
     /// How far what is handed out may be from what was judged, at most: triangles of a region, and vertices of a straight line, are as

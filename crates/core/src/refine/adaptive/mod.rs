@@ -73,7 +73,7 @@ use crate::progress::{Observer, SharedWatch, Stage};
 use crate::scheme::Scheme;
 use backs::BackFaces;
 pub(super) use caps::within;
-use caps::{may_do_with_fewer, once};
+use caps::{may_do_with_fewer, once, without_gaps};
 use control::Control;
 use demands::{Demands, Functions, surfaces_of};
 use emit::{Emission, Last, Scope};
@@ -176,7 +176,8 @@ pub(super) fn count(
     let watched = (mesh.face_count(), options.max_levels as u32, usize::MAX);
     let demands = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
     let demands = demands.unwrap_or_default();
-    let (found, has_gaps) = with_engine(mesh, scheme, (options, &demands), observer, |engine| {
+    let most = options.budget().0;
+    let found = without_gaps(mesh, scheme, ((options, &demands), most), observer, |engine| {
         let limit = engine.floor(options.tolerance.map(|tolerance| times * tolerance));
         let limit = if engine.control.criteria.is_some() { times } else { limit };
         let plan = if engine.is_balanced {
@@ -184,24 +185,19 @@ pub(super) fn count(
         } else {
             engine.without_counting_strips().plan(Goal::Within(limit), usize::MAX)?
         };
-        let Some(mut plan) = plan else { return Ok((0, false)) };
-        let flat = &engine.control.flat;
-        if flat.are_none() {
-            return Ok((plan.triangles, false));
+        let Some(mut plan) = plan else { return Ok(0) };
+        if engine.control.flat.are_none() {
+            return Ok(plan.triangles);
         }
         // Which regions cannot be triangulated from their rims nobody knows before.
         let emission = engine.emit_all(&mut plan)?;
-        let found = engine.assemble(emission, plan.levels(engine.watch)?)?.mesh.face_count();
-        Ok((found, flat.has_gaps()))
+        Ok(engine.assemble(emission, plan.levels(engine.watch)?)?.mesh.face_count())
     })?;
     let plain = options.clone().balance(false);
-    match has_gaps {
-        true => count(mesh, scheme, &ExactOptions { by_rims: false, ..options.clone() }, times, observer),
-        false if options.balance && may_do_with_fewer(mesh, scheme, (&plain, &demands), found, observer)? => {
-            Ok(found.min(count(mesh, scheme, &plain, times, observer)?))
-        }
-        false => Ok(found),
+    if options.balance && may_do_with_fewer(mesh, scheme, (&plain, &demands), found, observer)? {
+        return Ok(found.min(count(mesh, scheme, &plain, times, observer)?));
     }
+    Ok(found)
 }
 
 fn with_engine<T>(

@@ -1,10 +1,10 @@
 //! What becomes of flat regions: their rims are triangulated anew, and what that gives is checked against what was emitted there. The module `replace`
 //! puts it in the place of that.
 
-use core::sync::atomic::Ordering;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::flattened::Flattened;
+use super::gaps::chords;
 use super::replace::{Assembled, Covering, Merged, edges};
 use super::strips::{Net, Region, Regions};
 use super::{FlatRegions, planar};
@@ -78,6 +78,7 @@ impl FlatRegions {
             })?;
             let fates: Vec<Fate> = fates.into_iter().flatten().collect();
             let stays: Vec<bool> = fates.iter().map(|fate| matches!(fate, Fate::Stays)).collect();
+            let fails: Vec<bool> = fates.iter().map(|fate| matches!(fate, Fate::Fails)).collect();
             let coverings = fates.into_iter().map(Fate::covering).collect();
             let coverings = without_shared_edges(coverings, net, regions, watch)?;
             // A region that keeps its triangles keeps what is on its rim.
@@ -95,9 +96,18 @@ impl FlatRegions {
                 }
                 continue;
             }
-            let is_gap =
-                |at: usize| self.is_by_rim(&regions.list[at]) && !stays[at] && coverings[at].is_none();
-            self.has_gaps.fetch_or((0..coverings.len()).any(is_gap), Ordering::Relaxed);
+            for (at, region) in regions.list.iter().enumerate() {
+                let Some(flat) = region.flat.filter(|_| self.is_by_rim(region) && coverings[at].is_none())
+                else {
+                    continue;
+                };
+                if fails[at] {
+                    self.note_gap(flat, chords(region, net, regions, watch)?);
+                } else if !stays[at] {
+                    // Finer rims have edges in common with others just the same.
+                    self.note_gap(flat, BTreeMap::new());
+                }
+            }
             return Ok(coverings);
         }
         Ok(Vec::new())

@@ -59,12 +59,12 @@ pub(super) fn anew(
     let first = faces.first().filter(|_| count <= most && control.criteria.is_none());
     let Some(&first) = first else { return Ok(None) };
     // Of what gives way to triangulations of rims nothing but these is known. All around that is sharp, so nobody counts on it.
-    let is_its_rim = |face: &u32| control.flat.is_its_rim(*face);
-    if faces.iter().any(is_its_rim) {
+    let is_within_rim = |face: &u32| control.flat.is_within_rim(control, *face);
+    if faces.iter().any(is_within_rim) {
         return Ok(None);
     }
     let mut is_around = around(engine, faces);
-    (0..).zip(&mut is_around).for_each(|(face, is_around)| *is_around &= !is_its_rim(&face));
+    (0..).zip(&mut is_around).for_each(|(face, is_around)| *is_around = *is_around && !is_within_rim(&face));
     let is_wanted = |face: &u32| is_around[*face as usize];
     let wanted: Vec<u32> = (0..is_around.len() as u32).filter(is_wanted).collect();
     let Some(close) = NearerMesh::of(engine, plan, (&wanted, &is_around), emission, SHARE * lower)? else {
@@ -81,13 +81,13 @@ pub(super) fn anew(
         certified_from_known([&trees[0], &trees[1]], lower - off, GAP * lower, &mut observer)
     };
     let nearer = &close.emission;
-    let is_known = |face: &u32| is_wanted(face) || is_its_rim(face);
+    let is_known = |face: &u32| is_wanted(face) || is_within_rim(face);
     let is_bounded =
         |triangle: &usize| beside(nearer, *triangle).all(|other| is_known(&nearer.parents[other]));
     let bounded = over(nearer, &wanted).filter(is_bounded).collect();
     let measured = |emission: &Emission| {
         let found = with_beside(emission, faces).into_iter();
-        found.filter(|&triangle| !is_its_rim(&emission.parents[triangle])).collect()
+        found.filter(|&triangle| !is_within_rim(&emission.parents[triangle])).collect()
     };
     let forward = distance(measured(emission), emission, bounded, nearer)?;
     let over_wanted = over(emission, &wanted).collect();

@@ -1,0 +1,113 @@
+//! Regions whose rims could not be triangulated: gaps among those that are judged by their rims alone.
+//!
+//! Mostly chords cross where the curves do not, as around a thin ring under a coarse tolerance. So the rim is divided once more, and again;
+//! if that is of no use, as where the curves cross themselves, the region is judged by its triangles, which then stay. All others
+//! are what they were.
+
+use std::collections::BTreeMap;
+use std::sync::PoisonError;
+
+use super::FlatRegions;
+use super::strips::{Net, Region, Regions};
+use crate::progress::{Cancelled, SharedWatch};
+use crate::refine::adaptive::control::Control;
+use crate::refine::adaptive::decide::child_open;
+use crate::refine::adaptive::demands::Demands;
+use crate::refine::adaptive::quadtree::Place;
+
+/// How often rims are divided once more.
+const MOST_DIVISIONS: usize = 3;
+
+/// After so many attempts all regions are judged by their triangles.
+const MOST_ATTEMPTS: usize = 6;
+
+/// Nodes at most that are divided for the sake of gaps.
+const MOST_ALONG: usize = 1 << 20;
+
+/// Regions with gaps, and the nodes along their rims down to those that are no deeper than the rim was divided evenly; none where dividing it
+/// is of no use.
+#[derive(Debug, Default)]
+pub(in super::super) struct Gaps(BTreeMap<u32, Vec<Place>>);
+
+impl Gaps {
+    pub(in super::super) fn are_none(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Asks for what may close the gaps; `attempt` counts from zero, and there may be so many triangles more. After finitely many
+    /// of them there are no gaps.
+    pub(in super::super) fn close(self, demands: &mut Demands, (attempt, room): (usize, usize)) {
+        if attempt >= MOST_ATTEMPTS {
+            return demands.judge_all_by_triangles();
+        }
+        let mut room = if attempt < MOST_DIVISIONS { room.min(MOST_ALONG) } else { 0 };
+        for (region, along) in self.0 {
+            match room.checked_sub(along.len()).filter(|_| !along.is_empty()) {
+                Some(rest) => {
+                    room = rest;
+                    for place in along {
+                        demands.add(place);
+                    }
+                }
+                None => demands.judge_by_triangles(region),
+            }
+        }
+    }
+}
+
+impl FlatRegions {
+    /// The regions that had gaps in what was put together so far.
+    pub(in super::super) fn gaps(
+        &self,
+        control: &Control<'_>,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Gaps, Cancelled> {
+        let mut gaps = Gaps::default();
+        for (&region, chords) in self.gaps.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+            let along = gaps.0.entry(region).or_default();
+            watch.each(chords, |(&face, &count)| {
+                let open = control.open(face);
+                let edges = open.iter().filter(|&&open| open).count().max(1);
+                let levels = (count as usize).div_ceil(edges).next_power_of_two().ilog2();
+                along_rim((Place::root(face), open), levels, along);
+            })?;
+        }
+        Ok(gaps)
+    }
+
+    /// Notes a region, with the number of its rim's chords by control face if it may be of use to divide these.
+    pub(super) fn note_gap(&self, region: u32, chords: BTreeMap<u32, u32>) {
+        let mut gaps = self.gaps.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = gaps.entry(region).or_default();
+        for (face, count) in chords {
+            let most = known.entry(face).or_default();
+            *most = count.max(*most);
+        }
+    }
+}
+
+/// The number of chords of a region's rim, by control face.
+pub(super) fn chords(
+    region: &Region,
+    net: &Net<'_>,
+    regions: &Regions,
+    watch: &SharedWatch<'_>,
+) -> Result<BTreeMap<u32, u32>, Cancelled> {
+    let mut chords = BTreeMap::new();
+    watch.each(&region.triangles, |&triangle| {
+        let on_rim = (3 * triangle..3 * triangle + 3).filter(|&h| regions.is_rim(net, h)).count();
+        *chords.entry(net.face(triangle)).or_default() += on_rim as u32;
+    })?;
+    Ok(chords)
+}
+
+/// The nodes along the open edges of one, down to so many levels below it.
+fn along_rim((place, open): (Place, [bool; 3]), levels: u32, found: &mut Vec<Place>) {
+    if open == [false; 3] {
+        return;
+    }
+    found.push(place);
+    if levels > 0 {
+        (0..4).for_each(|child| along_rim((place.child(child), child_open(open, child)), levels - 1, found));
+    }
+}
