@@ -293,6 +293,40 @@ fn rims_whose_chords_cross_are_divided() {
     }
 }
 
+/// A thin slab whose flat sides fold: balanced vertices would meet an angle there after a hundred times as many divisions as those on the surface,
+/// which are put together afterwards, and are not tried any further than these.
+#[test]
+fn balanced_angles_of_folding_sides_come_to_an_end() {
+    let plate = plate_of_slivers(24);
+    let count = plate.vertex_count() as u32;
+    let below = plate.positions().iter().map(|&[x, y, z]| [x, y, z - 1e-3]);
+    let positions = plate.positions().iter().copied().chain(below).collect();
+    let mut triangles = plate.triangles().to_vec();
+    triangles.extend(plate.triangles().iter().map(|&[a, b, c]| [a, c, b].map(|vertex| vertex + count)));
+    let topology = plate.topology();
+    for h in topology.half_edges().filter(|&h| topology.twin(h).is_none()) {
+        let [from, to] = topology.ends(h).map(|vertex| vertex.0);
+        triangles.extend([[to, from, from + count], [to, from + count, to + count]]);
+    }
+    let slab = creased(positions, triangles);
+    let options = within(0.02 * slab.diagonal()).angle(20f64.to_radians()).unfold(true);
+    let most_triangles = |options: &ExactOptions| {
+        let mut most = 0;
+        let mut watch = |progress: &limitmesh::progress::Progress| {
+            most = most.max(progress.triangles);
+            core::ops::ControlFlow::Continue(())
+        };
+        let found = limitmesh::refine::exact_observed(&slab, &Loop, options, &mut watch).unwrap();
+        (most, found)
+    };
+    let (plain_most, plain) = most_triangles(&options);
+    let options = options.balance(true);
+    let (most, found) = most_triangles(&options);
+    assert!(found.mesh.face_count() <= plain.mesh.face_count());
+    assert!(most <= plain_most, "{most} {plain_most}");
+    assert_eq!(exact_estimate(&slab, &Loop, &options).unwrap().triangles, found.mesh.face_count());
+}
+
 /// Two flat sheets that share a rim: no edge comes to have four faces, and caps hold though a region keeps its triangles.
 #[test]
 fn sheets_that_share_their_rims_stay_apart() {

@@ -33,30 +33,62 @@ pub(super) fn once(
     (options, demands): (&ExactOptions, &Demands),
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
-    let found = within_caps(mesh, scheme, (options, demands), observer)?;
+    let settings = (options, demands);
     if !options.balance {
-        return Ok(found);
+        return within_caps(mesh, scheme, settings, observer);
     }
     let plain_options = options.clone().balance(false);
+    let plain_settings = (&plain_options, demands);
+    if options.angle.is_some() && options.triangles.is_none() {
+        // Angles that vertices off the surface meet late, if at all, must not take more than those on it.
+        let plain = within_caps(mesh, scheme, plain_settings, observer)?;
+        if matches!(plain.stop, ExactStop::Met | ExactStop::Cones) {
+            let most = plain.mesh.face_count().min(options.budget().0);
+            let found = balanced_within(mesh, scheme, (settings, most), observer)?;
+            return Ok(match found {
+                Some(found) => better(plain, found),
+                None => plain,
+            });
+        }
+        return Ok(better(plain, within_caps(mesh, scheme, settings, observer)?));
+    }
+    let found = within_caps(mesh, scheme, settings, observer)?;
     let count = found.mesh.face_count();
-    if !may_do_with_fewer(mesh, scheme, (&plain_options, demands), count, observer)? {
+    if !may_do_with_fewer(mesh, scheme, plain_settings, count, observer)? {
         return Ok(found);
     }
     // Of many triangles only those of meshes that are merged afterwards come so far.
     let is_told = found.stop == ExactStop::Met && is_soon_told(mesh, &plain_options, count);
-    if is_told && needs_more(mesh, scheme, (&plain_options, demands), count, observer)? {
+    if is_told && needs_more(mesh, scheme, plain_settings, count, observer)? {
         return Ok(found);
     }
-    let plain = within_caps(mesh, scheme, (&plain_options, demands), observer)?;
-    let is_better = match (plain.stop, found.stop) {
+    Ok(better(within_caps(mesh, scheme, plain_settings, observer)?, found))
+}
+
+/// The one of two meshes that meets the goals with fewer triangles, or comes nearer.
+fn better(plain: Exact, balanced: Exact) -> Exact {
+    let is_better = match (plain.stop, balanced.stop) {
         (ExactStop::Met, ExactStop::Met) | (ExactStop::Cones, ExactStop::Cones) => {
-            plain.mesh.face_count() <= count
+            plain.mesh.face_count() <= balanced.mesh.face_count()
         }
         (ExactStop::Met, _) => true,
         (_, ExactStop::Met) => false,
-        _ => plain.worst <= found.worst && plain.error.upper <= found.error.upper,
+        _ => plain.worst <= balanced.worst && plain.error.upper <= balanced.error.upper,
     };
-    Ok(if is_better { plain } else { found })
+    if is_better { plain } else { balanced }
+}
+
+/// Refines with balanced vertices until the goals are met; `None` where that takes more than so many triangles.
+fn balanced_within(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    ((options, demands), most): ((&ExactOptions, &Demands), usize),
+    observer: &mut Observer<'_>,
+) -> Result<Option<Exact>, RefineError> {
+    with_engine(mesh, scheme, (options, demands), observer, |engine| {
+        let outcome = engine.balanced(engine.floor(options.tolerance), most)?;
+        outcome.map(|outcome| outcome.finish(engine, ExactStop::Met, options)).transpose()
+    })
 }
 
 /// Refines until a distance is met, with vertices on the surface; `None` where that takes more triangles than there may be, or where

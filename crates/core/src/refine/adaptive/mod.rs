@@ -176,16 +176,22 @@ pub(super) fn count(
     let watched = (mesh.face_count(), options.max_levels as u32, usize::MAX);
     let demands = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
     let demands = demands.unwrap_or_default();
+    let plain = options.clone().balance(false);
+    // As in [`once`], angles that balanced vertices meet late are met with plain ones.
+    let fewest = match options.balance && options.angle.is_some() {
+        true => Some(count(mesh, scheme, &plain, times, observer)?),
+        false => None,
+    };
     let most = options.budget().0;
     let found = without_gaps(mesh, scheme, ((options, &demands), most), observer, |engine| {
         let limit = engine.floor(options.tolerance.map(|tolerance| times * tolerance));
         let limit = if engine.control.criteria.is_some() { times } else { limit };
         let plan = if engine.is_balanced {
-            engine.balanced(limit, usize::MAX)?.map(|outcome| outcome.plan)
+            engine.balanced(limit, fewest.unwrap_or(usize::MAX))?.map(|outcome| outcome.plan)
         } else {
             engine.without_counting_strips().plan(Goal::Within(limit), usize::MAX)?
         };
-        let Some(mut plan) = plan else { return Ok(0) };
+        let Some(mut plan) = plan else { return Ok(fewest.unwrap_or(0)) };
         if engine.control.flat.are_none() {
             return Ok(plan.triangles);
         }
@@ -193,8 +199,8 @@ pub(super) fn count(
         let emission = engine.emit_all(&mut plan)?;
         Ok(engine.assemble(emission, plan.levels(engine.watch)?)?.mesh.face_count())
     })?;
-    let plain = options.clone().balance(false);
-    if options.balance && may_do_with_fewer(mesh, scheme, (&plain, &demands), found, observer)? {
+    let may_be_fewer = fewest.is_none() && options.balance;
+    if may_be_fewer && may_do_with_fewer(mesh, scheme, (&plain, &demands), found, observer)? {
         return Ok(found.min(count(mesh, scheme, &plain, times, observer)?));
     }
     Ok(found)
