@@ -1,20 +1,25 @@
 //! Carries a plan out: neighbouring leaves at most one level apart, closed where these differ, divided where what closes them fails, and
 //! all again for the control faces that see a division, until everything holds.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::balance::{Pending, balance};
 use super::chains::{Chains, first_of};
-use super::close::Closing;
+use super::close::{Closed, Closing, Counts, Unfinished};
 use super::dirty::Dirty;
 use super::quadtree::{Place, Trees};
-use super::surface::SurfacePiece;
 use super::{BLOCK, Engine, Plan, block};
 use crate::parallel;
 use crate::refine::RefineError;
 
-/// The surface over control faces that were closed again, by face.
-type Pieces = HashMap<u32, Box<SurfacePiece>>;
+/// Control faces that were closed again, of which nothing is put together yet.
+type Again = BTreeMap<u32, Box<Unfinished>>;
+
+/// What came of closing a face once.
+enum Found {
+    Whole(Closed),
+    Again(Counts, Box<Unfinished>),
+}
 
 impl Engine<'_> {
     /// Restricts and closes until everything holds, beginning with what is dirty; `false` if there are too many triangles.
@@ -73,30 +78,33 @@ impl Engine<'_> {
 
     /// Closes what is dirty, splitting what fails, until nothing does; `false` if there are too many triangles.
     fn close(&self, plan: &mut Plan, mut dirty: Dirty, most: usize) -> Result<bool, RefineError> {
-        let mut pieces = Pieces::new();
+        let mut again = Again::new();
         loop {
-            self.close_once(plan, &dirty, &mut pieces)?;
+            let failing = self.close_once(plan, &dirty, &mut again)?;
             plan.triangles = self.triangles_at_most(plan);
             self.watch.round(plan.triangles)?;
-            // What strips leave takes an emission.
             if plan.triangles > most {
+                if !self.control.flat.has_strips() {
+                    return Ok(false);
+                }
+                // What strips leave takes an emission.
+                self.finish(plan, core::mem::take(&mut again))?;
                 plan.triangles = self.triangles(plan)?;
                 if plan.triangles > most {
                     return Ok(false);
                 }
             }
             let mut next = Dirty::none(plan.closed.len());
-            for face in dirty.faces() {
-                for place in plan.closed[face as usize].take_failing() {
-                    if place.level >= self.max_levels {
-                        plan.has_failed = true;
-                        continue;
-                    }
-                    self.watch.poll()?;
-                    self.split(&mut plan.decision.trees, place, &mut next)?;
+            for place in failing {
+                if place.level >= self.max_levels {
+                    plan.has_failed = true;
+                    continue;
                 }
+                self.watch.poll()?;
+                self.split(&mut plan.decision.trees, place, &mut next)?;
             }
             if next.split().is_empty() {
+                self.finish(plan, again)?;
                 if self.counts_strips {
                     plan.triangles = self.triangles(plan)?;
                 }
@@ -107,56 +115,111 @@ impl Engine<'_> {
         }
     }
 
-    /// Closes the faces that are dirty, over pieces of the surface that are kept where it is not for the first time.
-    fn close_once(&self, plan: &mut Plan, dirty: &Dirty, pieces: &mut Pieces) -> Result<(), RefineError> {
+    /// Closes the faces that are dirty; gives leaves that fail, in the order of faces. What is `again` closed is not put together yet.
+    fn close_once(
+        &self,
+        plan: &mut Plan,
+        dirty: &Dirty,
+        again: &mut Again,
+    ) -> Result<Vec<Place>, RefineError> {
         let Self { control, ref edges, max_levels, .. } = *self;
         let faces = dirty.faces();
         let Plan { goal, decision, closed, .. } = &*plan;
-        let known = (&plan.chains, &faces[..]);
-        let chains = Chains::of(control.mesh, edges, &decision.trees, known, self.watch)?;
-        let closing = Closing { control, goal, max_levels, edges, trees: &decision.trees, chains: &chains };
+        let inserted = dirty.inserted(edges);
+        let known = (&plan.chains, &inserted);
+        let chains = match inserted.is_empty() {
+            true => None,
+            false => Some(Chains::of(control.mesh, edges, &decision.trees, known, self.watch)?),
+        };
+        let new_chains = chains.as_ref().unwrap_or(&plan.chains);
+        let closing =
+            Closing { control, goal, max_levels, edges, trees: &decision.trees, chains: new_chains };
         let seen = dirty.leaves(&decision.trees, edges, self.watch)?;
         let mut split = dirty.split().to_vec();
         split.sort_unstable_by(Place::in_order);
         let of_block =
-            |block: &[u32]| block.iter().map(|&face| (face, pieces.remove(&face))).collect::<Vec<_>>();
+            |block: &[u32]| block.iter().map(|&face| (face, again.remove(&face))).collect::<Vec<_>>();
         let blocks: Vec<_> = faces.chunks(BLOCK).map(of_block).collect();
         let poll = &mut |_| self.watch.poll();
         let found = parallel::each_long_polled(blocks, poll, |block, is_stopped| {
             let mut knots = Vec::new();
-            let closed = block.into_iter().map(|(face, mut piece)| {
-                let known = (decision.allowance(face), &closed[face as usize]);
+            let closed = block.into_iter().map(|(face, unfinished)| {
+                let closed = &closed[face as usize];
+                let known = (decision.allowance(face), closed);
                 if dirty.is_replaced(face) {
-                    return (closing.close(face, known, is_stopped, &mut knots), None);
+                    let (found, failing) = closing.close(face, known, is_stopped, &mut knots);
+                    return (Found::Whole(found), failing);
                 }
+                let mut unfinished = unfinished.unwrap_or_else(|| Box::new(Unfinished::of(closed)));
                 let places = (of_face(&split, face), of_face(&seen, face));
-                (closing.close_again(face, known, places, &mut piece, is_stopped), piece)
+                let (counts, failing) = closing.close_again(face, known, places, &mut unfinished, is_stopped);
+                (Found::Again(counts, unfinished), failing)
             });
             closed.collect::<Vec<_>>()
         })?;
-        self.watch.each(faces.iter().zip(found.into_iter().flatten()), |(&face, (found, piece))| {
-            piece.into_iter().for_each(|piece| {
-                pieces.insert(face, piece);
-            });
-            let known = core::mem::replace(&mut plan.closed[face as usize], found);
-            let found = &plan.closed[face as usize];
-            let is_same = known.is_as(found)
-                && (3 * face..3 * face + 3).all(|h| {
-                    let owner = first_of(edges, h);
-                    chains.own(owner).1 == plan.chains.own(owner).1
-                });
-            if is_same {
-                return;
-            }
-            plan.is_touched[face as usize] = true;
-            // Conditions count on the triangles beside.
-            plan.settled.forget(face);
-            for twin in (3 * face..3 * face + 3).filter_map(|h| edges.twin(h)) {
-                plan.settled.forget(twin / 3);
+        let mut all_failing = Vec::new();
+        self.watch.each(faces.iter().zip(found.into_iter().flatten()), |(&face, (found, failing))| {
+            all_failing.extend(failing);
+            let own = &mut plan.closed[face as usize];
+            let is_same = match found {
+                Found::Whole(found) => {
+                    let is_same = own.is_as(&found);
+                    *own = found;
+                    is_same
+                }
+                // Whether what is judged is the same is looked at in the end.
+                Found::Again(counts, unfinished) => {
+                    own.count(counts);
+                    again.insert(face, unfinished);
+                    of_face(&split, face).is_empty()
+                }
+            };
+            let has_other_chain = |h: u32| {
+                let owner = first_of(edges, h);
+                chains.as_ref().is_some_and(|chains| chains.own(owner).1 != plan.chains.own(owner).1)
+            };
+            if !is_same || (3 * face..3 * face + 3).any(has_other_chain) {
+                self.touch(plan, face);
             }
         })?;
-        plan.chains = chains;
+        plan.chains = chains.unwrap_or_else(|| core::mem::take(&mut plan.chains));
+        Ok(all_failing)
+    }
+
+    /// Puts together what faces that were closed again came to.
+    fn finish(&self, plan: &mut Plan, again: Again) -> Result<(), RefineError> {
+        let faces: Vec<u32> = again.keys().copied().collect();
+        let take = |(face, unfinished): (u32, Box<Unfinished>)| {
+            (core::mem::take(&mut plan.closed[face as usize]), unfinished)
+        };
+        let mut all = again.into_iter().map(take);
+        let next_block = || Some(all.by_ref().take(BLOCK).collect::<Vec<_>>());
+        let blocks = core::iter::from_fn(next_block).take_while(|block| !block.is_empty()).collect();
+        let max_levels = self.max_levels;
+        let trees = &plan.decision.trees;
+        let poll = &mut |_| self.watch.poll();
+        let found = parallel::each_long_polled(blocks, poll, |block, _| {
+            let finish =
+                |(known, unfinished): (Closed, Box<Unfinished>)| unfinished.finish(known, trees, max_levels);
+            block.into_iter().map(finish).collect::<Vec<_>>()
+        })?;
+        self.watch.each(faces.iter().zip(found.into_iter().flatten()), |(&face, (found, is_same))| {
+            plan.closed[face as usize] = found;
+            if !is_same {
+                self.touch(plan, face);
+            }
+        })?;
         Ok(())
+    }
+
+    /// Marks a face that came to something else than before.
+    fn touch(&self, plan: &mut Plan, face: u32) {
+        plan.is_touched[face as usize] = true;
+        // Conditions count on the triangles beside.
+        plan.settled.forget(face);
+        for twin in (3 * face..3 * face + 3).filter_map(|h| self.edges.twin(h)) {
+            plan.settled.forget(twin / 3);
+        }
     }
 }
 

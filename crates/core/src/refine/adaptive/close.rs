@@ -5,6 +5,7 @@
 //! again ([`close_again`]).
 
 mod judged;
+mod unfinished;
 
 use super::chains::Chains;
 use super::control::Control;
@@ -15,13 +16,12 @@ use super::quadtree::{Edges, Place, STRICT, Trees, UNJUDGED, is_split, is_unjudg
 use super::rim::Rim;
 use super::surface::{GeneralPiece, Ground, Surface, SurfacePiece};
 use super::walk::{Knot, Node, Visitor, Walk};
-use core::iter::Peekable;
-
 use crate::certificate::{Cell, Pieces, SubTriangle};
 use crate::parallel::IsStopped;
 use crate::patch::{LimitPoint, Spot};
-pub(super) use judged::Closed;
+pub(super) use judged::{Closed, Counts};
 use judged::{Judged, JudgedLeaves, recall};
+pub(super) use unfinished::Unfinished;
 
 /// Leaves that are judged between two questions whether that is still of use.
 const ASKED: usize = 256;
@@ -82,18 +82,18 @@ pub(super) struct Closing<'a> {
 }
 
 impl Closing<'_> {
-    /// Walks over a face; `known` is what was said the last time.
+    /// Walks over a face; `known` is what was said the last time. Gives leaves that fail, too.
     pub(super) fn close(
         &self,
         face: u32,
         (allowance, known): (&Allowance, &Closed),
         is_stopped: &IsStopped<'_>,
         knots: &mut Vec<Knot>,
-    ) -> Closed {
+    ) -> (Closed, Vec<Place>) {
         let Self { control, edges, trees, chains, .. } = *self;
         let word = trees.root(face);
         if !is_split(word) && word & UNJUDGED == 0 && chains.are_none(edges, face) {
-            return Closed { triangles: 1, leaves: 1, ..Closed::default() };
+            return (Closed { triangles: 1, leaves: 1, ..Closed::default() }, Vec::new());
         }
         let mut walk = Walk::new(trees, core::mem::take(knots), 0, is_stopped);
         walk.knots.clear();
@@ -106,90 +106,70 @@ impl Closing<'_> {
         let Lister { triangles, count, mut leaves, .. } = lister;
         leaves.sort_unstable_by(|a, b| a.place.in_order(&b.place));
         recall(known.known(), &mut leaves);
-        let counted =
-            Closed { vertices: walk.next, triangles: triangles as u32, leaves: count, judged: None };
-        self.judged(face, counted, (leaves, allowance), &mut None, is_stopped)
+        self.judge(face, (&mut leaves, allowance), &mut None, is_stopped);
+        let failing = self.failing(&leaves);
+        let is_none = leaves.is_empty();
+        let judged = (!is_none).then(|| Box::new(JudgedLeaves::of(leaves, trees, self.max_levels)));
+        (Closed { vertices: walk.next, triangles: triangles as u32, leaves: count, judged }, failing)
     }
 
     /// Closes a face again, of which leaves were `split` since, by looking at the leaves that see these: `seen`. Both are in the order of
-    /// places. The surface over it is kept for the next time.
+    /// places. What has changed since it was `known` is kept in `unfinished`. Gives what it comes to in numbers, and leaves that fail.
     pub(super) fn close_again(
         &self,
         face: u32,
         (allowance, known): (&Allowance, &Closed),
         (split, seen): (&[Place], &[Place]),
-        piece: &mut Option<Box<SurfacePiece>>,
+        unfinished: &mut Unfinished,
         is_stopped: &IsStopped<'_>,
-    ) -> Closed {
-        let leaves = self.listed_again(face, known.known(), (split, seen));
+    ) -> (Counts, Vec<Place>) {
+        split.iter().for_each(|&place| unfinished.replace(known.known(), place, None));
+        let open = self.control.open(face);
+        let mut leaves = Vec::with_capacity(seen.len());
+        for &place in seen {
+            let mask = split_edges(self.trees, self.edges, place);
+            let word = self.trees.word_at(place).unwrap_or(UNJUDGED);
+            if mask == [false; 3] && !is_unjudged(word) {
+                unfinished.replace(known.known(), place, None);
+                continue;
+            }
+            let open = [0, 1, 2].map(|edge| open[edge] && place.lies_along(edge));
+            let mut leaf = Judged::new(place, mask, open, word & STRICT != 0);
+            unfinished.leaf(known.known(), place).into_iter().for_each(|before| leaf.recall(before));
+            leaves.push(leaf);
+        }
+        self.judge(face, (&mut leaves, allowance), &mut unfinished.piece, is_stopped);
+        let failing = self.failing(&leaves);
+        for leaf in leaves {
+            unfinished.replace(known.known(), leaf.place, Some(leaf));
+        }
         let count = known.leaves + 3 * split.len();
-        let on_leaves = |leaf: &Judged| leaf.split.iter().filter(|&&is_split| is_split).count();
-        let triangles = count + leaves.iter().map(on_leaves).sum::<usize>();
+        let triangles = count + unfinished.split_edges;
         // A disc of so many triangles and vertices on its rim has (triangles − rim) / 2 + 1 vertices inside (Euler).
         let on_rim: usize = (3 * face..3 * face + 3).map(|h| self.chains.along(self.edges, h) + 1).sum();
         let vertices = (triangles + 2).saturating_sub(on_rim) / 2;
-        let counted =
-            Closed { vertices: vertices as u32, triangles: triangles as u32, leaves: count, judged: None };
-        self.judged(face, counted, (leaves, allowance), piece, is_stopped)
+        (Counts { vertices: vertices as u32, triangles: triangles as u32, leaves: count }, failing)
     }
 
-    /// The leaves of a face that have to be judged, in the order of places: those known but for the ones that were split, and the ones that are
-    /// seen anew.
-    fn listed_again(&self, face: u32, known: &[Judged], (split, seen): (&[Place], &[Place])) -> Vec<Judged> {
-        let open = self.control.open(face);
-        let mut leaves = Vec::with_capacity(known.len() + seen.len());
-        let (mut known, mut split) = (known.iter().peekable(), split.iter().peekable());
-        for &place in seen {
-            keep(&mut known, &mut split, Some(place), &mut leaves);
-            let mask = split_edges(self.trees, self.edges, place);
-            let word = self.trees.word_at(place).unwrap_or(UNJUDGED);
-            let before = known.next_if(|other| other.place == place);
-            if mask != [false; 3] || is_unjudged(word) {
-                let open = [0, 1, 2].map(|edge| open[edge] && place.lies_along(edge));
-                let mut leaf = Judged::new(place, mask, open, word & STRICT != 0);
-                before.into_iter().for_each(|before| leaf.recall(before));
-                leaves.push(leaf);
-            }
-        }
-        keep(&mut known, &mut split, None, &mut leaves);
-        leaves
+    /// Leaves whose triangles fail.
+    fn failing(&self, leaves: &[Judged]) -> Vec<Place> {
+        leaves.iter().filter(|leaf| leaf.fails(self.max_levels)).map(|leaf| leaf.place).collect()
     }
 
-    /// Judges the leaves of a face that nobody has judged.
-    fn judged(
+    /// Judges those leaves of a face that nobody has judged.
+    fn judge(
         &self,
         face: u32,
-        mut closed: Closed,
-        (mut leaves, allowance): (Vec<Judged>, &Allowance),
+        (leaves, allowance): (&mut [Judged], &Allowance),
         piece: &mut Option<Box<SurfacePiece>>,
         is_stopped: &IsStopped<'_>,
-    ) -> Closed {
-        if leaves.is_empty() {
-            return closed;
-        }
+    ) {
         let Self { control, goal, max_levels, .. } = *self;
-        if !leaves.iter().all(Judged::is_said) {
+        let mut wanting: Vec<&mut Judged> = leaves.iter_mut().filter(|leaf| !leaf.is_said()).collect();
+        if !wanting.is_empty() {
             let closer = Closer { judge: goal.judge(control, max_levels, face), allowance };
-            let mut wanting: Vec<&mut Judged> = leaves.iter_mut().filter(|leaf| !leaf.is_said()).collect();
             let piece = piece.get_or_insert_with(|| Box::new(control.piece(face)));
             closer.judge(piece.surface(control.rules), 0, &mut wanting, is_stopped);
-        }
-        closed.judged = Some(Box::new(JudgedLeaves::of(leaves, self.trees, max_levels)));
-        closed
-    }
-}
-
-/// Keeps the known leaves that come before a place, or all, but for those that were split.
-fn keep<'k, 's>(
-    known: &mut Peekable<impl Iterator<Item = &'k Judged>>,
-    split: &mut Peekable<impl Iterator<Item = &'s Place>>,
-    end: Option<Place>,
-    leaves: &mut Vec<Judged>,
-) {
-    while let Some(leaf) = known.next_if(|leaf| end.is_none_or(|end| leaf.place.precedes(end))) {
-        while split.next_if(|place| place.precedes(leaf.place)).is_some() {}
-        if split.next_if(|&&place| place == leaf.place).is_none() {
-            leaves.push(leaf.clone());
         }
     }
 }

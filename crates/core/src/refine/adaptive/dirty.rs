@@ -1,5 +1,6 @@
 //! What has changed in the trees since their leaves were closed: trees that were replaced, and leaves that were split.
 
+use super::chains::Inserted;
 use super::quadtree::{Beyond, Edges, Place, Trees, beyond, is_split};
 use crate::progress::{Cancelled, SharedWatch};
 
@@ -43,6 +44,20 @@ impl Dirty {
 
     fn marked(&self, is_marked: impl Fn(Mark) -> bool) -> Vec<u32> {
         (0..).zip(&self.marks).filter(|&(_, &mark)| is_marked(mark)).map(|(face, _)| face).collect()
+    }
+
+    /// The vertices that this has put on edges of control faces.
+    pub(super) fn inserted(&self, edges: &Edges<'_>) -> Inserted {
+        let replaced = self.replaced().into_iter();
+        let anew = replaced.flat_map(|face| 3 * face..3 * face + 3).collect();
+        let mut inserted = Inserted { anew, at: Vec::new() };
+        for &place in &self.split {
+            let along = (0..3).filter(|&edge| place.lies_along(edge));
+            along.for_each(|edge| inserted.add(edges, place, edge));
+        }
+        inserted.at.sort_unstable();
+        inserted.at.dedup();
+        inserted
     }
 
     /// Whether a face must be looked at as a whole.

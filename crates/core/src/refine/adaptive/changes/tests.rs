@@ -1,7 +1,6 @@
 //! What is not measured again would come to the same: everything that it depends on is, bit by bit.
 
 use std::collections::{HashMap, HashSet};
-use std::f64::consts::TAU;
 
 use super::super::bulges::Bulges;
 use super::super::carry_out::marked;
@@ -16,41 +15,12 @@ use super::super::settle::{beside, sharp_edges};
 use super::super::{Engine, Plan, with_engine};
 use super::*;
 use crate::certificate::SubTriangle;
-use crate::mesh::{Mesh, PolygonSoup};
-use crate::models::{stir, stirred};
+use crate::mesh::Mesh;
+use crate::models::{book, stir, stirred};
 use crate::patch::Rules;
 use crate::progress::unobserved;
 use crate::refine::ExactOptions;
 use crate::scheme::Loop;
-
-/// Three sheets that meet at an edge, and are cut there.
-fn book() -> Mesh {
-    let (pages, rows, columns) = (3, 5, 3);
-    let mut soup = PolygonSoup::default();
-    soup.positions.extend((0..rows).map(|row| [0.0, 0.0, f64::from(row)]));
-    for page in 0..pages {
-        let (sin, cos) = (TAU * f64::from(page) / f64::from(pages)).sin_cos();
-        for column in 1..=columns {
-            let out = f64::from(column);
-            let at = |row| [out * cos, out * sin, f64::from(row) + 0.3 * f64::from((row * column) % 2)];
-            soup.positions.extend((0..rows).map(at));
-        }
-        let number = |column: u32, row: u32| {
-            let own = if column == 0 { 0 } else { 1 + page as u32 * columns as u32 + column - 1 };
-            own * rows as u32 + row
-        };
-        for (column, row) in
-            (0..columns as u32).flat_map(|column| (0..rows as u32 - 1).map(move |row| (column, row)))
-        {
-            let (next, above) = (column + 1, row + 1);
-            soup.faces.push(&[number(column, row), number(next, row), number(next, above)]);
-            soup.faces.push(&[number(column, row), number(next, above), number(column, above)]);
-        }
-    }
-    let mesh = Mesh::from_soup(&soup, &Default::default()).unwrap().0;
-    assert!(!mesh.junctions().edges.is_empty());
-    mesh
-}
 
 /// All that a triangle's measurement depends on.
 #[derive(Debug, PartialEq)]

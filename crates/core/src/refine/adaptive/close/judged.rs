@@ -17,6 +17,14 @@ pub(in super::super) struct Closed {
     pub(in super::super) judged: Option<Box<JudgedLeaves>>,
 }
 
+/// What a face comes to in numbers.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Counts {
+    pub(super) vertices: u32,
+    pub(super) triangles: u32,
+    pub(super) leaves: usize,
+}
+
 /// What the leaves that had to be judged come to.
 #[derive(Clone, Debug, Default)]
 pub(in super::super) struct JudgedLeaves {
@@ -24,8 +32,6 @@ pub(in super::super) struct JudgedLeaves {
     diagonals: Vec<bool>,
     /// What was judged here.
     extent: Extent,
-    /// Leaves whose triangles fail.
-    failing: Vec<Place>,
     /// Leaves that pass on conditions, in the order of the walk.
     pub(in super::super) conditions: Vec<Condition>,
     /// What was said of leaves, by the edges that were split, for the next time; in the order of places, which that of a walk is not where
@@ -66,6 +72,15 @@ impl Judged {
 
     pub(super) fn is_said(&self) -> bool {
         !matches!(self.said, Said::Nothing)
+    }
+
+    /// Whether its triangles fail; where conditions are not enough these do.
+    pub(super) fn fails(&self, max_levels: u32) -> bool {
+        match self.said {
+            Said::Nothing | Said::Passes => false,
+            Said::Fails => true,
+            Said::Depends(_) => self.is_strict && self.place.level < max_levels,
+        }
     }
 
     /// Keeps a verdict, and whether the diagonal starts at the unsplit edge's end.
@@ -133,16 +148,19 @@ impl Closed {
         self.judged.as_ref().map_or(&[], |judged| &judged.conditions)
     }
 
-    /// Leaves whose triangles fail; they are told once.
-    pub(in super::super) fn take_failing(&mut self) -> Vec<Place> {
-        self.judged.as_mut().map(|judged| core::mem::take(&mut judged.failing)).unwrap_or_default()
+    /// The same face with other numbers.
+    pub(in super::super) fn count(&mut self, counts: Counts) {
+        Counts { vertices: self.vertices, triangles: self.triangles, leaves: self.leaves } = counts;
     }
 
     /// Whether triangles and conditions are the same if the vertices along the edges are: in between leaves were only divided.
     pub(in super::super) fn is_as(&self, other: &Self) -> bool {
-        self.leaves == other.leaves
-            && self.diagonals() == other.diagonals()
-            && self.conditions() == other.conditions()
+        self.leaves == other.leaves && self.is_judged_as(other)
+    }
+
+    /// The same if there are as many leaves.
+    pub(in super::super) fn is_judged_as(&self, other: &Self) -> bool {
+        self.diagonals() == other.diagonals() && self.conditions() == other.conditions()
     }
 }
 
@@ -173,9 +191,8 @@ impl JudgedLeaves {
             judged.extent.add(&Extent { bound, worst: Some(place), ..leaf.extent });
             match &leaf.said {
                 // What nobody has judged is beyond every bound.
-                Said::Nothing | Said::Passes => {}
-                Said::Fails => judged.failing.push(place),
-                Said::Depends(_) if leaf.is_strict && place.level < max_levels => judged.failing.push(place),
+                Said::Nothing | Said::Passes | Said::Fails => {}
+                Said::Depends(_) if leaf.fails(max_levels) => {}
                 Said::Depends(on) => {
                     let (deviation, tilt, slopes) = **on;
                     judged.conditions.push(Condition { place, deviation, tilt, slopes });

@@ -1,24 +1,26 @@
 //! Closing again what was split comes to the same as a walk over whole faces of which nothing is known.
 
+use super::super::chains::Inserted;
 use super::super::demands::Demands;
 use super::super::dirty::Dirty;
 use super::super::{Engine, with_engine};
 use super::judged::in_walks_order;
 use super::*;
-use crate::models::stirred;
+use crate::models::{book, stirred};
 use crate::progress::unobserved;
 use crate::refine::ExactOptions;
 use crate::scheme::Loop;
 
 #[test]
 fn faces_closed_again_are_as_if_closed_whole() {
-    let models = [("icosphere", 5), ("torus", 6), ("sheet", 8), ("head", 9), ("spike", 10), ("cup", 3)];
+    let models =
+        [("icosphere", 5), ("torus", 6), ("sheet", 8), ("head", 9), ("spike", 10), ("cup", 3), ("book", 1)];
     let coarse = models.map(|(name, seed)| (name, seed, 3e-3, 1.0));
     // Beside faces that are divided by a level more, even ones are closed on several sides: these are walked over row by row.
     let uneven = [("torus", 4, 3e-4, 0.22), ("sphere", 4, 1e-4, 0.22), ("cup", 4, 1e-4, 0.22)];
     let (mut again, mut judged, mut in_rows) = (0, 0, 0);
     for (name, seed, tolerance, share) in coarse.into_iter().chain(uneven) {
-        let mesh = stirred(name, seed);
+        let mesh = if name == "book" { book() } else { stirred(name, seed) };
         let tolerance = tolerance * mesh.diagonal();
         let options = ExactOptions::default().tolerance(tolerance);
         with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
@@ -61,10 +63,13 @@ fn faces_closed_again_are_as_if_closed_whole() {
                 let Engine { control, max_levels, .. } = *engine;
                 let (trees, chains, edges) = (&plan.decision.trees, &plan.chains, &engine.edges);
                 let closing = Closing { control, goal: &plan.goal, max_levels, edges, trees, chains };
+                let all = Inserted { anew: (0..3 * plan.closed.len() as u32).collect(), at: Vec::new() };
+                let known = (&Chains::default(), &all);
+                assert_eq!(*chains, Chains::of(control.mesh, edges, trees, known, engine.watch)?, "{name}");
                 let mut knots = Vec::new();
                 for face in 0..plan.closed.len() as u32 {
                     let known = (plan.decision.allowance(face), &Closed::default());
-                    let whole = closing.close(face, known, &|| false, &mut knots);
+                    let (whole, _) = closing.close(face, known, &|| false, &mut knots);
                     let found = &plan.closed[face as usize];
                     let counts = |closed: &Closed| (closed.vertices, closed.triangles);
                     assert_eq!(counts(found), counts(&whole), "{name}, face {face}");

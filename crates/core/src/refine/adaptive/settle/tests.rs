@@ -2,6 +2,7 @@
 //! would be written.
 
 use super::super::chains::Chains;
+use super::super::chains::Inserted;
 use super::super::demands::Demands;
 use super::super::judge::{Allowance, Extent, Seen};
 use super::super::quadtree::{CONDITIONAL, LEAF, Piece, is_split};
@@ -242,9 +243,9 @@ fn what_is_taken_over_is_what_would_be_written() {
             let mut dirty = Dirty::none(plan.closed.len());
             engine.split(&mut plan.decision.trees, place, &mut dirty).unwrap();
             assert!(engine.carry_out(&mut plan, dirty, usize::MAX).unwrap());
-            let all: Vec<u32> = (0..plan.closed.len() as u32).collect();
+            let all = Inserted { anew: (0..3 * plan.closed.len() as u32).collect(), at: Vec::new() };
             let (edges, trees) = (&engine.edges, &plan.decision.trees);
-            let known = (&Chains::default(), &all[..]);
+            let known = (&Chains::default(), &all);
             let expected = Chains::of(engine.control.mesh, edges, trees, known, engine.watch).unwrap();
             assert_eq!(plan.chains, expected, "{name}");
             counted += plan.is_touched.iter().filter(|&&is_touched| !is_touched).count();
