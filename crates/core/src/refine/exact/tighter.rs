@@ -26,6 +26,9 @@ const FINER: f64 = 8.0;
 /// Where that is too fine, this part is tried.
 const COARSE: f64 = 1.0 / 8.0;
 
+/// It is of use if what is proven may get smaller than this part of what it was.
+const WORTH_WHILE: f64 = 0.8;
+
 /// Places of distances that were found there count where the distances are at least so many times what it is off by.
 const PLACED: f64 = 8.0;
 
@@ -82,7 +85,9 @@ pub(super) fn tighter(
     let mut near = (FIRST / COARSE * coarse).max(known.finest());
     let mut found = nearer(near, observer)?;
     let is_too_fine = found.is_none();
-    if is_too_fine && near < coarse {
+    // The distance to that mesh is off by as much, and it from the surface.
+    let may_be_tighter = known.distance() + 2.0 * coarse < WORTH_WHILE * error.upper;
+    if is_too_fine && near < coarse && may_be_tighter {
         near = coarse;
         found = nearer(near, observer)?;
     }
