@@ -327,6 +327,34 @@ fn balanced_angles_of_folding_sides_come_to_an_end() {
     assert_eq!(exact_estimate(&slab, &Loop, &options).unwrap().triangles, found.mesh.face_count());
 }
 
+/// The same plate in the middle of a tent: where the surface goes on smoothly, what a rim encloses is not all that triangles which fold are near to,
+/// so they stay, and what is proven holds.
+#[test]
+fn what_folds_beside_smooth_surfaces_stays() {
+    let plate = plate_of_slivers(24);
+    let count = plate.vertex_count() as u32;
+    let mut positions = plate.positions().to_vec();
+    positions.extend((0..3).map(|i| {
+        let (s, c) = (TAU * f64::from(2 * i + 1) / 6.0).sin_cos();
+        [3.0 * c, 3.0 * s, -1.0]
+    }));
+    let mut triangles = plate.triangles().to_vec();
+    for i in 0..3 {
+        let next = (i + 1) % 3;
+        triangles.extend([[i, count + i, count + next], [i, count + next, next]]);
+    }
+    let tent = Mesh::from_triangles(positions, triangles).unwrap();
+    let reference = limit_reference(&tent, &Loop, 5).unwrap();
+    let samples = SamplingOptions::default().samples(30_000);
+    for tolerance in [0.1, 0.02, 2e-3] {
+        let found = exact(&tent, &Loop, &within(tolerance).unfold(true)).unwrap();
+        assert!(found.unfolded == 0 && found.inverted_triangles() > 0, "{tolerance}");
+        let sampled = hausdorff(found.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+        // The reference's own chords are off by less than this.
+        assert!(sampled.symmetric() <= found.error.upper + 2e-4, "{tolerance}: {:?}", found.error);
+    }
+}
+
 /// Two flat sheets that share a rim: no edge comes to have four faces, and caps hold though a region keeps its triangles.
 #[test]
 fn sheets_that_share_their_rims_stay_apart() {

@@ -52,7 +52,8 @@ pub struct ExactOptions {
     pub flat_regions: bool,
     /// Where the scheme's rules fold the surface over in a flat region, as they do where slivers of a fan meet a hole, what the
     /// region's rim encloses is taken for the surface: what people mean, and what [`Exact::unfolded`](super::Exact::unfolded)
-    /// counts. Where nothing can be triangulated from the rim, even if that is divided further, and else, it is the scheme's. Default: no.
+    /// counts. It is the scheme's where limit curves around it are smooth, or cross so that nothing can be
+    /// triangulated, and without this option. Default: no.
     pub unfold: bool,
     /// Whether triangles side by side in one plane are put together; with [`Self::flat_regions`].
     pub(crate) strips: bool,

@@ -105,7 +105,8 @@ pub(in crate::refine) fn within(
         };
         let outcome = engine.emit(plan, most, false)?;
         let found = outcome.map(|outcome| outcome.finish(engine, ExactStop::Met, options)).transpose()?;
-        let has_gaps = !engine.control.flat.gaps(engine.control, engine.watch)?.are_none();
+        let has_gaps =
+            !engine.control.flat.gaps((engine.control, &engine.edges), 0, engine.watch)?.are_none();
         Ok(found.filter(|_| !has_gaps))
     })
 }
@@ -213,7 +214,7 @@ pub(super) fn without_gaps<T>(
     loop {
         let (found, gaps) = with_engine(mesh, scheme, (options, &demands), observer, |engine| {
             let found = run(engine)?;
-            Ok((found, engine.control.flat.gaps(engine.control, engine.watch)?))
+            Ok((found, engine.control.flat.gaps((engine.control, &engine.edges), attempt, engine.watch)?))
         })?;
         if gaps.are_none() {
             return Ok(found);

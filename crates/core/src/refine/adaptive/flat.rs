@@ -20,6 +20,7 @@
 //! control faces, by Euler's formula, whatever its holes: so plans know their triangles without any triangulation, but for what strips
 //! save, and for regions that turn out to have no triangulation and keep their triangles.
 
+mod enclosed;
 mod flattened;
 mod gaps;
 mod joined;
@@ -106,6 +107,8 @@ pub(super) struct FlatRegions {
     by_rim: Vec<bool>,
     /// By region, whether the surface may fold over it; looked at where it matters.
     may_fold: Vec<OnceLock<bool>>,
+    /// By region, whether what its limit curves enclose can stand for it; looked at where it folds.
+    enclosed: Vec<OnceLock<bool>>,
     /// By region, the first of those with which it is judged together.
     joined: Vec<u32>,
     /// How far beyond its rim the surface over such a region may reach for all that was proven.
@@ -191,7 +194,7 @@ impl FlatRegions {
         let mut is_merged: Vec<bool> = of_face.iter().map(|&region| region != NONE).collect();
         straight.iter().for_each(|&face| is_merged[face as usize] = true);
         let unfolds = options.unfold;
-        let may_fold = regions.iter().map(|_| OnceLock::new()).collect();
+        let [may_fold, enclosed] = [(); 2].map(|()| regions.iter().map(|_| OnceLock::new()).collect());
         let mut found = Self {
             of_face,
             straight,
@@ -200,6 +203,7 @@ impl FlatRegions {
             unfolds,
             by_rim: Vec::new(),
             may_fold,
+            enclosed,
             joined: Vec::new(),
             beyond_rims: 0.0,
             gaps: Mutex::default(),

@@ -113,7 +113,8 @@ impl Engine<'_> {
         let whole =
             Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions };
         let corners = control.mesh.vertex_count();
-        let (whole, unfolded) = control.flat.merge(whole, (&starts, &sharp), corners, watch)?;
+        let (whole, unfolded) =
+            control.flat.merge((control, &self.edges), whole, (&starts, &sharp), corners, watch)?;
         let Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions } =
             whole;
         let outgoing =

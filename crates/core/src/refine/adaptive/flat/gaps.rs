@@ -1,4 +1,4 @@
-//! Regions whose rims could not be triangulated: gaps among those that are judged by their rims alone.
+//! Regions whose rims could not be triangulated: gaps among those that are judged by their rims alone, or unfolded.
 //!
 //! Mostly chords cross where the curves do not, as around a thin ring under a coarse tolerance. So the rim is divided once more, and again;
 //! if that is of no use, as where the curves cross themselves, the region is judged by its triangles, which then stay. All others
@@ -13,7 +13,7 @@ use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
 use crate::refine::adaptive::decide::child_open;
 use crate::refine::adaptive::demands::Demands;
-use crate::refine::adaptive::quadtree::Place;
+use crate::refine::adaptive::quadtree::{Edges, Place};
 
 /// How often rims are divided once more.
 const MOST_DIVISIONS: usize = 3;
@@ -56,20 +56,24 @@ impl Gaps {
 }
 
 impl FlatRegions {
-    /// The regions that had gaps in what was put together so far.
+    /// The regions that had gaps in what was put together so far, at this attempt.
     pub(in super::super) fn gaps(
         &self,
-        control: &Control<'_>,
+        (control, edges): (&Control<'_>, &Edges<'_>),
+        attempt: usize,
         watch: &SharedWatch<'_>,
     ) -> Result<Gaps, Cancelled> {
         let mut gaps = Gaps::default();
         for (&region, chords) in self.gaps.lock().unwrap_or_else(PoisonError::into_inner).iter() {
             let along = gaps.0.entry(region).or_default();
+            // In the end as far as it is known to be of use.
+            let is_last = attempt + 1 == MOST_DIVISIONS && self.unfolds && !chords.is_empty();
+            let least = if is_last { Self::divisions(self.rim((control, edges), region).len()) } else { 0 };
             watch.each(chords, |(&face, &count)| {
                 let open = control.open(face);
-                let edges = open.iter().filter(|&&open| open).count().max(1);
-                let levels = (count as usize).div_ceil(edges).next_power_of_two().ilog2();
-                along_rim((Place::root(face), open), levels, along);
+                let count_open = open.iter().filter(|&&open| open).count().max(1);
+                let levels = (count as usize).div_ceil(count_open).next_power_of_two().ilog2();
+                along_rim((Place::root(face), open), levels.max(least.saturating_sub(1)), along);
             })?;
         }
         Ok(gaps)

@@ -3,6 +3,8 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
+use super::super::control::Control;
+use super::super::quadtree::Edges;
 use super::flattened::Flattened;
 use super::gaps::chords;
 use super::replace::{Assembled, Covering, Merged, edges};
@@ -15,7 +17,7 @@ use crate::progress::{Cancelled, SharedWatch};
 const BLOCK: usize = 1;
 
 /// Areas before and after may differ by this part.
-const SAME_AREA: f64 = 1e-9;
+pub(super) const SAME_AREA: f64 = 1e-9;
 
 /// How often what regions have in common may be left to one that keeps its triangles, before all keep it.
 const MOST_ROUNDS: usize = 8;
@@ -28,13 +30,15 @@ enum Fate {
     Covered(Covering),
     /// There are none that could.
     Fails,
+    /// There are none however its rim is divided.
+    Folds,
 }
 
 impl Fate {
     fn covering(self) -> Option<Covering> {
         match self {
             Self::Covered(covering) => Some(covering),
-            Self::Stays | Self::Fails => None,
+            Self::Stays | Self::Fails | Self::Folds => None,
         }
     }
 }
@@ -44,6 +48,7 @@ impl FlatRegions {
     /// face and one more, `sharp` the half-edges along sharp edges, and `corners` is the number of control vertices, which all stay.
     pub(in super::super) fn merge(
         &self,
+        mesh: (&Control<'_>, &Edges<'_>),
         whole: Assembled,
         (starts, sharp): (&[u32], &HashSet<u32>),
         corners: usize,
@@ -54,7 +59,7 @@ impl FlatRegions {
         }
         let net = whole.net((starts, sharp), corners);
         let mut regions = self.regions(&net, watch)?;
-        let coverings = self.coverings(&net, &mut regions, watch)?;
+        let coverings = self.coverings(mesh, &net, &mut regions, watch)?;
         if coverings.iter().all(Option::is_none) {
             return Ok((whole, 0));
         }
@@ -67,14 +72,15 @@ impl FlatRegions {
     /// The triangles of each region, where others come in their place.
     fn coverings(
         &self,
+        mesh: (&Control<'_>, &Edges<'_>),
         net: &Net<'_>,
         regions: &mut Regions,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<Option<Covering>>, Cancelled> {
         for round in 0.. {
             let fates = watch.long_pieces(regions.list.len(), BLOCK, |block, is_stopped| {
-                let fate = |region| self.fate(region, net, regions, is_stopped);
-                block.map(|region| fate(region).unwrap_or(Fate::Fails)).collect::<Vec<_>>()
+                let fate = |region| self.fate(region, mesh, (net, regions), is_stopped);
+                block.map(fate).collect::<Vec<_>>()
             })?;
             let fates: Vec<Fate> = fates.into_iter().flatten().collect();
             let stays: Vec<bool> = fates.iter().map(|fate| matches!(fate, Fate::Stays)).collect();
@@ -97,14 +103,11 @@ impl FlatRegions {
                 continue;
             }
             for (at, region) in regions.list.iter().enumerate() {
-                let Some(flat) = region.flat.filter(|_| self.is_by_rim(region) && coverings[at].is_none())
-                else {
-                    continue;
-                };
-                if fails[at] {
+                let Some(flat) = region.flat.filter(|_| coverings[at].is_none()) else { continue };
+                if fails[at] && !mesh.0.demands.judges_by_triangles(flat) {
                     self.note_gap(flat, chords(region, net, regions, watch)?);
-                } else if !stays[at] {
-                    // Finer rims have edges in common with others just the same.
+                } else if self.is_by_rim(region) && !stays[at] {
+                    // Finer rims fold, or have edges in common with others, just the same.
                     self.note_gap(flat, BTreeMap::new());
                 }
             }
@@ -118,28 +121,51 @@ impl FlatRegions {
         region.flat.is_some_and(|flat| self.by_rim[flat as usize])
     }
 
-    /// What becomes of a region: its triangles give way if there can be fewer, or if they are those of its rim alone. `None` where
-    /// none can be found.
+    /// What becomes of a region: its triangles give way if there can be fewer, if they are those of its rim alone, or if they fold and
+    /// what is around them is asked for.
     fn fate(
         &self,
         region: usize,
-        net: &Net<'_>,
-        regions: &Regions,
+        mesh: (&Control<'_>, &Edges<'_>),
+        (net, regions): (&Net<'_>, &Regions),
         is_stopped: &IsStopped<'_>,
-    ) -> Option<Fate> {
+    ) -> Fate {
         let own = &regions.list[region];
         let (before, by_rim) = (&own.triangles, self.is_by_rim(own));
         let is_divided = own.flat.is_none_or(|flat| before.len() > self.regions[flat as usize].0.len());
-        if !is_divided && !by_rim {
-            return Some(Fate::Stays);
+        let may_change = is_divided || by_rim || self.unfolds && own.has_turned(net);
+        if !may_change {
+            return Fate::Stays;
         }
         let mut flat = Flattened::new(&own.plane, self.off_planes, net.positions);
-        let outline = Outline::of(own, net, regions, &mut flat)?;
+        let Some(outline) = Outline::of(own, net, regions, &mut flat) else {
+            return if by_rim { Fate::Fails } else { Fate::Stays };
+        };
         // Where the surface is proven not to be turned over, coarse triangles alone are.
         let was_folded = outline.has_turned && (self.unfolds || !by_rim);
-        if !is_divided && !outline.has_turned || was_folded && own.flat.is_none() {
-            return Some(Fate::Stays);
+        if !is_divided && !outline.has_turned || was_folded && (own.flat.is_none() || !self.unfolds) {
+            return Fate::Stays;
         }
+        if was_folded && own.flat.is_some_and(|flat| !self.is_enclosed(mesh, flat, is_stopped)) {
+            return Fate::Folds;
+        }
+        let is_wanted = by_rim || was_folded;
+        let covering =
+            Self::covering((outline, flat), (before, is_wanted, was_folded), self.off_planes, is_stopped);
+        match covering {
+            Some(covering) => Fate::Covered(covering),
+            None if is_wanted => Fate::Fails,
+            None => Fate::Stays,
+        }
+    }
+
+    /// What an outline encloses, triangulated, if that is what the triangles `before` cover, with fewer of them if it is not wanted in any case.
+    fn covering(
+        (outline, mut flat): (Outline, Flattened<'_>),
+        (before, is_wanted, was_folded): (&[u32], bool, bool),
+        off_planes: f64,
+        is_stopped: &IsStopped<'_>,
+    ) -> Option<Covering> {
         let (along, lines) = outline.straightened();
         let rim: Vec<[u32; 2]> =
             along.iter().map(|(ends, _)| ends.map(|vertex| flat.number(vertex))).collect();
@@ -157,13 +183,13 @@ impl FlatRegions {
         // A control vertex beyond the rim would be left over.
         let is_whole = is_used.iter().all(|&is_used| is_used);
         let Outline { area, length, after, .. } = outline;
-        let off = if after.is_empty() { 0.0 } else { 2.0 * self.off_planes * length };
+        let off = if after.is_empty() { 0.0 } else { 2.0 * off_planes * length };
         let is_same =
-            (by_rim || triangles.len() < before.len()) && (found - area).abs() <= SAME_AREA * area + off;
-        if !is_whole || !is_same || was_folded && !self.unfolds {
+            (is_wanted || triangles.len() < before.len()) && (found - area).abs() <= SAME_AREA * area + off;
+        if !is_whole || !is_same {
             return None;
         }
-        Some(Fate::Covered(Covering { triangles: by_face(triangles, &along)?, lines, was_folded }))
+        Some(Covering { triangles: by_face(triangles, &along)?, lines, was_folded })
     }
 }
 

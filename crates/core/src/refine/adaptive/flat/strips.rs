@@ -98,6 +98,16 @@ pub(super) struct Region {
     pub(super) flat: Option<u32>,
 }
 
+impl Region {
+    /// Whether some of its triangles are turned over.
+    pub(super) fn has_turned(&self, net: &Net<'_>) -> bool {
+        self.triangles.iter().any(|&triangle| {
+            let [a, b, c] = net.triangles[triangle as usize].map(|vertex| net.at(vertex));
+            (b - a).cross(c - a).dot(self.plane.normal) < 0.0
+        })
+    }
+}
+
 /// All of them, and the vertices between two of them that lie on straight lines.
 pub(super) struct Regions {
     pub(super) list: Vec<Region>,
