@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use limitmesh::Mesh;
 use limitmesh::index::FaceId;
-use limitmesh::measure::{SamplingOptions, hausdorff};
+use limitmesh::measure::{CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff};
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate};
@@ -436,11 +436,12 @@ fn rounded_coordinates_are_flat_and_curved_ones_are_not() {
     assert!(flat < facing(&kept, other).0);
 }
 
-/// A flat grid whose vertices were moved about: the rules fold some over their boundary.
-fn stirred_grid(columns: u32, rows: u32, numbers: &mut support::Random) -> Mesh {
+/// A flat grid whose vertices were moved about by so much at most: the rules fold some over their boundary.
+fn stirred_grid(columns: u32, rows: u32, numbers: &mut support::Random, most: f64) -> Mesh {
     let cells = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
-    let positions: Vec<[f64; 3]> =
-        cells.map(|(i, j)| [f64::from(i) + numbers.signed(), f64::from(j) + numbers.signed(), 0.0]).collect();
+    let positions: Vec<[f64; 3]> = cells
+        .map(|(i, j)| [f64::from(i) + most * numbers.signed(), f64::from(j) + most * numbers.signed(), 0.0])
+        .collect();
     Mesh::from_triangles(positions, support::grid(columns, rows)).unwrap()
 }
 
@@ -450,7 +451,7 @@ fn estimates_count_regions_that_stay() {
     let mut numbers = support::Random::new(11);
     let mut kept = 0;
     for case in 0..40 {
-        let mesh = stirred_grid(4 + case % 3, 4 + case % 2, &mut numbers);
+        let mesh = stirred_grid(4 + case % 3, 4 + case % 2, &mut numbers, 1.0);
         let options = within(3e-4 * mesh.diagonal()).unfold(case % 2 == 0);
         let result = exact(&mesh, &Loop, &options).unwrap();
         let estimate = exact_estimate(&mesh, &Loop, &options).unwrap();
@@ -460,6 +461,38 @@ fn estimates_count_regions_that_stay() {
         kept += usize::from(result.mesh.vertex_count() > mesh.vertex_count() + on_rim);
     }
     assert!(kept > 3, "{kept}");
+}
+
+/// What grids and plates that fold stand for is the same at each tolerance: a mesh within one is as near as told to that within a much smaller one.
+#[test]
+fn what_folds_is_the_same_at_each_tolerance() {
+    let mut numbers = support::Random::new(12);
+    let (mut unfolded, mut folded) = (0, 0);
+    for case in 0..12 {
+        let mesh = match case % 2 {
+            0 => stirred_grid(4 + case % 3, 4 + case % 5, &mut numbers, 0.2 + 0.1 * f64::from(case % 9)),
+            _ => {
+                let plate = plate_of_slivers(12 + case);
+                let most = 0.01 * f64::from(case % 8);
+                let stirred =
+                    |&[x, y, z]: &[f64; 3]| [x + most * numbers.signed(), y + most * numbers.signed(), z];
+                let positions = plate.positions().iter().map(stirred).collect();
+                plate.with_positions(positions).unwrap()
+            }
+        };
+        let within = |share: f64| exact(&mesh, &Loop, &within(share * mesh.diagonal()).unfold(true)).unwrap();
+        let fine = within(1e-4);
+        for found in [0.03, 0.01, 3e-3].map(within) {
+            let options = CertifiedOptions::default().gap(Some(1e-4 * mesh.diagonal()));
+            let apart = certified_hausdorff(found.mesh.as_triangles(), fine.mesh.as_triangles(), &options);
+            let apart = apart.unwrap();
+            let off = fine.error.upper;
+            assert!(apart.lower() <= found.error.upper + off, "{case}: {:?} {}", found.error, apart.lower());
+            assert!(found.error.lower <= apart.upper() + off, "{case}: {:?} {}", found.error, apart.upper());
+        }
+        (unfolded, folded) = (unfolded + fine.unfolded, folded + usize::from(fine.inverted_triangles() > 0));
+    }
+    assert!(unfolded > 2 && folded > 2, "{unfolded} {folded}");
 }
 
 /// Separate planar squares, whose surfaces are bent along their boundaries alone: a number of triangles is used for these, and takes about as many

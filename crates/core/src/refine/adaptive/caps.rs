@@ -105,9 +105,7 @@ pub(in crate::refine) fn within(
         };
         let outcome = engine.emit(plan, most, false)?;
         let found = outcome.map(|outcome| outcome.finish(engine, ExactStop::Met, options)).transpose()?;
-        let has_gaps =
-            !engine.control.flat.gaps((engine.control, &engine.edges), 0, engine.watch)?.are_none();
-        Ok(found.filter(|_| !has_gaps))
+        Ok(found.filter(|_| !engine.control.flat.has_gaps()))
     })
 }
 

@@ -20,7 +20,7 @@ use crate::certificate::{Cell, Pieces, SubTriangle};
 use crate::parallel::IsStopped;
 use crate::patch::{LimitPoint, Spot};
 pub(super) use judged::{Closed, Counts};
-use judged::{Judged, JudgedLeaves, recall};
+use judged::{Judged, recall};
 pub(super) use unfinished::Unfinished;
 
 /// Leaves that are judged between two questions whether that is still of use.
@@ -108,9 +108,8 @@ impl Closing<'_> {
         recall(known.known(), &mut leaves);
         self.judge(face, (&mut leaves, allowance), &mut None, is_stopped);
         let failing = self.failing(&leaves);
-        let is_none = leaves.is_empty();
-        let judged = (!is_none).then(|| Box::new(JudgedLeaves::of(leaves, trees, self.max_levels)));
-        (Closed { vertices: walk.next, triangles: triangles as u32, leaves: count, judged }, failing)
+        let counts = Counts { vertices: walk.next, triangles: triangles as u32, leaves: count };
+        (Closed::of(counts, leaves, trees, self.max_levels), failing)
     }
 
     /// Closes a face again, of which leaves were `split` since, by looking at the leaves that see these: `seen`. Both are in the order of

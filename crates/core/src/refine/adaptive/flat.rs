@@ -8,8 +8,8 @@
 //! of the other is between a curve and its chord, in the convex hull of the curve, so no farther from the chord than that curve's
 //! points are; and as near as that to the curve: of the two ways from it at right angles to the chord one at least meets the curve and not the
 //! chord before. So curves and chords are all there is to judge. That is so where the surface is proven not to be turned over
-//! ([`unfolded`]), or where what the rim encloses is asked for ([`ExactOptions::unfold`]) and *is* the surface; and only where
-//! nothing smooth goes on beyond the rim.
+//! ([`unfolded`]), or where what the rim encloses is asked for ([`ExactOptions::unfold`]) and *is* the surface ([`enclosed`]); and only
+//! where nothing smooth goes on beyond the rim. Rims whose chords cross are divided further ([`gaps`]).
 //!
 //! **By their triangles.** Elsewhere the triangles are judged as all are. Where they all turn the same way and the rim is simple, they cover what
 //! is inside of the rim: before and after it is the same set of points, and what is proven of the one holds for the other. Where some are
@@ -56,10 +56,6 @@ const OF_TOLERANCE: f64 = 1e-3;
 /// Heights over a plane are known to this part of the greatest coordinate.
 const HEIGHT_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Pieces of the surface may be turned over unnoticed that are smaller than this part of the greatest coordinate, or than what the regions may be off
-/// their planes: what that does to distances is counted.
-const NEGLIGIBLE: f64 = 1e-10;
-
 /// Faces whose unit normals differ by more than this are not looked at any closer.
 const ALIKE: f64 = 1e-3;
 
@@ -73,9 +69,6 @@ const BLOCK: usize = 1024;
 /// The same where each takes some tenths of a millisecond, and how many may take that.
 const UNFOLDED: usize = 16;
 const MOST_UNFOLDED: usize = 4096;
-
-/// The same of one region between two calls of the observer.
-const FEW_UNFOLDED: usize = 256;
 
 /// A plane through a point.
 #[derive(Clone, Copy, Debug)]
@@ -105,8 +98,6 @@ pub(super) struct FlatRegions {
     unfolds: bool,
     /// By region, whether its triangles are judged by the rim alone.
     by_rim: Vec<bool>,
-    /// By region, whether the surface may fold over it; looked at where it matters.
-    may_fold: Vec<OnceLock<bool>>,
     /// By region, whether what its limit curves enclose can stand for it; looked at where it folds.
     enclosed: Vec<OnceLock<bool>>,
     /// By region, the first of those with which it is judged together.
@@ -194,7 +185,7 @@ impl FlatRegions {
         let mut is_merged: Vec<bool> = of_face.iter().map(|&region| region != NONE).collect();
         straight.iter().for_each(|&face| is_merged[face as usize] = true);
         let unfolds = options.unfold;
-        let [may_fold, enclosed] = [(); 2].map(|()| regions.iter().map(|_| OnceLock::new()).collect());
+        let enclosed = regions.iter().map(|_| OnceLock::new()).collect();
         let mut found = Self {
             of_face,
             straight,
@@ -202,7 +193,6 @@ impl FlatRegions {
             off_planes,
             unfolds,
             by_rim: Vec::new(),
-            may_fold,
             enclosed,
             joined: Vec::new(),
             beyond_rims: 0.0,
@@ -211,9 +201,6 @@ impl FlatRegions {
             weight,
         };
         found.by_rim = found.by_rim((control, edges), (options, most), watch)?;
-        if unfolds && found.by_rim.contains(&false) {
-            found.beyond_rims = most.min(NEGLIGIBLE * size);
-        }
         found.join((control, edges), &normals, (most, size), watch)?;
         Ok(found)
     }
@@ -231,11 +218,9 @@ impl FlatRegions {
         if !is_asked || !control.rules.is_certified() {
             return Ok(by_rim);
         }
-        watch.each((0..).zip(by_rim.iter_mut()).zip(&self.regions), |((region, by_rim), (faces, _))| {
-            let is_smooth =
-                |h: u32| self.is_rim((control, edges), h) && control.lasting.edge(HalfEdgeId(h)) <= 0.0;
-            *by_rim = !control.demands.judges_by_triangles(region)
-                && !faces.iter().any(|&face| (3 * face..3 * face + 3).any(is_smooth));
+        watch.each((0..).zip(&mut by_rim), |(region, by_rim)| {
+            let may_be = !control.demands.judges_by_triangles(region);
+            *by_rim = may_be && !self.has_smooth_rim((control, edges), region);
         })?;
         let is_by_rim = |face: u32| self.region(face).is_some_and(|region| by_rim[region as usize]);
         let faces: Vec<u32> = (0..self.of_face.len() as u32).filter(|&face| is_by_rim(face)).collect();
@@ -264,16 +249,11 @@ impl FlatRegions {
         self.region(face).is_some_and(|region| self.by_rim[region as usize])
     }
 
-    /// Whether nothing but its rim is certainly part of the surface over a face: its region is judged by that alone, or may fold and be told
-    /// to be unfolded once it is triangulated.
-    pub(super) fn is_within_rim(&self, control: &Control<'_>, face: u32) -> bool {
-        let Some(region) = self.region(face).filter(|_| self.unfolds || self.is_its_rim(face)) else {
-            return false;
-        };
-        let (faces, plane) = &self.regions[region as usize];
-        let folds = |&face: &u32| !is_unfolded(control, face, plane, self.beyond_rims);
-        let may_fold = || faces.len() > FEW_UNFOLDED || faces.iter().any(folds);
-        self.is_its_rim(face) || *self.may_fold[region as usize].get_or_init(may_fold)
+    /// Whether nothing but its rim is certainly part of the surface over a face: its region is judged by that alone, or may be unfolded
+    /// once it is triangulated.
+    pub(super) fn is_within_rim(&self, mesh: (&Control<'_>, &Edges<'_>), face: u32) -> bool {
+        self.is_its_rim(face)
+            || self.unfolds && self.region(face).is_some_and(|region| !self.has_smooth_rim(mesh, region))
     }
 
     /// Whether there is a region that is judged by its rim alone.
@@ -338,6 +318,21 @@ impl FlatRegions {
             1 + rim.map(|h| chains.along(edges, h)).sum::<usize>()
         };
         (0..control.mesh.face_count() as u32).map(count).sum()
+    }
+
+    /// The half-edges around a region.
+    fn rim<'a>(
+        &'a self,
+        mesh: (&'a Control<'_>, &'a Edges<'_>),
+        region: u32,
+    ) -> impl Iterator<Item = u32> + 'a {
+        let faces = self.regions[region as usize].0.iter();
+        faces.flat_map(|&face| 3 * face..3 * face + 3).filter(move |&h| self.is_rim(mesh, h))
+    }
+
+    /// Whether the surface goes on smoothly somewhere beyond the rim of a region.
+    fn has_smooth_rim(&self, mesh: (&Control<'_>, &Edges<'_>), region: u32) -> bool {
+        self.rim(mesh, region).any(|h| mesh.0.lasting.edge(HalfEdgeId(h)) <= 0.0)
     }
 
     /// Whether a half-edge of a flat face is on the rim of its region.

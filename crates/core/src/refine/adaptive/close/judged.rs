@@ -70,6 +70,11 @@ impl Judged {
         Self { place, split, open, is_strict, from_end: false, extent: Extent::NONE, said: Said::Nothing }
     }
 
+    /// How many of its edges are split.
+    pub(super) fn split_edges(&self) -> usize {
+        self.split.iter().filter(|&&is_split| is_split).count()
+    }
+
     pub(super) fn is_said(&self) -> bool {
         !matches!(self.said, Said::Nothing)
     }
@@ -115,6 +120,14 @@ pub(super) fn recall(known: &[Judged], leaves: &mut [Judged]) {
 }
 
 impl Closed {
+    /// What a face comes to with these leaves, in the order of places.
+    pub(super) fn of(counts: Counts, leaves: Vec<Judged>, trees: &Trees, max_levels: u32) -> Self {
+        let Counts { vertices, triangles, leaves: count } = counts;
+        let is_none = leaves.is_empty();
+        let judged = (!is_none).then(|| Box::new(JudgedLeaves::of(leaves, trees, max_levels)));
+        Self { vertices, triangles, leaves: count, judged }
+    }
+
     /// What was said of leaves.
     pub(super) fn known(&self) -> &[Judged] {
         self.judged.as_ref().map_or(&[], |judged| &judged.leaves)
@@ -180,11 +193,11 @@ pub(super) fn in_walks_order<'l>(leaves: &'l [Judged], trees: &Trees) -> Vec<&'l
 
 impl JudgedLeaves {
     /// What was said of leaves, which are in the order of places.
-    pub(super) fn of(leaves: Vec<Judged>, trees: &Trees, max_levels: u32) -> Self {
+    fn of(leaves: Vec<Judged>, trees: &Trees, max_levels: u32) -> Self {
         let mut judged = Self::default();
         for leaf in in_walks_order(&leaves, trees) {
             let place = leaf.place;
-            if leaf.is_said() && leaf.split.iter().filter(|&&is_split| is_split).count() == 2 {
+            if leaf.is_said() && leaf.split_edges() == 2 {
                 judged.diagonals.push(leaf.from_end);
             }
             let bound = if leaf.is_said() { leaf.extent.bound } else { f64::INFINITY };

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::super::quadtree::{MOST_LEVELS, Place, Trees};
 use super::super::surface::SurfacePiece;
-use super::judged::{Closed, Judged, JudgedLeaves};
+use super::judged::{Closed, Counts, Judged};
 
 /// What has changed of a face since it was closed.
 pub(in super::super) struct Unfinished {
@@ -42,9 +42,8 @@ impl Unfinished {
         if before.is_none() && leaf.is_none() {
             return;
         }
-        let split_edges = |leaf: &Judged| leaf.split.iter().filter(|&&is_split| is_split).count();
-        self.split_edges -= before.map_or(0, split_edges);
-        self.split_edges += leaf.as_ref().map_or(0, split_edges);
+        self.split_edges -= before.map_or(0, Judged::split_edges);
+        self.split_edges += leaf.as_ref().map_or(0, Judged::split_edges);
         self.later.insert(order(place), leaf);
     }
 
@@ -69,12 +68,8 @@ impl Unfinished {
             }
         }
         leaves.extend(later.filter_map(|(_, new)| new));
-        let judged = match leaves.is_empty() {
-            true => None,
-            false => Some(Box::new(JudgedLeaves::of(leaves, trees, max_levels))),
-        };
         let Closed { vertices, triangles, leaves: count, .. } = known;
-        let found = Closed { vertices, triangles, leaves: count, judged };
+        let found = Closed::of(Counts { vertices, triangles, leaves: count }, leaves, trees, max_levels);
         let is_same = found.is_judged_as(&known);
         (found, is_same)
     }

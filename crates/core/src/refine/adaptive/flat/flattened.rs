@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::Plane;
+use super::{Plane, planar};
+use crate::parallel::IsStopped;
 use crate::vector::{DVec3, vector};
 
 /// Twice the area of a triangle may be as far below zero by rounding, where the region is as large as one.
@@ -14,8 +15,8 @@ pub(super) struct Flattened<'a> {
     axes: [DVec3; 2],
     off_plane: f64,
     positions: &'a [[f64; 3]],
-    pub(super) numbers: HashMap<u32, u32>,
-    pub(super) vertices: Vec<u32>,
+    numbers: HashMap<u32, u32>,
+    vertices: Vec<u32>,
     /// The greatest coordinate of a triangle's corner so far.
     size: f64,
 }
@@ -63,8 +64,25 @@ impl<'a> Flattened<'a> {
         number
     }
 
+    /// Triangles that cover what lies to the left of rim edges, given by numbers, and twice their area; `None` where there are none, some are turned over, or
+    /// vertices are left over, as beyond the rim.
+    pub(super) fn triangulated(
+        &mut self,
+        rim: &[[u32; 2]],
+        is_stopped: &IsStopped<'_>,
+    ) -> Option<(Vec<[u32; 3]>, f64)> {
+        let mut triangles = planar::triangulated(&self.points()?, rim, is_stopped)?;
+        let (mut area, mut is_used) = (0.0, vec![false; self.vertices.len()]);
+        for triangle in &mut triangles {
+            triangle.iter().for_each(|&number| is_used[number as usize] = true);
+            *triangle = triangle.map(|number| self.vertices[number as usize]);
+            area += self.area(*triangle).filter(|&part| self.is_positive(part))?;
+        }
+        is_used.iter().all(|&is_used| is_used).then_some((triangles, area))
+    }
+
     /// All of them, no coordinate greater than one; `None` where there is no telling them apart.
-    pub(super) fn points(&self) -> Option<Vec<[f64; 2]>> {
+    fn points(&self) -> Option<Vec<[f64; 2]>> {
         let is_sized = self.size.is_normal();
         is_sized.then(|| self.vertices.iter().map(|&vertex| self.at(vertex).map(|x| x / self.size)).collect())
     }

@@ -56,7 +56,12 @@ impl Gaps {
 }
 
 impl FlatRegions {
-    /// The regions that had gaps in what was put together so far, at this attempt.
+    /// Whether some regions had gaps in what was put together so far.
+    pub(in super::super) fn has_gaps(&self) -> bool {
+        !self.gaps.lock().unwrap_or_else(PoisonError::into_inner).is_empty()
+    }
+
+    /// These regions, at this attempt.
     pub(in super::super) fn gaps(
         &self,
         (control, edges): (&Control<'_>, &Edges<'_>),
@@ -68,7 +73,7 @@ impl FlatRegions {
             let along = gaps.0.entry(region).or_default();
             // In the end as far as it is known to be of use.
             let is_last = attempt + 1 == MOST_DIVISIONS && self.unfolds && !chords.is_empty();
-            let least = if is_last { Self::divisions(self.rim((control, edges), region).len()) } else { 0 };
+            let least = if is_last { Self::divisions(self.rim((control, edges), region).count()) } else { 0 };
             watch.each(chords, |(&face, &count)| {
                 let open = control.open(face);
                 let count_open = open.iter().filter(|&&open| open).count().max(1);

@@ -5,11 +5,11 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::super::control::Control;
 use super::super::quadtree::Edges;
+use super::FlatRegions;
 use super::flattened::Flattened;
 use super::gaps::chords;
 use super::replace::{Assembled, Covering, Merged, edges};
 use super::strips::{Net, Region, Regions};
-use super::{FlatRegions, planar};
 use crate::parallel::IsStopped;
 use crate::progress::{Cancelled, SharedWatch};
 
@@ -170,23 +170,12 @@ impl FlatRegions {
         let rim: Vec<[u32; 2]> =
             along.iter().map(|(ends, _)| ends.map(|vertex| flat.number(vertex))).collect();
         let along: HashMap<[u32; 2], u32> = along.into_iter().collect();
-        let points = flat.points()?;
-        let triangles = planar::triangulated(&points, &rim, is_stopped)?;
-        let triangles: Vec<[u32; 3]> =
-            triangles.iter().map(|triangle| triangle.map(|point| flat.vertices[point as usize])).collect();
-        let (mut found, mut is_used) = (0.0, vec![false; points.len()]);
-        for &triangle in &triangles {
-            let part = flat.area(triangle).filter(|&part| flat.is_positive(part))?;
-            found += part;
-            triangle.iter().for_each(|&vertex| is_used[flat.numbers[&vertex] as usize] = true);
-        }
-        // A control vertex beyond the rim would be left over.
-        let is_whole = is_used.iter().all(|&is_used| is_used);
+        let (triangles, found) = flat.triangulated(&rim, is_stopped)?;
         let Outline { area, length, after, .. } = outline;
         let off = if after.is_empty() { 0.0 } else { 2.0 * off_planes * length };
         let is_same =
             (is_wanted || triangles.len() < before.len()) && (found - area).abs() <= SAME_AREA * area + off;
-        if !is_whole || !is_same {
+        if !is_same {
             return None;
         }
         Some(Covering { triangles: by_face(triangles, &along)?, lines, was_folded })
