@@ -76,8 +76,12 @@ impl Place {
     /// The order of faces, and in each that of a walk over leaves.
     pub(crate) fn in_order(&self, other: &Self) -> core::cmp::Ordering {
         let most = self.level.max(other.level);
-        let key = |place: &Self| (place.face, place.path << (2 * (most - place.level)), place.level);
-        key(self).cmp(&key(other))
+        self.face.cmp(&other.face).then_with(|| self.key(most).cmp(&other.key(most)))
+    }
+
+    /// What stands in that order for nodes of a face down to a level.
+    pub(crate) fn key(&self, most: u32) -> (u64, u32) {
+        (self.path << (2 * (most - self.level)), self.level)
     }
 
     /// Whether another is this node or one below it.

@@ -445,6 +445,48 @@ fn stirred_grid(columns: u32, rows: u32, numbers: &mut support::Random, most: f6
     Mesh::from_triangles(positions, support::grid(columns, rows)).unwrap()
 }
 
+/// Flat strips side by side, sharp in between, whose vertices on both sides are of any number and much farther apart along them than across;
+/// those around all stay.
+fn strips_between_sharp_lines(numbers: &mut support::Random) -> Mesh {
+    const LENGTH: f64 = 8.0;
+    let (mut positions, mut rows) = (Vec::new(), Vec::<Vec<u32>>::new());
+    let mut y = 0.0;
+    for _ in 0..4 {
+        let edges = 3 + (3.5 * (numbers.signed() + 1.0)) as u32;
+        let most = [0.0, 0.3, 0.8, 1.3][(2.0 * (numbers.signed() + 1.0)) as usize % 4];
+        let first = positions.len() as u32;
+        rows.push((first..=first + edges).collect());
+        for i in 0..=edges {
+            let x = LENGTH * f64::from(i) / f64::from(edges);
+            positions.push([x, y + 0.5 * most * (numbers.signed() + 1.0), 0.0]);
+        }
+        y += [0.2, 0.5, 1.2][(1.5 * (numbers.signed() + 1.0)) as usize % 3];
+    }
+    let mut triangles = Vec::new();
+    for sides in rows.windows(2) {
+        let [low, high] = [&sides[0], &sides[1]];
+        let (mut i, mut j) = (0, 0);
+        while i + 1 < low.len() || j + 1 < high.len() {
+            let next = |row: &[u32], at: usize| row.get(at + 1).map(|&vertex| positions[vertex as usize][0]);
+            let is_low = match [next(low, i), next(high, j)] {
+                [Some(below), Some(above)] => below <= above,
+                [below, _] => below.is_some(),
+            };
+            let third = if is_low { low[i + 1] } else { high[j + 1] };
+            triangles.push([low[i], third, high[j]]);
+            if is_low { i += 1 } else { j += 1 }
+        }
+    }
+    let mesh = Mesh::from_triangles(positions, triangles).unwrap();
+    let inner = rows[1..rows.len() - 1].iter().flat_map(|row| row.windows(2));
+    let creases = inner.map(|edge| CreaseTag { vertices: [edge[0], edge[1]], sharpness: INFINITELY_SHARP });
+    let is_inside =
+        |vertex: &u32| rows[1..rows.len() - 1].iter().any(|row| row[1..row.len() - 1].contains(vertex));
+    let around = (0..mesh.vertex_count() as u32).filter(|vertex| !is_inside(vertex));
+    let corners = around.map(|vertex| CornerTag { vertex, sharpness: INFINITELY_SHARP }).collect();
+    mesh.with_tags(Tags { creases: creases.collect(), corners }).unwrap()
+}
+
 /// Regions that cannot be triangulated from their rims keep their triangles, and estimates count these.
 #[test]
 fn estimates_count_regions_that_stay() {
@@ -463,14 +505,15 @@ fn estimates_count_regions_that_stay() {
     assert!(kept > 3, "{kept}");
 }
 
-/// What grids and plates that fold stand for is the same at each tolerance: a mesh within one is as near as told to that within a much smaller one.
+/// What grids, plates and strips that fold stand for is the same at each tolerance: a mesh within one is as near as told to that within a much smaller one.
 #[test]
 fn what_folds_is_the_same_at_each_tolerance() {
     let mut numbers = support::Random::new(12);
     let (mut unfolded, mut folded) = (0, 0);
-    for case in 0..12 {
-        let mesh = match case % 2 {
-            0 => stirred_grid(4 + case % 3, 4 + case % 5, &mut numbers, 0.2 + 0.1 * f64::from(case % 9)),
+    for case in 0..24 {
+        let mesh = match case % 3 {
+            2 => strips_between_sharp_lines(&mut numbers),
+            0 => stirred_grid(4 + case % 4, 4 + case % 5, &mut numbers, 0.2 + 0.1 * f64::from(case % 9)),
             _ => {
                 let plate = plate_of_slivers(12 + case);
                 let most = 0.01 * f64::from(case % 8);
@@ -487,6 +530,8 @@ fn what_folds_is_the_same_at_each_tolerance() {
             let apart = certified_hausdorff(found.mesh.as_triangles(), fine.mesh.as_triangles(), &options);
             let apart = apart.unwrap();
             let off = fine.error.upper;
+            assert!(fine.error.lower <= fine.error.upper, "{case}: {:?}", fine.error);
+            assert!(found.error.lower <= found.error.upper, "{case}: {:?}", found.error);
             assert!(apart.lower() <= found.error.upper + off, "{case}: {:?} {}", found.error, apart.lower());
             assert!(found.error.lower <= apart.upper() + off, "{case}: {:?} {}", found.error, apart.upper());
         }

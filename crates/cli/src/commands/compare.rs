@@ -21,7 +21,7 @@ use crate::input;
 use crate::output;
 use crate::progress::Progress;
 use crate::reference::{self, Reference, USUAL_LEVELS};
-use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport};
+use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport, percent};
 
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
@@ -204,21 +204,21 @@ impl Judge<'_> {
         let options = SamplingOptions::default().samples(self.arguments.samples);
         let distance = hausdorff_between(&Bvh::new(surface)?, self.tree, &options);
         let quality = triangle_quality(surface);
-        let percent = 100.0 / self.diagonal.max(f64::MIN_POSITIVE);
+        let percent = |length| percent(length, self.diagonal.max(f64::MIN_POSITIVE));
         Ok(ComparedMethod {
             method,
             angle_degrees,
             levels,
             triangles: surface.triangles.len(),
             symmetric: distance.symmetric(),
-            symmetric_percent: percent * distance.symmetric(),
-            mean_percent: percent * distance.forward.mean,
-            rms_percent: percent * distance.forward.rms,
+            symmetric_percent: percent(distance.symmetric()),
+            mean_percent: percent(distance.forward.mean),
+            rms_percent: percent(distance.forward.rms),
             certified: certified.map(|[lower, upper]| CertifiedErrorReport {
                 lower,
                 upper,
-                lower_percent: percent * lower,
-                upper_percent: percent * upper,
+                lower_percent: percent(lower),
+                upper_percent: percent(upper),
             }),
             samples: distance.forward.samples + distance.backward.samples,
             min_angle_degrees: quality.min_angle_degrees,

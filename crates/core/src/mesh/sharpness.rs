@@ -42,6 +42,8 @@ pub struct Sharpness<'m> {
     tagged: Vec<u64>,
     /// Both half-edges of each sharp interior edge, ascending, and their sharpness.
     half_edges: Vec<(HalfEdgeId, f64)>,
+    /// By 64 half-edges, which of them these are, one bit each, and how many come before; empty where there are none.
+    sharp: Vec<(u64, u32)>,
     /// Tagged vertices, ascending, and their sharpness.
     vertices: Vec<(VertexId, f64)>,
 }
@@ -77,7 +79,19 @@ impl<'m> Sharpness<'m> {
                 tagged[v.index() / 64] |= 1u64 << (v.index() % 64);
             }
         }
-        Self { topology, tagged, half_edges, vertices }
+        let mut sharp = Vec::new();
+        if let Some((last, _)) = half_edges.last() {
+            sharp.resize(last.index() / 64 + 1, (0, 0));
+            for (h, _) in &half_edges {
+                sharp[h.index() / 64].0 |= 1u64 << (h.index() % 64);
+            }
+            let mut before = 0;
+            for (bits, rank) in &mut sharp {
+                *rank = before;
+                before += bits.count_ones();
+            }
+        }
+        Self { topology, tagged, half_edges, sharp, vertices }
     }
 
     /// What is left after so many levels of refinement that only what never fades is still sharp.
@@ -124,11 +138,12 @@ impl<'m> Sharpness<'m> {
         if self.topology.twin(h).is_none() {
             return f64::INFINITY;
         }
-        // Most edges at tagged vertices lead to others.
-        if self.is_empty() || !self.topology.ends(h).iter().all(|&end| self.is_tagged(end)) {
+        let Some(&(bits, before)) = self.sharp.get(h.index() / 64) else { return 0.0 };
+        let at = 1u64 << (h.index() % 64);
+        if bits & at == 0 {
             return 0.0;
         }
-        self.half_edges.binary_search_by_key(&h, |&(h, _)| h).map_or(0.0, |i| self.half_edges[i].1)
+        self.half_edges[(before + (bits & (at - 1)).count_ones()) as usize].1
     }
 
     /// The sharpness of `vertex` by its tag, whatever its edges: 0 without one.

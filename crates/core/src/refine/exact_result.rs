@@ -96,6 +96,9 @@ pub struct Exact {
     /// Flat regions that the scheme's rules fold over, inside or beyond their rims, as they do where a fan of slivers meets
     /// a hole: what the rim encloses stands in their place, and is the surface that [`Self::error`] is about.
     pub unfolded: usize,
+    /// Flat regions, by their first control faces, whose surface is taken to be what their rims enclose, whether the rules fold it or not;
+    /// ascending.
+    pub(crate) within_rims: Vec<u32>,
     /// The control face of each triangle; after optimisation, whose triangles reach over several, one of these.
     pub parents: Vec<u32>,
     /// Whether edges were collapsed ([`ExactOptions::optimize`](super::ExactOptions::optimize)): triangles reach over several control

@@ -99,6 +99,7 @@ pub(super) fn simplified(
         sides,
         off_planes: fine.off_planes,
         unfolded: fine.unfolded,
+        within_rims: fine.within_rims,
         parents,
         is_optimized: true,
         side_origins,

@@ -36,6 +36,7 @@ use unfolded::is_unfolded;
 
 use super::chains::Chains;
 use super::control::Control;
+use super::demands::Demands;
 use super::quadtree::Edges;
 use crate::index::HalfEdgeId;
 use crate::mesh::NONE;
@@ -44,7 +45,7 @@ use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_options::ExactOptions;
 use crate::vector::{DVec3, vector};
 use std::collections::BTreeMap;
-use std::sync::{Mutex, OnceLock};
+use std::sync::Mutex;
 
 /// How far control points may be off a plane, as a part of the greatest coordinate: files in single precision round to half of this.
 /// How far they are is measured, and counted with every distance.
@@ -98,8 +99,8 @@ pub(super) struct FlatRegions {
     unfolds: bool,
     /// By region, whether its triangles are judged by the rim alone.
     by_rim: Vec<bool>,
-    /// By region, whether what its limit curves enclose can stand for it; looked at where it folds.
-    enclosed: Vec<OnceLock<bool>>,
+    /// By region, whether what its limit curves enclose is its surface, or stands for it where that folds; none unless that is asked for.
+    is_enclosed: Vec<bool>,
     /// By region, the first of those with which it is judged together.
     joined: Vec<u32>,
     /// How far beyond its rim the surface over such a region may reach for all that was proven.
@@ -185,7 +186,6 @@ impl FlatRegions {
         let mut is_merged: Vec<bool> = of_face.iter().map(|&region| region != NONE).collect();
         straight.iter().for_each(|&face| is_merged[face as usize] = true);
         let unfolds = options.unfold;
-        let enclosed = regions.iter().map(|_| OnceLock::new()).collect();
         let mut found = Self {
             of_face,
             straight,
@@ -193,12 +193,16 @@ impl FlatRegions {
             off_planes,
             unfolds,
             by_rim: Vec::new(),
-            enclosed,
+            is_enclosed: Vec::new(),
             joined: Vec::new(),
             beyond_rims: 0.0,
             gaps: Mutex::default(),
             is_merged,
             weight,
+        };
+        found.is_enclosed = match unfolds {
+            true => found.enclosed((control, edges), IN_PLANE * size, watch)?,
+            false => vec![false; found.regions.len()],
         };
         found.by_rim = found.by_rim((control, edges), (options, most), watch)?;
         found.join((control, edges), &normals, (most, size), watch)?;
@@ -220,7 +224,11 @@ impl FlatRegions {
         }
         watch.each((0..).zip(&mut by_rim), |(region, by_rim)| {
             let may_be = !control.demands.judges_by_triangles(region);
-            *by_rim = may_be && !self.has_smooth_rim((control, edges), region);
+            *by_rim = may_be
+                && match self.unfolds {
+                    true => self.is_enclosed[region as usize],
+                    false => !self.has_smooth_rim((control, edges), region),
+                };
         })?;
         let is_by_rim = |face: u32| self.region(face).is_some_and(|region| by_rim[region as usize]);
         let faces: Vec<u32> = (0..self.of_face.len() as u32).filter(|&face| is_by_rim(face)).collect();
@@ -249,11 +257,20 @@ impl FlatRegions {
         self.region(face).is_some_and(|region| self.by_rim[region as usize])
     }
 
-    /// Whether nothing but its rim is certainly part of the surface over a face: its region is judged by that alone, or may be unfolded
-    /// once it is triangulated.
-    pub(super) fn is_within_rim(&self, mesh: (&Control<'_>, &Edges<'_>), face: u32) -> bool {
-        self.is_its_rim(face)
-            || self.unfolds && self.region(face).is_some_and(|region| !self.has_smooth_rim(mesh, region))
+    /// Whether nothing but its rim is certainly part of the surface over a face: its region is judged by that alone, or what the rim encloses
+    /// stands for it wherever that can be triangulated.
+    pub(super) fn is_within_rim(&self, face: u32) -> bool {
+        self.is_its_rim(face) || self.region(face).is_some_and(|region| self.is_enclosed[region as usize])
+    }
+
+    /// The first control faces of regions for whose surface what their rims enclose is taken, ascending.
+    pub(super) fn within_rims(&self, demands: &Demands) -> Vec<u32> {
+        let is_taken =
+            |&region: &u32| self.is_enclosed[region as usize] && !demands.judges_by_triangles(region);
+        let taken = (0..self.regions.len() as u32).filter(is_taken);
+        let mut first: Vec<u32> = taken.map(|region| self.regions[region as usize].0[0]).collect();
+        first.sort_unstable();
+        first
     }
 
     /// Whether there is a region that is judged by its rim alone.

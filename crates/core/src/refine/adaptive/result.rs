@@ -127,6 +127,7 @@ impl Engine<'_> {
             origins,
             off_planes: control.flat.off_planes(),
             unfolded,
+            within_rims: control.flat.within_rims(control.demands),
             parents,
             is_optimized: false,
             side_origins: Vec::new(),

@@ -105,7 +105,7 @@ fn middling(
         }
         found.replay.frame(positions, &mut frame)?;
         let triangles = found.refined.mesh.triangles();
-        let surface = (Triangles { positions: &frame.positions, triangles }, 0);
+        let surface = (Triangles { positions: &frame.positions, triangles }, &[][..]);
         *error = tighter::tighter(*error, surface, (&control, scheme), options, observer)?;
     }
     let upper = found.errors.iter().map(|error| error.upper).fold(0.0, f64::max);

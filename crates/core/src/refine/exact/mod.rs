@@ -48,7 +48,7 @@ pub fn exact_observed(
         false => adaptive(control, scheme, options, observer)?,
     };
     if options.tightens {
-        let surface = (found.mesh.as_triangles(), found.unfolded);
+        let surface = (found.mesh.as_triangles(), &found.within_rims[..]);
         found.error = tighter::tighter(found.error, surface, (control, scheme), options, observer)?;
     }
     let upper = found.error.upper;

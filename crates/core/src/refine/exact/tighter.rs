@@ -50,10 +50,10 @@ pub(super) fn is_loose(error: &ErrorBounds, control: &Mesh) -> bool {
     error.certified && known.distance().is_normal() && !known.is_tight()
 }
 
-/// The bounds of a surface with so many regions unfolded, as tight as it is worth while to make them.
+/// The bounds of a surface of which some [regions](Exact::within_rims) are what their rims enclose, as tight as it is worth while to make them.
 pub(super) fn tighter(
     error: ErrorBounds,
-    (surface, unfolded): (Triangles<'_>, usize),
+    (surface, within_rims): (Triangles<'_>, &[u32]),
     (control, scheme): (&Mesh, &dyn Scheme),
     options: &ExactOptions,
     observer: &mut Observer<'_>,
@@ -75,11 +75,11 @@ pub(super) fn tighter(
     // Where there is no bound yet, one that is not tight is of no use.
     let is_bounded = error.upper.is_finite();
     let nearer = |near: f64, observer: &mut Observer<'_>| -> Result<Option<Exact>, RefineError> {
-        let goals = ExactOptions::default().unfold(unfolded > 0).origins(false).tolerance(near);
+        let goals = ExactOptions::default().unfold(!within_rims.is_empty()).origins(false).tolerance(near);
         // Of use are few triangles to be made, not few to be left, and bounds that are met, not tight ones.
         let goals = ExactOptions { strips: false, tightens: false, ..goals };
         let found = within(control, scheme, (&goals, most), observer)?;
-        Ok(found.filter(|found| found.unfolded == unfolded && found.error.upper.is_finite()))
+        Ok(found.filter(|found| found.within_rims == within_rims && found.error.upper.is_finite()))
     };
     let coarse = if is_bounded { COARSE * error.upper } else { 0.0 };
     let mut near = (FIRST / COARSE * coarse).max(known.finest());

@@ -17,11 +17,6 @@ pub(in super::super) struct Unfinished {
     pub(super) piece: Option<Box<SurfacePiece>>,
 }
 
-/// Where a place stands in the order of those of a face.
-fn order(place: Place) -> (u64, u32) {
-    (place.path << (2 * (MOST_LEVELS - place.level)), place.level)
-}
-
 impl Unfinished {
     pub(in super::super) fn of(known: &Closed) -> Self {
         let split_edges = (known.triangles as usize).saturating_sub(known.leaves);
@@ -30,7 +25,7 @@ impl Unfinished {
 
     /// What is said of a leaf, of which `known` was said before.
     pub(super) fn leaf<'l>(&'l self, known: &'l [Judged], place: Place) -> Option<&'l Judged> {
-        match self.later.get(&order(place)) {
+        match self.later.get(&place.key(MOST_LEVELS)) {
             Some(later) => later.as_ref(),
             None => known.binary_search_by(|leaf| leaf.place.in_order(&place)).ok().map(|at| &known[at]),
         }
@@ -44,7 +39,7 @@ impl Unfinished {
         }
         self.split_edges -= before.map_or(0, Judged::split_edges);
         self.split_edges += leaf.as_ref().map_or(0, Judged::split_edges);
-        self.later.insert(order(place), leaf);
+        self.later.insert(place.key(MOST_LEVELS), leaf);
     }
 
     /// What the face comes to, with the counts that it has now, and whether that is what was judged before.
@@ -58,7 +53,7 @@ impl Unfinished {
         let mut leaves = Vec::with_capacity(before.len() + self.later.len());
         let mut later = self.later.into_iter().peekable();
         for leaf in before {
-            let at = order(leaf.place);
+            let at = leaf.place.key(MOST_LEVELS);
             while let Some((_, new)) = later.next_if(|&(other, _)| other < at) {
                 leaves.extend(new);
             }

@@ -1,4 +1,4 @@
-//! Whether what is around a flat region encloses something that can stand for its surface where that folds.
+//! Whether what is around a flat region encloses something that can stand for its surface, also where that folds.
 //!
 //! The limit curves of its rim are looked at, each divided into as many chords whatever else is asked for: so it is the same surface at
 //! each tolerance, and for those who measure against it.
@@ -14,22 +14,30 @@ use super::flattened::Flattened;
 use super::merge::SAME_AREA;
 use crate::node::along_edge;
 use crate::parallel::IsStopped;
-use crate::vector::DVec3;
+use crate::progress::{Cancelled, SharedWatch};
+use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// Curves are divided so many times at most, and into so many chords all together, about.
-const MOST_DIVISIONS: u32 = 6;
+const MOST_DIVISIONS: u32 = 4;
 const MOST_CHORDS: usize = 1 << 16;
 
+/// Regions that one call takes together.
+const BLOCK: usize = 16;
+
 impl FlatRegions {
-    /// Whether the limit curves around a region, none of which is smooth and which do not cross then, enclose all of its vertices, and nothing twice.
-    pub(super) fn is_enclosed(
+    /// By region, whether the limit curves around it, none of which is smooth and which do not cross then, enclose all of its vertices, and
+    /// nothing twice. What is off a straight line by less than `rounding` is none.
+    pub(super) fn enclosed(
         &self,
         mesh: (&Control<'_>, &Edges<'_>),
-        region: u32,
-        is_stopped: &IsStopped<'_>,
-    ) -> bool {
-        let find = || self.enclosed(mesh, region, is_stopped).is_some();
-        *self.enclosed[region as usize].get_or_init(find)
+        rounding: f64,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Vec<bool>, Cancelled> {
+        let found = watch.long_pieces(self.regions.len(), BLOCK, |block, is_stopped| {
+            let is_enclosed = |region| self.encloses(mesh, (region as u32, rounding), is_stopped).is_some();
+            block.map(is_enclosed).collect::<Vec<_>>()
+        })?;
+        Ok(found.concat())
     }
 
     /// How often curves of so many edges are divided for that.
@@ -37,10 +45,10 @@ impl FlatRegions {
         (MOST_CHORDS / rim.max(1)).max(1).ilog2().min(MOST_DIVISIONS)
     }
 
-    fn enclosed(
+    fn encloses(
         &self,
         (control, edges): (&Control<'_>, &Edges<'_>),
-        region: u32,
+        (region, rounding): (u32, f64),
         is_stopped: &IsStopped<'_>,
     ) -> Option<()> {
         let (faces, plane) = &self.regions[region as usize];
@@ -69,8 +77,7 @@ impl FlatRegions {
             if is_known {
                 curve.reverse();
             } else {
-                let mut points = Vec::new();
-                along(control.piece(face).surface(control.rules), edge, levels, &mut points);
+                let points = curve_over(control, h, (levels, rounding));
                 let first = positions.len() as u32;
                 positions.extend(points.iter().map(DVec3::to_array));
                 curve.extend(first..positions.len() as u32);
@@ -92,6 +99,28 @@ impl FlatRegions {
             chords.iter().try_fold(0.0, |sum, &[from, to]| Some(sum + flat.area([0, from, to])?))?;
         ((found - expected).abs() <= SAME_AREA * expected.abs()).then_some(())
     }
+}
+
+/// Points inside the curve over a half-edge, in order, so many times divided; none where it is straight.
+fn curve_over(control: &Control<'_>, h: u32, (levels, rounding): (u32, f64)) -> Vec<DVec3> {
+    let mut points = Vec::new();
+    let triangle = control.mesh.triangles()[h as usize / 3];
+    let ends = [0, 1].map(|end| triangle[(h as usize + end) % 3] as usize);
+    // Corners stay, and elsewhere the vertices beside one are on the same line, as far on either side.
+    if ends.iter().all(|&end| control.positions[end] == control.mesh.positions()[end]) {
+        return points;
+    }
+    let (piece, edge) = (control.piece(h / 3), h as usize % 3);
+    // Two vertices beyond the edge's ends have a say: not both can be off the line where three points are on it.
+    along(piece.surface(control.rules), edge, 2, &mut points);
+    let [from, to] = ends.map(|end| vector(control.positions[end]));
+    let direction = unit_or_zero(to - from);
+    let is_straight = points.iter().all(|&point| direction.cross(point - from).length() <= rounding);
+    points.clear();
+    if !is_straight {
+        along(piece.surface(control.rules), edge, levels, &mut points);
+    }
+    points
 }
 
 /// Points inside the curve over an edge, in order.

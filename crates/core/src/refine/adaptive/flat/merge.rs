@@ -30,15 +30,13 @@ enum Fate {
     Covered(Covering),
     /// There are none that could.
     Fails,
-    /// There are none however its rim is divided.
-    Folds,
 }
 
 impl Fate {
     fn covering(self) -> Option<Covering> {
         match self {
             Self::Covered(covering) => Some(covering),
-            Self::Stays | Self::Fails | Self::Folds => None,
+            Self::Stays | Self::Fails => None,
         }
     }
 }
@@ -107,7 +105,7 @@ impl FlatRegions {
                 if fails[at] && !mesh.0.demands.judges_by_triangles(flat) {
                     self.note_gap(flat, chords(region, net, regions, watch)?);
                 } else if self.is_by_rim(region) && !stays[at] {
-                    // Finer rims fold, or have edges in common with others, just the same.
+                    // Finer rims have edges in common with others just the same.
                     self.note_gap(flat, BTreeMap::new());
                 }
             }
@@ -141,13 +139,12 @@ impl FlatRegions {
         let Some(outline) = Outline::of(own, net, regions, &mut flat) else {
             return if by_rim { Fate::Fails } else { Fate::Stays };
         };
+        let is_enclosed = own.flat.is_some_and(|flat| self.is_enclosed[flat as usize]);
+        let has_turned = outline.has_turned || is_enclosed && by_rim && own.is_turned_at_corners(mesh.0, net);
         // Where the surface is proven not to be turned over, coarse triangles alone are.
-        let was_folded = outline.has_turned && (self.unfolds || !by_rim);
-        if !is_divided && !outline.has_turned || was_folded && (own.flat.is_none() || !self.unfolds) {
+        let was_folded = has_turned && (is_enclosed || !by_rim);
+        if !is_divided && !has_turned || was_folded && !is_enclosed {
             return Fate::Stays;
-        }
-        if was_folded && own.flat.is_some_and(|flat| !self.is_enclosed(mesh, flat, is_stopped)) {
-            return Fate::Folds;
         }
         let is_wanted = by_rim || was_folded;
         let covering =

@@ -106,6 +106,14 @@ impl Region {
             (b - a).cross(c - a).dot(self.plane.normal) < 0.0
         })
     }
+
+    /// Whether the surface is turned over at a corner of its control faces.
+    pub(super) fn is_turned_at_corners(&self, control: &Control<'_>, net: &Net<'_>) -> bool {
+        let mut last = NONE;
+        let is_new = |face: &u32| core::mem::replace(&mut last, *face) != *face;
+        let mut faces = self.triangles.iter().map(|&triangle| net.face(triangle)).filter(is_new);
+        faces.any(|face| control.corners(face).iter().any(|at| at.normal.dot(self.plane.normal) < 0.0))
+    }
 }
 
 /// All of them, and the vertices between two of them that lie on straight lines.

@@ -61,7 +61,7 @@ pub(super) fn farthest(
         surface = surface.child(child);
     }
     let mut points = Vec::new();
-    if control.flat.is_within_rim((control, &engine.edges), face) {
+    if control.flat.is_within_rim(face) {
         let open = control.open(face);
         let open = [0, 1, 2].map(|edge| open[edge] && place.lies_along(edge));
         sample_rim(surface, open, SAMPLED_LEVELS, &mut points);

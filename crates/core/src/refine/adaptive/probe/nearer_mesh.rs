@@ -59,7 +59,7 @@ pub(super) fn anew(
     let first = faces.first().filter(|_| count <= most && control.criteria.is_none());
     let Some(&first) = first else { return Ok(None) };
     // Of what gives way to triangulations of rims nothing but these is known. All around that is sharp, so nobody counts on it.
-    let is_within_rim = |face: &u32| control.flat.is_within_rim((control, &engine.edges), *face);
+    let is_within_rim = |face: &u32| control.flat.is_within_rim(*face);
     if faces.iter().any(is_within_rim) {
         return Ok(None);
     }
