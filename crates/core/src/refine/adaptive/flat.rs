@@ -173,7 +173,7 @@ impl FlatRegions {
             off_planes = off_planes.max(off_plane + HEIGHT_ROUNDING * size);
         }
         let weight = if options.max_memory.is_some() { 1 } else { WEIGHT };
-        let straight = match options.strips {
+        let straight = match options.strips && !options.balance {
             true => strips::straight_faces((control, edges), &normals, (&of_face, most), watch)?,
             false => Vec::new(),
         };
@@ -204,9 +204,41 @@ impl FlatRegions {
             true => found.enclosed((control, edges), IN_PLANE * size, watch)?,
             false => vec![false; found.regions.len()],
         };
+        if options.balance && !found.keep_folded(control, most, watch)? {
+            return Ok(Self::default());
+        }
         found.by_rim = found.by_rim((control, edges), (options, most), watch)?;
         found.join((control, edges), &normals, (most, size), watch)?;
         Ok(found)
+    }
+
+    /// Leaves no regions but those that fold, for all that was proven, and for which what their rims enclose stands: balanced vertices
+    /// are no better in planes, but the surface is to be the same. Says whether there are any.
+    fn keep_folded(
+        &mut self,
+        control: &Control<'_>,
+        most: f64,
+        watch: &SharedWatch<'_>,
+    ) -> Result<bool, Cancelled> {
+        let is_kept = watch.pieces(self.regions.len(), 1, |block| {
+            let (faces, plane) = &self.regions[block.start];
+            self.is_enclosed[block.start]
+                && !faces.iter().all(|&face| is_unfolded(control, face, plane, most))
+        })?;
+        let mut numbers = Vec::with_capacity(is_kept.len());
+        let mut kept = 0;
+        for &is_kept in &is_kept {
+            numbers.push(if is_kept { kept } else { NONE });
+            kept += u32::from(is_kept);
+        }
+        watch.each(self.of_face.iter_mut().zip(&mut self.is_merged), |(region, is_merged)| {
+            *region = numbers.get(*region as usize).copied().unwrap_or(NONE);
+            *is_merged = *region != NONE;
+        })?;
+        let mut kept = is_kept.iter();
+        self.regions.retain(|_| kept.next().copied().unwrap_or(false));
+        self.is_enclosed = vec![true; self.regions.len()];
+        Ok(!self.regions.is_empty())
     }
 
     /// Which regions are judged by their rims alone, where distances alone are asked for: those with nothing but sharp edges and

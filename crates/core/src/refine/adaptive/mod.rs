@@ -241,7 +241,7 @@ fn with_engine<T>(
         back_faces: BackFaces::default(),
         demands,
     };
-    if options.flat_regions && !options.balance && options.attributes.is_empty() {
+    if options.flat_regions && (!options.balance || options.unfold) && options.attributes.is_empty() {
         control.flat = FlatRegions::of(&control, &edges, options, &watch)?;
     }
     let rounding = probe::rounding(mesh, options.max_levels, &watch)? + control.flat.allowance();
