@@ -29,7 +29,12 @@ pub(super) fn apply(
 }
 
 fn in_words(found: &Interpolated, within: f64, diagonal: f64) -> String {
-    let vertices = counted(found.mesh.vertex_count(), "vertex", "vertices");
+    let passed_by = found.passed_by.len();
+    let mut vertices = counted(found.mesh.vertex_count() - passed_by, "vertex", "vertices");
+    if passed_by > 0 {
+        let others = counted(passed_by, "vertex", "vertices");
+        vertices += &format!(", and by {others} beside much longer edges of sharp lines and boundaries");
+    }
     let percent = percent(found.displacement, diagonal.max(f64::MIN_POSITIVE));
     let moved = format!(
         "control points moved by up to {} ({} %, vertex {})",

@@ -14,8 +14,10 @@ pub(crate) struct InterpolationReport {
     pub(crate) method: &'static str,
     /// Steps of conjugate gradients.
     pub(crate) iterations: usize,
-    /// The greatest distance of a limit from its vertex.
+    /// The greatest distance of a limit from its vertex, but for those that are passed by.
     pub(crate) residual: f64,
+    /// Vertices beside much longer edges of sharp lines and boundaries.
+    pub(crate) passed_by: usize,
     /// The greatest distance of a control point from its vertex.
     pub(crate) displacement: f64,
     /// In per cent of the diagonal of the input's bounding box.
@@ -41,6 +43,7 @@ impl InterpolationReport {
             },
             iterations: found.iterations,
             residual: found.residual,
+            passed_by: found.passed_by.len(),
             displacement: found.displacement,
             displacement_percent: percent(found.displacement, diagonal.max(f64::MIN_POSITIVE)),
             most_displaced: found.most_displaced.index(),

@@ -9,8 +9,10 @@
 
 use super::blocks::Blocks;
 use super::fairness::{self, Energies, Energy};
+use super::spacing::evened;
 use super::sparse::{Sparse, greatest};
 use super::system::{Solution, Solver, System};
+use crate::index::VertexId;
 use crate::limit::{LimitRows, summed};
 use crate::mesh::Mesh;
 use crate::parallel::{self, Poll};
@@ -46,6 +48,8 @@ pub(super) struct ControlPoints<'m> {
     /// The first copy of each vertex.
     first_copy: Vec<u32>,
     matrix: Sparse,
+    /// By vertex, whether its row is for an edge beside it that is shorter than it is.
+    is_passed_by: Vec<bool>,
     points: Vec<DVec3>,
     unit: f64,
 }
@@ -57,10 +61,26 @@ impl<'m> ControlPoints<'m> {
             let first = group.iter().copied().min().unwrap_or(0);
             group.iter().for_each(|&copy| first_copy[copy as usize] = first);
         }
-        let matrix = of_first_copies(rows, &first_copy);
+        let (matrix, mut is_passed_by) = evened(&of_first_copies(rows, &first_copy), mesh);
+        for v in 0..is_passed_by.len() {
+            is_passed_by[v] = is_passed_by[first_copy[v] as usize];
+        }
         let unit = unit(mesh);
         let points = mesh.positions().iter().map(|&p| vector(p) * unit).collect();
-        Self { mesh, first_copy, matrix, points, unit }
+        Self { mesh, first_copy, matrix, is_passed_by, points, unit }
+    }
+
+    /// Whether the limit of a vertex need not be near it, since it is passed by.
+    pub(super) fn is_passed_by(&self, v: usize) -> bool {
+        self.is_passed_by[v]
+    }
+
+    pub(super) fn passed_by(&self) -> Vec<VertexId> {
+        (0..)
+            .zip(&self.is_passed_by)
+            .filter(|&(_, &is_passed_by)| is_passed_by)
+            .map(|(v, _)| VertexId(v))
+            .collect()
     }
 
     /// Whether all limits are the vertices themselves, so that there is nothing to do.

@@ -24,6 +24,9 @@
 //! family, the system may not be symmetric: conjugate gradients on the normal equations take its place, and where there is no
 //! solution they give the least squares answer. [`Interpolated::method`] says which it was.
 //!
+//! # Lines whose edges are of very different lengths
+//! Along a crease or boundary a vertex beside a much longer edge is passed by, not through: `spacing.rs` says how, and why.
+//!
 //! # Near rather than through
 //! A surface that passes through every vertex undulates where vertices are out of line. [`InterpolateOptions::within`] allows
 //! limits to be so far from their vertices, and asks for the fairest surface of those: the control net of least thin-plate
@@ -48,6 +51,7 @@
 mod blocks;
 mod control_points;
 mod fairness;
+mod spacing;
 mod sparse;
 mod system;
 
@@ -130,9 +134,12 @@ pub struct Interpolated {
     /// Steps of conjugate gradients, in the part of the mesh that took most; where limits may leave their vertices, those of the
     /// last solution.
     pub iterations: usize,
-    /// The greatest distance of a limit from its vertex: what rounding leaves, unless limits may leave their vertices or the
-    /// answer is one of least squares.
+    /// The greatest distance of a limit from its vertex, but for those [passed by](Self::passed_by): what rounding leaves, unless limits
+    /// may leave their vertices or the answer is one of least squares.
     pub residual: f64,
+    /// Vertices on creases and boundaries beside edges that are much longer than those around: the curve does not pass through them, but by
+    /// them, by less than it turns there; through them it would leave the mesh and come back.
+    pub passed_by: Vec<VertexId>,
     /// The greatest distance of a control point from its vertex: the more, the likelier the surface undulates in between.
     pub displacement: f64,
     /// The vertex whose control point that is.
@@ -183,6 +190,7 @@ pub fn interpolate_observed(
             method: InterpolationMethod::Unchanged,
             iterations: 0,
             residual: 0.0,
+            passed_by: Vec::new(),
             displacement: 0.0,
             most_displaced: VertexId(0),
             fairness: None,
@@ -193,12 +201,13 @@ pub fn interpolate_observed(
     let control = mesh.clone().with_positions(positions)?;
     watch.stage(Stage::Limits, Some(mesh.vertex_count()))?;
     let limits = table.positions_polled(&control, &mut |done| watch.done(done))??;
-    let (residual, vertex) = farthest(&limits, mesh.positions());
+    let passed_by = points.passed_by();
+    let (residual, vertex) = farthest(&limits, mesh.positions(), |v| points.is_passed_by(v));
     let rounding = points.rounding();
     if within > 0.0 && residual > within + rounding + NEAR * mesh.diagonal() {
         return Err(InterpolateError::TooFar { vertex, distance: residual, within });
     }
-    let (displacement, most_displaced) = farthest(control.positions(), mesh.positions());
+    let (displacement, most_displaced) = farthest(control.positions(), mesh.positions(), |_| false);
     let method = match moved.solver {
         _ if residual > within + rounding + THROUGH * mesh.diagonal() => InterpolationMethod::LeastSquares,
         Solver::Symmetric => InterpolationMethod::ConjugateGradients,
@@ -209,14 +218,15 @@ pub fn interpolate_observed(
         method,
         iterations: moved.steps,
         residual,
+        passed_by,
         displacement,
         most_displaced,
         fairness: moved.energies.map(|energies| energies.fairness()),
     })
 }
 
-/// The greatest distance between points of the same number, and the first of those.
-fn farthest(a: &[[f64; 3]], b: &[[f64; 3]]) -> (f64, VertexId) {
+/// The greatest distance between points of the same number, but for some, and the first of those.
+fn farthest(a: &[[f64; 3]], b: &[[f64; 3]], is_left_out: impl Fn(usize) -> bool) -> (f64, VertexId) {
     let distance = |(&a, &b): (&[f64; 3], &[f64; 3])| {
         let [a, b] = [a, b].map(vector);
         diagonal(a.min(b), a.max(b))
@@ -224,5 +234,6 @@ fn farthest(a: &[[f64; 3]], b: &[[f64; 3]]) -> (f64, VertexId) {
     let most = |most: (f64, VertexId), (v, distance): (u32, f64)| {
         if distance > most.0 { (distance, VertexId(v)) } else { most }
     };
-    (0..).zip(a.iter().zip(b).map(distance)).fold((0.0, VertexId(0)), most)
+    let all = (0..).zip(a.iter().zip(b).map(distance)).filter(|&(v, _)| !is_left_out(v as usize));
+    all.fold((0.0, VertexId(0)), most)
 }

@@ -8,7 +8,7 @@ use super::chains::{Chains, first_of};
 use super::close::{Closed, Closing, Counts, Unfinished};
 use super::dirty::Dirty;
 use super::quadtree::{Place, Trees};
-use super::{BLOCK, Engine, Plan, block};
+use super::{BLOCK, CountsStrips, Engine, Plan, block};
 use crate::parallel;
 use crate::refine::RefineError;
 
@@ -84,7 +84,7 @@ impl Engine<'_> {
             plan.triangles = self.triangles_at_most(plan);
             self.watch.round(plan.triangles)?;
             if plan.triangles > most {
-                if !self.control.flat.has_strips() {
+                if self.counts_strips == CountsStrips::Never || !self.control.flat.has_strips() {
                     return Ok(false);
                 }
                 // What strips leave takes an emission.
@@ -105,7 +105,7 @@ impl Engine<'_> {
             }
             if next.split().is_empty() {
                 self.finish(plan, again)?;
-                if self.counts_strips {
+                if self.counts_strips == CountsStrips::Always {
                     plan.triangles = self.triangles(plan)?;
                 }
                 return Ok(true);

@@ -254,7 +254,7 @@ fn with_engine<T>(
         watch: &watch,
         is_balanced: options.balance,
         has_origins: options.origins,
-        counts_strips: true,
+        counts_strips: CountsStrips::Always,
         guess: None,
         rounding,
     };
@@ -274,6 +274,15 @@ fn criteria(mesh: &Mesh, options: &ExactOptions, rounding: f64) -> Result<Option
     Ok(Some(Criteria::new(distance, cone, pixels, rounding)?))
 }
 
+/// When triangles that strips leave are counted, which takes an emission.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum CountsStrips {
+    Always,
+    /// Where there are more than there may be without that.
+    WhereTooMany,
+    Never,
+}
+
 /// What stays the same all the way.
 #[derive(Clone)]
 pub(super) struct Engine<'a> {
@@ -285,8 +294,8 @@ pub(super) struct Engine<'a> {
     is_balanced: bool,
     /// Vertices tell where they came from.
     has_origins: bool,
-    /// Plans tell how many triangles they come to once strips are put together; else they may tell more, as long as that fits.
-    counts_strips: bool,
+    /// Whether plans tell how many triangles they come to once strips are put together.
+    counts_strips: CountsStrips,
     /// A distance that is about right for the budget, as an earlier refinement tells.
     guess: Option<f64>,
     /// What rounding may do to a distance.
@@ -334,7 +343,12 @@ impl Engine<'_> {
 
     /// The same for plans of whose numbers of triangles nobody asks more than that they fit.
     fn without_counting_strips(&self) -> Self {
-        Self { counts_strips: false, ..self.clone() }
+        Self { counts_strips: CountsStrips::WhereTooMany, ..self.clone() }
+    }
+
+    /// The same for plans whose strips are not put together.
+    fn without_strips(&self) -> Self {
+        Self { counts_strips: CountsStrips::Never, ..self.clone() }
     }
 
     /// Whether triangles are looked at among their neighbours once all are emitted, not before.

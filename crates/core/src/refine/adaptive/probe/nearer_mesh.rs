@@ -140,9 +140,9 @@ impl NearerMesh {
         emission: &Emission,
         near: f64,
     ) -> Result<Option<Self>, RefineError> {
-        let watch = engine.watch;
+        let (engine, watch) = (&engine.without_strips(), engine.watch);
         let count: usize = wanted.iter().map(|&face| emission.triangles_of(face).len()).sum();
-        let most = plan.triangles + NEARER_IN_ANY_CASE + NEARER_FOR_EACH * count;
+        let most = engine.triangles_at_most(plan) + NEARER_IN_ANY_CASE + NEARER_FOR_EACH * count;
         let goal = Goal::Partly(f64::INFINITY, near, is_wanted.to_vec());
         let Some(mut finer) = engine.finer(plan, goal, wanted, most)? else { return Ok(None) };
         // Nobody asks what others come to.
