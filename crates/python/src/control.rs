@@ -73,6 +73,7 @@ impl Recipe {
                 let told = InterpolatedTold {
                     method: found.method,
                     residual: found.residual,
+                    passed_by: found.passed_by.len(),
                     displacement: found.displacement,
                 };
                 (found.mesh, Some(told))
@@ -136,6 +137,7 @@ impl Tables {
 pub(crate) struct InterpolatedTold {
     method: InterpolationMethod,
     residual: f64,
+    passed_by: usize,
     displacement: f64,
 }
 
@@ -151,6 +153,7 @@ impl InterpolatedTold {
         };
         dict.set_item("method", method)?;
         dict.set_item("residual", self.residual)?;
+        dict.set_item("passed_by", self.passed_by)?;
         dict.set_item("displacement", self.displacement)?;
         Ok(dict)
     }

@@ -54,6 +54,18 @@ impl Unit {
         }
     }
 
+    /// As a 3MF package has it; millimetres where nobody says.
+    pub(crate) fn in_package(unit: Option<Self>) -> LengthUnit {
+        match unit.unwrap_or(Self::Mm) {
+            Self::Um => LengthUnit::Micron,
+            Self::Mm => LengthUnit::Millimeter,
+            Self::Cm => LengthUnit::Centimeter,
+            Self::M => LengthUnit::Meter,
+            Self::In => LengthUnit::Inch,
+            Self::Ft => LengthUnit::Foot,
+        }
+    }
+
     fn micrometres(self) -> f64 {
         UNITS.iter().find(|unit| unit.0 == self).map_or(1.0, |unit| unit.2)
     }

@@ -109,7 +109,7 @@ pub(crate) struct BuildArguments {
     #[arg(long, value_name = "DIST", value_parser = values::weld, allow_hyphen_values = true)]
     weld: Option<WeldDistance>,
 
-    /// What the mesh's numbers are measured in, for lengths that have a unit, such as 0.05mm; 3MF packages say it
+    /// What the mesh's numbers are measured in, for lengths that have a unit, such as 0.05mm; 3MF packages say it, also those that are written
     #[arg(long, value_enum)]
     pub(crate) unit: Option<Unit>,
 

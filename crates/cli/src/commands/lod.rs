@@ -12,7 +12,7 @@ use limitmesh_io::{Asset, Format, Output, Property, WriteOptions};
 use super::channels::{Channels, Destination};
 use super::interpolation;
 use super::normals::Normals;
-use crate::arguments::{Extent, Featured, LodArguments, MOST_EXACT};
+use crate::arguments::{Extent, Featured, LodArguments, MOST_EXACT, Unit};
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, table, thousands, upper_bound};
 use crate::input::{self, Input};
@@ -304,7 +304,8 @@ fn write(
             Some(_) => names.iter().zip(&coarse).map(|(name, own)| Property::numbers(name, own)).collect(),
             None => Vec::new(),
         };
-        let options = WriteOptions::default().ascii(arguments.ascii);
+        let options =
+            WriteOptions::default().ascii(arguments.ascii).unit(Unit::in_package(arguments.build.unit));
         let written = level.output().vertex_properties(&properties);
         output::write_mesh(&path(&arguments.output, format, lod), format, &written, &options)?;
     }

@@ -46,6 +46,15 @@ fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
     assert!(off() > 0.02);
     let (report, _) = refine("--method uniform --levels 2");
     assert_eq!(report["output"]["inverted_triangles"], Value::Null);
+    // Nothing is divided, but there are more than there may be.
+    for (most, code) in [(19, 3), (20, 0)] {
+        let words = format!("refine {{}} -o {{}} --crease-angle 30 --max-triangles {most}");
+        let run = run(&words, &[&input, &output]).expect(code);
+        assert_eq!(
+            run.stderr.contains("the control mesh has more than --max-triangles 19 already"),
+            code == 3
+        );
+    }
     // It is the same limit surface for measuring.
     refine("");
     let measure = "measure {} --limit-of {} --crease-angle 30 --certified --json";

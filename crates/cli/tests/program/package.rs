@@ -235,3 +235,19 @@ fn info_lists_objects() {
     assert_eq!(json["package"]["objects"][0]["built"], 3);
     assert_eq!(json["package"]["unit"], "cm");
 }
+
+/// A package of what comes from elsewhere has the unit that its numbers are said to have, and is read so again.
+#[test]
+fn units_come_out_as_they_were_said() {
+    let folder = folder();
+    let output = folder.path().join("out.3mf");
+    for (words, unit, of_length) in
+        [("", "millimeter", "mm"), ("--unit in", "inch", "in"), ("--unit um", "micron", "µm")]
+    {
+        run(&format!("refine builtin:cube -o {{}} {words}"), &[&output]).expect(0);
+        let source = limitmesh_io::threemf::Package::open(&output).expect("a package");
+        assert_eq!(format!("{:?}", source.unit()).to_lowercase(), unit);
+        let again = folder.path().join("again.3mf");
+        run(&format!("refine {{}} -o {{}} --tolerance 0.5{of_length}"), &[&output, &again]).expect(0);
+    }
+}

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod other_schemes;
+mod spacing;
 #[path = "../support/mod.rs"]
 mod support;
 mod through;
@@ -11,12 +12,12 @@ mod within;
 
 use std::f64::consts::TAU;
 
-use limitmesh::Mesh;
 use limitmesh::interpolate::{InterpolateError, InterpolateOptions, Interpolated};
 use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
 use limitmesh::refine::{UniformOptions, uniform};
 use limitmesh::scheme::Scheme;
+use limitmesh::{Mesh, VertexId};
 use nalgebra::{DMatrix, DVector};
 use support::{Point, Random, distance};
 
@@ -28,10 +29,12 @@ pub(crate) fn model(name: &str) -> Mesh {
     Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
 }
 
-/// The greatest distance of the library's limits from the vertices of a mesh.
-pub(crate) fn from_limits(control: &Mesh, scheme: &dyn Scheme, vertices: &Mesh) -> f64 {
-    let limits = LimitTable::new(scheme).positions(control).unwrap();
-    farthest(&limits, vertices.positions())
+/// The greatest distance of the library's limits from the vertices of a mesh, but for those that are passed by.
+pub(crate) fn from_limits(found: &Interpolated, scheme: &dyn Scheme, vertices: &Mesh) -> f64 {
+    let limits = LimitTable::new(scheme).positions(&found.mesh).unwrap();
+    let through = |v: &usize| !found.passed_by.contains(&VertexId(*v as u32));
+    let distances = (0..limits.len()).filter(through).map(|v| distance(limits[v], vertices.positions()[v]));
+    distances.fold(0.0, f64::max)
 }
 
 pub(crate) fn farthest(a: &[Point], b: &[Point]) -> f64 {

@@ -102,7 +102,7 @@ fn creases_darts_and_fading_tags_are_followed() {
             assert_ne!(found.method, InterpolationMethod::LeastSquares, "{seed}: {found:?}");
             general += usize::from(found.method == InterpolationMethod::NormalEquations);
             assert_eq!(found.mesh.tags(), mesh.tags());
-            assert!(from_limits(&found.mesh, &Loop, &mesh) < 1e-12 * mesh.diagonal());
+            assert!(from_limits(&found, &Loop, &mesh) < 1e-12 * mesh.diagonal());
             if seed < 3 {
                 refinement_tends_to(&mesh, &found.mesh, &Loop, 5, 0.05);
             }
@@ -237,7 +237,7 @@ fn copies_where_sheets_were_cut_keep_the_same_bits() {
             let v = group[0] as usize;
             distance(found.mesh.positions()[v], mesh.positions()[v]) > 0.01
         }));
-        assert!(from_limits(&found.mesh, &Loop, &mesh) < 1e-12 * mesh.diagonal());
+        assert!(from_limits(&found, &Loop, &mesh) < 1e-12 * mesh.diagonal());
         let refined = exact(&found.mesh, &Loop, &ExactOptions::default().triangles(3000)).unwrap();
         refined.mesh.validate().unwrap();
     }
@@ -279,7 +279,7 @@ fn any_size_and_place_will_do() {
     let far: Vec<Point> = mesh.positions().iter().map(|p| p.map(|x| x + 1e6)).collect();
     let far = mesh.clone().with_positions(far).unwrap();
     let found = interpolate(&far, &Loop).unwrap();
-    assert!(from_limits(&found.mesh, &Loop, &far) < 1e-9);
+    assert!(from_limits(&found, &Loop, &far) < 1e-9);
     for (p, q) in plain.mesh.positions().iter().zip(found.mesh.positions()) {
         assert!(distance(p.map(|x| x + 1e6), *q) < 1e-8);
     }
@@ -306,7 +306,7 @@ fn poles_and_small_rings_have_solutions() {
         for scheme in [&Loop, &LoopWarren] {
             let found = interpolate(&mesh, scheme).unwrap();
             assert_eq!(found.method, InterpolationMethod::ConjugateGradients, "{}", scheme.name());
-            assert!(from_limits(&found.mesh, scheme, &mesh) < 1e-12 * mesh.diagonal());
+            assert!(from_limits(&found, scheme, &mesh) < 1e-12 * mesh.diagonal());
         }
     }
 }

@@ -38,7 +38,7 @@ fn limits_stay_within_and_the_net_gets_fairer() {
         for within in [1e-4, 1e-3, 1e-2, 3e-2].map(|part| part * size) {
             let options = InterpolateOptions::default().within(within);
             let found = interpolate_within(&mesh, &Loop, &options).unwrap();
-            let away = from_limits(&found.mesh, &Loop, &mesh);
+            let away = from_limits(&found, &Loop, &mesh);
             assert!(away <= within + 1e-12 * size && away > 0.3 * within, "{away} of {within}");
             assert!((away - found.residual).abs() < 1e-12 * size);
             let fairness = found.fairness.unwrap();

@@ -2,6 +2,7 @@
 
 use super::container;
 use super::edit::Numbers;
+use super::model::LengthUnit;
 use crate::error::WriteError;
 use limitmesh::mesh::Triangles;
 use std::fmt::Write;
@@ -14,11 +15,12 @@ const RELATIONSHIPS: &[u8] = br#"<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
 "#;
 
-/// Triangles as a package in millimetres.
-pub(crate) fn write_fresh(surface: Triangles<'_>) -> Result<Vec<u8>, WriteError> {
-    let mut text = String::from(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xml:lang=\"en-US\" \
+/// Triangles as a package whose numbers are measured in this.
+pub(crate) fn write_fresh(surface: Triangles<'_>, unit: LengthUnit) -> Result<Vec<u8>, WriteError> {
+    let mut text = format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"{}\" xml:lang=\"en-US\" \
          xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n",
+        unit.name()
     );
     let _ =
         writeln!(text, "<metadata name=\"Application\">limitmesh {}</metadata>", env!("CARGO_PKG_VERSION"));

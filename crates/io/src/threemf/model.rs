@@ -40,6 +40,13 @@ const UNITS: [(&str, LengthUnit); 6] = [
     ("meter", LengthUnit::Meter),
 ];
 
+impl LengthUnit {
+    /// How files name it.
+    pub(super) fn name(self) -> &'static str {
+        UNITS.iter().find(|(_, unit)| *unit == self).map_or("millimeter", |(name, _)| name)
+    }
+}
+
 /// A model part of a package.
 pub(super) struct Model {
     pub(super) part: usize,

@@ -18,7 +18,7 @@ pub use whole::{check_writable, write_whole, write_whole_with};
 use crate::error::WriteError;
 use crate::format::Format;
 use crate::gltf;
-use crate::threemf;
+use crate::threemf::{self, LengthUnit};
 use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Triangles};
 use split::Split;
 use std::io::Write;
@@ -153,12 +153,20 @@ impl Output<'_> {
 pub struct WriteOptions {
     /// Text where the format has a binary form as well (PLY, STL). Default: binary there.
     pub ascii: bool,
+    /// What the numbers are measured in. 3MF says so. Default: millimetres.
+    pub unit: LengthUnit,
 }
 
 impl WriteOptions {
     /// Sets [`Self::ascii`].
     pub fn ascii(mut self, ascii: bool) -> Self {
         self.ascii = ascii;
+        self
+    }
+
+    /// Sets [`Self::unit`].
+    pub fn unit(mut self, unit: LengthUnit) -> Self {
+        self.unit = unit;
         self
     }
 }
@@ -246,7 +254,7 @@ fn write_checked(
         Format::Stl => stl::write(writer, output, options.ascii)?,
         Format::Off => off::write(writer, output)?,
         Format::Gltf | Format::Glb => writer.write_all(&gltf::write_fresh(None, format, output)?)?,
-        Format::ThreeMf => writer.write_all(&threemf::write_fresh(output.surface)?)?,
+        Format::ThreeMf => writer.write_all(&threemf::write_fresh(output.surface, options.unit)?)?,
     }
     Ok(writer.flush()?)
 }

@@ -461,6 +461,11 @@ fn outcome(
         ExactStop::TriangleCap | ExactStop::MemoryCap if triangles > arguments.max_triangles() => {
             format!("the control mesh has more than {cap} already")
         }
+        // What is met with as many triangles as there are in any case.
+        ExactStop::Met if triangles > arguments.max_triangles() => {
+            let most = thousands(arguments.max_triangles());
+            format!("the control mesh has more than --max-triangles {most} already")
+        }
         ExactStop::TriangleCap | ExactStop::MemoryCap if triangles == control.face_count() => {
             format!("{} would take more than {cap}, and nothing was divided", goals.in_words(found))
         }

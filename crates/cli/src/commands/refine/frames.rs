@@ -17,7 +17,7 @@ use super::carried::Trail;
 use super::control::Control;
 use super::exact::{self, Goals};
 use super::{Refined, check, jobs, write};
-use crate::arguments::{RefineArguments, Way};
+use crate::arguments::{RefineArguments, Unit, Way};
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, seconds, upper_bound};
 use crate::input::{self, Input};
@@ -298,7 +298,7 @@ fn write_all(
         progress.stage(format!("writing {}", job.output_name()));
         found.replay.frame(&frames[number], &mut frame)?;
         let mut moved = found.refined.clone().moved_to(&frame)?;
-        let options = WriteOptions::default().ascii(job.ascii);
+        let options = WriteOptions::default().ascii(job.ascii).unit(Unit::in_package(job.build.unit));
         let rounding = limitmesh_io::rounding(format, &options, moved.mesh.positions());
         let mut error = found.errors[number];
         error.upper += rounding;

@@ -301,7 +301,12 @@ fn write(
         output = output.vertex_properties(vertices).face_properties(faces);
     }
     let output = output.creases(&mesh.tags().creases).corners(&mesh.tags().corners);
-    output::write_mesh(path, format, &output, &WriteOptions::default().ascii(arguments.ascii))
+    output::write_mesh(
+        path,
+        format,
+        &output,
+        &WriteOptions::default().ascii(arguments.ascii).unit(Unit::in_package(arguments.build.unit)),
+    )
 }
 
 /// The view that makes the angle depend on the viewer.
