@@ -134,3 +134,22 @@ fn area_volume_and_sharp_edges_are_examined() {
     assert!((number(&turned["mesh"]["volume"]) + 1.0 / 6.0).abs() < 1e-15);
     assert!(run("info {}", &[&input]).expect(0).stdout.contains("1 component is inside out"));
 }
+
+/// A box with one more vertex near the end of an edge: its limit is elsewhere on that edge, but it is the same box.
+#[test]
+fn what_slides_along_the_mesh_has_not_moved() {
+    let folder = folder();
+    let profile = [[0, 0], [5, 0], [60, 0], [60, 40], [0, 40]];
+    let mut text: String =
+        [0, 5].iter().flat_map(|z| profile.map(|[x, y]| format!("v {x} {y} {z}\n"))).collect();
+    (1..=5).for_each(|i| text += &format!("f {i} {} {} {}\n", i % 5 + 1, i % 5 + 6, i + 5));
+    text += "f 5 4 3 2 1\nf 6 7 8 9 10\n";
+    let (input, output) = (file(&folder, "box.obj", &text), folder.path().join("out.ply"));
+    for interpolate in ["", "--interpolate"] {
+        let words = format!("refine {{}} -o {{}} --crease-angle 30 --report - {interpolate}");
+        let report = run(&words, &[&input, &output]).expect(0).json();
+        assert!(report["input_distance"]["upper"].as_f64().expect("a number") < 1e-3, "{report}");
+        let measured = run("measure {} {} --certified --json", &[&output, &input]).expect(0).json();
+        assert!(measured["hausdorff"]["upper"].as_f64().expect("a number") < 1e-6);
+    }
+}

@@ -213,7 +213,12 @@ pub(super) fn run(
     progress.stage(format!("refining {}", counted(control.face_count(), "triangle", "triangles")));
     let options = goals.options(arguments);
     let mut found = exact_observed(control, arguments.scheme()?, &options, &mut observer)?;
-    let moved = moved((control, before, &concave.parts), &found, goals, arguments, progress)?;
+    let mut moved = moved((control, before, &concave.parts), &found, goals, arguments, progress)?;
+    if let (Some(moved), Some(BeforeSurface { positions, triangles })) = (&mut moved, &before.surface) {
+        let expected = goals.length.into_iter().chain([found.error.upper]).fold(0.0, f64::max);
+        let meshes = [Triangles { positions, triangles }, found.mesh.as_triangles()];
+        *moved = moved.narrowed(meshes, expected, &mut progress.observer())?;
+    }
     let rounding = written(arguments)
         .map_or(0.0, |(format, options)| limitmesh_io::rounding(format, &options, found.mesh.positions()));
     if let Some(note) = round(&mut found, rounding, goals) {

@@ -10,16 +10,26 @@
 //! other. So the rims bound the distance, but for what both are off the plane.
 //!
 //! Below stand true distances of the points that were moved most along
-//! normals: along the surface, vertices drift where triangles are of different sizes, and the interval is wide there.
+//! normals: along the surface, vertices drift where triangles are of different sizes, and the interval is wide there. Of a mesh that is not
+//! too large the two are measured then, by the certified search.
 
 use limitmesh::Triangles;
-use limitmesh::measure::{Bvh, MeasureError};
+use limitmesh::measure::{Bvh, CertifiedOptions, MeasureError, certified_hausdorff_between_observed};
+use limitmesh::progress::Observer;
 use limitmesh::refine::{Exact, Origin};
 
 use crate::vector::{distance, dot, minus};
 
 /// Points whose distance is measured.
 const MEASURED: usize = 4;
+
+/// An interval is wide where its upper end is more than so many times the lower one.
+const WIDE: f64 = 1.25;
+
+/// How narrow it is to be then, the work for that, about a second, and the triangles of both meshes at most.
+const NARROW: f64 = 0.1;
+const MOST_WORK: u64 = 20_000_000;
+const MOST_TRIANGLES: usize = 200_000;
 
 /// What rounding may do to a computed point or distance, as a share of the greatest coordinate: some hundred units in the last place.
 const ROUNDING: f64 = 2e-14;
@@ -71,6 +81,26 @@ impl InputDistance {
             lower: (lower - ROUNDING * greatest(input)).max(0.0),
             upper: (self.upper + apart).next_up(),
         })
+    }
+
+    /// The same, measured anew where it is wide and more than `expected`.
+    ///
+    /// # Errors
+    /// Coordinates too large to be measured, or the observer asked to stop.
+    pub(super) fn narrowed(
+        self,
+        [input, found]: [Triangles<'_>; 2],
+        expected: f64,
+        observer: &mut Observer<'_>,
+    ) -> Result<Self, MeasureError> {
+        let is_wide = self.upper > expected && self.upper > WIDE * self.lower;
+        if !is_wide || input.triangles.len() + found.triangles.len() > MOST_TRIANGLES {
+            return Ok(self);
+        }
+        let (from, to) = (Bvh::new_observed(found, observer)?, Bvh::new_observed(input, observer)?);
+        let options = CertifiedOptions::default().relative_gap(NARROW).max_work(MOST_WORK);
+        let measured = certified_hausdorff_between_observed(&from, &to, &options, observer)?;
+        Ok(Self { lower: self.lower.max(measured.lower()), upper: self.upper.min(measured.upper()) })
     }
 
     /// The same after vertices were rounded by so much at most.
