@@ -275,6 +275,17 @@ pub enum WriteError {
         /// The format.
         format: Format,
     },
+    /// Rounded to the format's `f32`, no triangle is left.
+    #[error(
+        "as {format} files round coordinates none of {triangles} triangles has three different corners any more, expected coordinates \
+         that differ by more than a ten millionth of the greatest, and than 1e-45; PLY, OBJ and OFF files hold them as they are"
+    )]
+    Rounded {
+        /// Number of triangles.
+        triangles: usize,
+        /// The format.
+        format: Format,
+    },
     /// More elements than the format can count.
     #[error("{count} {what} are too many for {format} files, which count to {limit}")]
     TooMany {

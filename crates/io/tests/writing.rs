@@ -575,3 +575,32 @@ mod unix {
         assert_eq!(names(folder.path()), ["mesh.obj"]);
     }
 }
+
+/// A file without a triangle would be refused by who reads it; a few that become none are as before.
+#[test]
+fn what_rounding_leaves_no_triangle_of_is_an_error() {
+    let triangles = [[0, 1, 2], [0, 2, 3]];
+    for (scale, offset) in [(1e-60, 0.0), (1.0, 1e9)] {
+        let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]
+            .map(|p| p.map(|x: f64| offset + scale * x));
+        let output = Output::new(Triangles { positions: &positions, triangles: &triangles });
+        for (format, options, is_lost) in [
+            (Format::Stl, WriteOptions::default(), true),
+            (Format::Glb, WriteOptions::default(), true),
+            (Format::Stl, WriteOptions::default().ascii(true), false),
+            (Format::Ply, WriteOptions::default(), false),
+        ] {
+            let written = write_to(&mut Vec::new(), format, &output, &options);
+            assert_eq!(
+                matches!(written, Err(WriteError::Rounded { triangles: 2, .. })),
+                is_lost,
+                "{format} {written:?}"
+            );
+        }
+        // One of two is left.
+        let positions =
+            [positions[0], positions[0].map(|x| x + 1000.0), positions[2].map(|x| x - 1000.0), positions[3]];
+        let output = Output::new(Triangles { positions: &positions, triangles: &triangles });
+        write_to(&mut Vec::new(), Format::Stl, &output, &WriteOptions::default()).unwrap();
+    }
+}

@@ -304,6 +304,18 @@ pub(crate) fn check(output: &Output<'_>, format: Format, options: &WriteOptions)
         }
     }
     check_finite("position", positions.as_flattened(), 3, format, is_single(format, options))?;
+    if is_single(format, options) && !triangles.is_empty() {
+        let is_left = |round: fn(f64) -> f64| {
+            let at = |vertex: u32| positions[vertex as usize].map(round);
+            triangles.iter().any(|&[a, b, c]| {
+                let [a, b, c] = [a, b, c].map(at);
+                a != b && b != c && c != a
+            })
+        };
+        if !is_left(|x| f64::from(x as f32)) && is_left(|x| x) {
+            return Err(WriteError::Rounded { triangles: triangles.len(), format });
+        }
+    }
     if let Some(normals) = output.normals.filter(|_| format != Format::Stl) {
         check_finite("normal", normals.as_flattened(), 3, format, format == Format::Ply)?;
     }

@@ -303,6 +303,9 @@ fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
     })
 }
 
+/// A mesh that is off by no more than this share of the diagonal is the surface itself, as files in single precision have it.
+const EXACT: f64 = 1e-6;
+
 /// Share of the diagonal that a mesh may be off by that stands for the limit surface, where triangles reach over several control
 /// faces.
 const STAND_IN: f64 = 5e-4;
@@ -392,6 +395,18 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, arguments: &Refin
     } else if !error.certified {
         let scheme = arguments.scheme.in_quarters().map_or("", |name| name.scheme().name());
         lines.push(format!("(nothing is proven for the scheme {scheme}, only for Loop's and Warren's)"));
+    }
+    let is_exact = error.upper.is_some_and(|upper| upper <= EXACT * goals.diagonal);
+    if found.levels == 0
+        && !found.is_optimized
+        && found.stop == ExactStop::Met
+        && goals.length.is_some()
+        && !is_exact
+    {
+        lines.push(
+            "(nothing was divided: all is near enough as it is; a smaller --tolerance makes it rounder)"
+                .to_owned(),
+        );
     }
     lines.extend(found.pixels.map(|pixels| match pixels.is_finite() {
         true => format!("at most {} pixels as the cameras see it", upper_bound(pixels)),

@@ -355,6 +355,9 @@ fn change_in_words(before: Bulk, after: Bulk, unit: Option<Unit>) -> String {
     let unit = unit.map_or("", Unit::name);
     let change = |what: &str, power: &str, before: f64, after: f64| {
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}{power}") };
+        if !(before.is_finite() && after.is_finite()) {
+            return format!("{what} too large to be told");
+        }
         let percent = 100.0 * (after / before - 1.0);
         let percent = if percent.is_finite() { format!(" ({percent:+.2} %)") } else { String::new() };
         format!("{what} {} to {}{unit}{percent}", number(before), number(after))
