@@ -9,6 +9,7 @@
 
 use super::blocks::Blocks;
 use super::fairness::{self, Energies, Energy};
+use super::planes::kept_in_planes;
 use super::spacing::evened;
 use super::sparse::{Sparse, greatest};
 use super::system::{Solution, Solver, System};
@@ -47,9 +48,13 @@ pub(super) struct ControlPoints<'m> {
     mesh: &'m Mesh,
     /// The first copy of each vertex.
     first_copy: Vec<u32>,
+    /// Where some vertices keep their place, the rows of all.
+    rows: Option<Sparse>,
     matrix: Sparse,
     /// By vertex, whether its row is for an edge beside it that is shorter than it is.
     is_passed_by: Vec<bool>,
+    /// By vertex that keeps its place though its limit is elsewhere in its plane, the unit normal of that.
+    planes: Vec<Option<DVec3>>,
     points: Vec<DVec3>,
     unit: f64,
 }
@@ -61,18 +66,60 @@ impl<'m> ControlPoints<'m> {
             let first = group.iter().copied().min().unwrap_or(0);
             group.iter().for_each(|&copy| first_copy[copy as usize] = first);
         }
-        let (matrix, mut is_passed_by) = evened(&of_first_copies(rows, &first_copy), mesh);
-        for v in 0..is_passed_by.len() {
-            is_passed_by[v] = is_passed_by[first_copy[v] as usize];
-        }
+        let rows = of_first_copies(rows, &first_copy);
+        let planes = kept_in_planes(&rows, mesh);
         let unit = unit(mesh);
         let points = mesh.positions().iter().map(|&p| vector(p) * unit).collect();
-        Self { mesh, first_copy, matrix, is_passed_by, points, unit }
+        let (matrix, is_passed_by) = (Sparse::empty(), Vec::new());
+        let mut found = Self { mesh, first_copy, rows: None, matrix, is_passed_by, planes, points, unit };
+        found.set(rows);
+        found
     }
 
-    /// Whether the limit of a vertex need not be near it, since it is passed by.
-    pub(super) fn is_passed_by(&self, v: usize) -> bool {
-        self.is_passed_by[v]
+    /// Sets the system, the rows of all vertices given.
+    fn set(&mut self, rows: Sparse) {
+        let is_any_kept = self.planes.iter().any(Option::is_some);
+        (self.matrix, self.is_passed_by) = match is_any_kept {
+            true => evened(&keeping(&rows, &self.planes), self.mesh),
+            false => evened(&rows, self.mesh),
+        };
+        self.rows = is_any_kept.then_some(rows);
+        for v in 0..self.is_passed_by.len() {
+            self.is_passed_by[v] = self.is_passed_by[self.first_copy[v] as usize];
+        }
+    }
+
+    /// Vertices that keep their place though the surface is not in their plane, which is more than `most` away from them, are led through from
+    /// now on, in the last attempt all; says whether there were any.
+    pub(super) fn lead_through(&mut self, limits: &[[f64; 3]], most: f64, is_last: bool) -> bool {
+        let Some(rows) = self.rows.take() else { return false };
+        let mut is_any = false;
+        for (v, plane) in self.planes.iter_mut().enumerate() {
+            let away = vector(limits[v]) - vector(self.mesh.positions()[v]);
+            if plane.is_some_and(|normal| !(away.dot(normal).abs() <= most)) {
+                *plane = None;
+                is_any = true;
+            }
+        }
+        if is_any && is_last {
+            self.planes.fill(None);
+        }
+        if is_any {
+            self.set(rows);
+        } else {
+            self.rows = Some(rows);
+        }
+        is_any
+    }
+
+    /// How far the surface misses a vertex whose limit is so far away: only across its plane where it keeps its place, and not at all
+    /// where it is passed by.
+    pub(super) fn missed(&self, v: usize, away: DVec3) -> DVec3 {
+        match self.planes[v] {
+            _ if self.is_passed_by[v] => DVec3::ZERO,
+            Some(normal) => away.dot(normal) * normal,
+            None => away,
+        }
     }
 
     pub(super) fn passed_by(&self) -> Vec<VertexId> {
@@ -199,6 +246,18 @@ fn of_first_copies(rows: LimitRows, first_copy: &[u32]) -> Sparse {
             continue;
         }
         matrix.push(summed(rows.row(v as usize).map(|(u, w)| (first_copy[u as usize], w)).collect()));
+    }
+    matrix
+}
+
+/// The same rows, but for vertices that keep their place.
+fn keeping(rows: &Sparse, planes: &[Option<DVec3>]) -> Sparse {
+    let mut matrix = Sparse::empty();
+    for (v, plane) in planes.iter().enumerate() {
+        match plane {
+            Some(_) => matrix.push([(v as u32, 1.0)]),
+            None => matrix.push(rows.row(v)),
+        }
     }
     matrix
 }

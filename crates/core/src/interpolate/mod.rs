@@ -25,7 +25,9 @@
 //! solution they give the least squares answer. [`Interpolated::method`] says which it was.
 //!
 //! # Lines whose edges are of very different lengths
-//! Along a crease or boundary a vertex beside a much longer edge is passed by, not through: `spacing.rs` says how, and why.
+//! Along a crease or boundary a vertex beside a much longer edge is passed by, not through: `spacing.rs` says how, and why. Inside a region
+//! that lies in a plane and that sharp lines close off it keeps its place as a control point; the surface passes through it as through
+//! all of the plane (`planes.rs`).
 //!
 //! # Near rather than through
 //! A surface that passes through every vertex undulates where vertices are out of line. [`InterpolateOptions::within`] allows
@@ -51,6 +53,7 @@
 mod blocks;
 mod control_points;
 mod fairness;
+mod planes;
 mod spacing;
 mod sparse;
 mod system;
@@ -63,7 +66,7 @@ use crate::mesh::{Mesh, MeshError};
 use crate::options::options;
 use crate::progress::{Cancelled, Observer, Stage, Watch, unobserved};
 use crate::scheme::Scheme;
-use crate::vector::{diagonal, vector};
+use crate::vector::{DVec3, diagonal, vector};
 use control_points::ControlPoints;
 use system::Solver;
 
@@ -72,6 +75,9 @@ const THROUGH: f64 = 1e-10;
 
 /// How far beyond the distance that is asked for limits may be, as a share of the bounding box's diagonal.
 const NEAR: f64 = 1e-12;
+
+/// After so many attempts to keep vertices in planes all are led through.
+const MOST_ATTEMPTS: usize = 4;
 
 /// Why there are no control points.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -134,8 +140,8 @@ pub struct Interpolated {
     /// Steps of conjugate gradients, in the part of the mesh that took most; where limits may leave their vertices, those of the
     /// last solution.
     pub iterations: usize,
-    /// The greatest distance of a limit from its vertex, but for those [passed by](Self::passed_by): what rounding leaves, unless limits
-    /// may leave their vertices or the answer is one of least squares.
+    /// The greatest distance of a limit from its vertex, but for those [passed by](Self::passed_by), and from its plane where the surface is
+    /// all of that: what rounding leaves, unless limits may leave their vertices or the answer is one of least squares.
     pub residual: f64,
     /// Vertices on creases and boundaries beside edges that are much longer than those around: the curve does not pass through them, but by
     /// them, by less than it turns there; through them it would leave the mesh and come back.
@@ -183,7 +189,7 @@ pub fn interpolate_observed(
     watch.triangles(mesh.face_count());
     watch.stage(Stage::Interpolating, Some(mesh.vertex_count()))?;
     let table = LimitTable::new(scheme);
-    let points = ControlPoints::new(mesh, table.position_rows(mesh, &mut |_| watch.poll())??);
+    let mut points = ControlPoints::new(mesh, table.position_rows(mesh, &mut |_| watch.poll())??);
     if points.is_solved() {
         return Ok(Interpolated {
             mesh: mesh.clone(),
@@ -196,18 +202,27 @@ pub fn interpolate_observed(
             fairness: None,
         });
     }
-    let moved = points.solve(within, &mut watch)?;
-    let positions = moved.by.iter().enumerate().map(|(v, &by)| points.position(v, by)).collect();
-    let control = mesh.clone().with_positions(positions)?;
-    watch.stage(Stage::Limits, Some(mesh.vertex_count()))?;
-    let limits = table.positions_polled(&control, &mut |done| watch.done(done))??;
+    let mut attempt = 0;
+    let (moved, control, limits) = loop {
+        let moved = points.solve(within, &mut watch)?;
+        let positions = moved.by.iter().enumerate().map(|(v, &by)| points.position(v, by)).collect();
+        let control = mesh.clone().with_positions(positions)?;
+        watch.stage(Stage::Limits, Some(mesh.vertex_count()))?;
+        let limits = table.positions_polled(&control, &mut |done| watch.done(done))??;
+        let most = within + points.rounding() + THROUGH * mesh.diagonal();
+        attempt += 1;
+        if !points.lead_through(&limits, most, attempt >= MOST_ATTEMPTS) {
+            break (moved, control, limits);
+        }
+        watch.stage(Stage::Interpolating, Some(mesh.vertex_count()))?;
+    };
     let passed_by = points.passed_by();
-    let (residual, vertex) = farthest(&limits, mesh.positions(), |v| points.is_passed_by(v));
+    let (residual, vertex) = farthest(&limits, mesh.positions(), |v, away| points.missed(v, away));
     let rounding = points.rounding();
     if within > 0.0 && residual > within + rounding + NEAR * mesh.diagonal() {
         return Err(InterpolateError::TooFar { vertex, distance: residual, within });
     }
-    let (displacement, most_displaced) = farthest(control.positions(), mesh.positions(), |_| false);
+    let (displacement, most_displaced) = farthest(control.positions(), mesh.positions(), |_, away| away);
     let method = match moved.solver {
         _ if residual > within + rounding + THROUGH * mesh.diagonal() => InterpolationMethod::LeastSquares,
         Solver::Symmetric => InterpolationMethod::ConjugateGradients,
@@ -225,15 +240,14 @@ pub fn interpolate_observed(
     })
 }
 
-/// The greatest distance between points of the same number, but for some, and the first of those.
-fn farthest(a: &[[f64; 3]], b: &[[f64; 3]], is_left_out: impl Fn(usize) -> bool) -> (f64, VertexId) {
-    let distance = |(&a, &b): (&[f64; 3], &[f64; 3])| {
-        let [a, b] = [a, b].map(vector);
-        diagonal(a.min(b), a.max(b))
+/// The greatest distance between points of the same number, of which a part counts, and the first of those.
+fn farthest(a: &[[f64; 3]], b: &[[f64; 3]], counts: impl Fn(usize, DVec3) -> DVec3) -> (f64, VertexId) {
+    let distance = |(v, (&a, &b)): (usize, (&[f64; 3], &[f64; 3]))| {
+        let away = counts(v, vector(a) - vector(b));
+        (v as u32, diagonal(away.min(DVec3::ZERO), away.max(DVec3::ZERO)))
     };
     let most = |most: (f64, VertexId), (v, distance): (u32, f64)| {
         if distance > most.0 { (distance, VertexId(v)) } else { most }
     };
-    let all = (0..).zip(a.iter().zip(b).map(distance)).filter(|&(v, _)| !is_left_out(v as usize));
-    all.fold((0.0, VertexId(0)), most)
+    a.iter().zip(b).enumerate().map(distance).fold((0.0, VertexId(0)), most)
 }

@@ -14,7 +14,7 @@ use crate::mesh::{Mesh, Sharpness};
 use crate::vector::{diagonal, vector};
 
 /// How many times as long as the shorter edges at its ends an edge may be for a line to be led through these.
-const MOST_UNEVEN: f64 = 3.0;
+pub(super) const MOST_UNEVEN: f64 = 3.0;
 
 /// The system with shorter edges where lines are uneven, and by row whether that changed it.
 pub(super) fn evened(matrix: &Sparse, mesh: &Mesh) -> (Sparse, Vec<bool>) {

@@ -10,11 +10,16 @@ use limitmesh::scheme::Loop;
 use super::interpolate;
 use super::support::creased;
 
-/// A convex profile extruded, its ends fans around vertices of their own.
+/// A convex profile extruded, its ends fans around vertices in their middle.
 fn extruded(profile: &[[f64; 2]], height: f64) -> Mesh {
+    let middle = [0, 1].map(|i| profile.iter().map(|p| p[i]).sum::<f64>() / profile.len() as f64);
+    extruded_around(profile, middle, height)
+}
+
+/// The same with fans around vertices elsewhere.
+fn extruded_around(profile: &[[f64; 2]], middle: [f64; 2], height: f64) -> Mesh {
     let n = profile.len() as u32;
     let at = |z: f64| profile.iter().map(move |&[x, y]| [x, y, z]);
-    let middle = [0, 1].map(|i| profile.iter().map(|p| p[i]).sum::<f64>() / f64::from(n));
     let centres = [0.0, height].map(|z| [middle[0], middle[1], z]);
     let positions = at(0.0).chain(at(height)).chain(centres).collect();
     let mut triangles = Vec::new();
@@ -74,4 +79,16 @@ fn edges_up_to_three_times_as_long_count_as_they_are() {
     let circle: Vec<[f64; 2]> =
         (0..24).map(|i| (TAU * f64::from(i) / 24.0).sin_cos()).map(|(s, c)| [c, s]).collect();
     assert_eq!(apart(&extruded(&circle, 1.0)).1, 0);
+}
+
+/// Led through a vertex near the corner of a flat face, its control point came to lie beyond that corner.
+#[test]
+fn a_vertex_near_the_corner_of_a_flat_face_stays() {
+    let mesh = extruded_around(&[[0.0, 0.0], [60.0, 0.0], [60.0, 40.0], [0.0, 40.0]], [57.0, 37.0], 30.0);
+    let (box_apart, passed_by) = apart(&mesh);
+    assert!(box_apart[1] < 1e-7 && passed_by == 0, "{box_apart:?}");
+    // Where the sides are smooth it is led through.
+    let smooth = mesh.with_tags(Default::default()).unwrap();
+    let found = interpolate(&smooth, &Loop).unwrap();
+    assert!(super::from_limits(&found, &Loop, &smooth) < 1e-12 * smooth.diagonal());
 }
