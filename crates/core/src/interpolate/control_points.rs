@@ -96,7 +96,8 @@ impl<'m> ControlPoints<'m> {
         let mut is_any = false;
         for (v, plane) in self.planes.iter_mut().enumerate() {
             let away = vector(limits[v]) - vector(self.mesh.positions()[v]);
-            if plane.is_some_and(|normal| !(away.dot(normal).abs() <= most)) {
+            let is_in_plane = |normal: DVec3| away.dot(normal).abs() <= most;
+            if plane.is_some_and(|normal| !is_in_plane(normal)) {
                 *plane = None;
                 is_any = true;
             }
