@@ -4,10 +4,10 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod other_schemes;
-mod spacing;
 #[path = "../support/mod.rs"]
 mod support;
 mod through;
+mod uneven_lines;
 mod within;
 
 use std::f64::consts::TAU;
