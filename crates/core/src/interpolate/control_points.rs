@@ -10,15 +10,16 @@
 use super::blocks::Blocks;
 use super::fairness::{self, Energies, Energy};
 use super::planes::kept_in_planes;
-use super::spacing::evened;
+use super::spacing::even;
 use super::sparse::{Sparse, greatest};
 use super::system::{Solution, Solver, System};
 use crate::index::VertexId;
 use crate::limit::{LimitRows, summed};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Sharpness};
 use crate::parallel::{self, Poll};
 use crate::progress::{Cancelled, Watch};
 use crate::vector::{DVec3, vector};
+use std::collections::{HashMap, HashSet};
 
 /// Residuals below this, beside the greatest distance of a limit from its vertex, are nothing.
 const ACCURACY: f64 = 1e-14;
@@ -46,89 +47,90 @@ pub(super) struct Moved {
 /// The system of a mesh, its lengths multiplied by `unit`.
 pub(super) struct ControlPoints<'m> {
     mesh: &'m Mesh,
+    sharpness: Sharpness<'m>,
     /// The first copy of each vertex.
     first_copy: Vec<u32>,
     /// Where some vertices keep their place, the rows of all.
     rows: Option<Sparse>,
     matrix: Sparse,
-    /// By vertex, whether its row is for an edge beside it that is shorter than it is.
-    is_passed_by: Vec<bool>,
-    /// By vertex that keeps its place though its limit is elsewhere in its plane, the unit normal of that.
-    planes: Vec<Option<DVec3>>,
+    /// First copies whose rows are for an edge beside them that is shorter than it is.
+    passed_by: HashSet<u32>,
+    /// First copies that keep their place though their limit is elsewhere in its plane, with the unit normal of that.
+    planes: HashMap<u32, DVec3>,
     points: Vec<DVec3>,
     unit: f64,
 }
 
 impl<'m> ControlPoints<'m> {
-    pub(super) fn new(mesh: &'m Mesh, rows: LimitRows) -> Self {
+    pub(super) fn new(mesh: &'m Mesh, rows: LimitRows, poll: &mut Poll<'_>) -> Result<Self, Cancelled> {
         let mut first_copy: Vec<u32> = (0..mesh.vertex_count() as u32).collect();
         for group in mesh.junctions().vertices.iter() {
             let first = group.iter().copied().min().unwrap_or(0);
             group.iter().for_each(|&copy| first_copy[copy as usize] = first);
         }
         let rows = of_first_copies(rows, &first_copy);
-        let planes = kept_in_planes(&rows, mesh);
+        let sharpness = Sharpness::of(mesh);
+        let planes = kept_in_planes(&rows, mesh, &sharpness, poll)?;
         let unit = unit(mesh);
         let points = mesh.positions().iter().map(|&p| vector(p) * unit).collect();
-        let (matrix, is_passed_by) = (Sparse::empty(), Vec::new());
-        let mut found = Self { mesh, first_copy, rows: None, matrix, is_passed_by, planes, points, unit };
-        found.set(rows);
-        found
+        let (matrix, passed_by) = (Sparse::empty(), HashSet::new());
+        let mut found =
+            Self { mesh, sharpness, first_copy, rows: None, matrix, passed_by, planes, points, unit };
+        found.set(rows, poll)?;
+        Ok(found)
     }
 
-    /// Sets the system, the rows of all vertices given.
-    fn set(&mut self, rows: Sparse) {
-        let is_any_kept = self.planes.iter().any(Option::is_some);
-        (self.matrix, self.is_passed_by) = match is_any_kept {
-            true => evened(&keeping(&rows, &self.planes), self.mesh),
-            false => evened(&rows, self.mesh),
+    /// Sets the system, the rows of all first copies given.
+    fn set(&mut self, rows: Sparse, poll: &mut Poll<'_>) -> Result<(), Cancelled> {
+        (self.matrix, self.rows) = match self.planes.is_empty() {
+            true => (rows, None),
+            false => (keeping(&rows, &self.planes), Some(rows)),
         };
-        self.rows = is_any_kept.then_some(rows);
-        for v in 0..self.is_passed_by.len() {
-            self.is_passed_by[v] = self.is_passed_by[self.first_copy[v] as usize];
-        }
+        self.passed_by = even(&mut self.matrix, self.mesh, &self.sharpness, poll)?;
+        Ok(())
     }
 
     /// Vertices that keep their place though the surface is not in their plane, which is more than `most` away from them, are led through from
     /// now on, in the last attempt all; says whether there were any.
-    pub(super) fn lead_through(&mut self, limits: &[[f64; 3]], most: f64, is_last: bool) -> bool {
-        let Some(rows) = self.rows.take() else { return false };
-        let mut is_any = false;
-        for (v, plane) in self.planes.iter_mut().enumerate() {
-            let away = vector(limits[v]) - vector(self.mesh.positions()[v]);
-            let is_in_plane = |normal: DVec3| away.dot(normal).abs() <= most;
-            if plane.is_some_and(|normal| !is_in_plane(normal)) {
-                *plane = None;
-                is_any = true;
-            }
+    pub(super) fn lead_through(
+        &mut self,
+        limits: &[[f64; 3]],
+        (most, is_last): (f64, bool),
+        poll: &mut Poll<'_>,
+    ) -> Result<bool, Cancelled> {
+        let before = self.planes.len();
+        let off = |v: u32| vector(limits[v as usize]) - vector(self.mesh.positions()[v as usize]);
+        self.planes.retain(|&v, normal| off(v).dot(*normal).abs() <= most);
+        if self.planes.len() == before {
+            return Ok(false);
         }
-        if is_any && is_last {
-            self.planes.fill(None);
+        if is_last {
+            self.planes.clear();
         }
-        if is_any {
-            self.set(rows);
-        } else {
-            self.rows = Some(rows);
+        if let Some(rows) = self.rows.take() {
+            self.set(rows, poll)?;
         }
-        is_any
+        Ok(true)
     }
 
     /// How far the surface misses a vertex whose limit is so far away: only across its plane where it keeps its place, and not at all
     /// where it is passed by.
     pub(super) fn missed(&self, v: usize, away: DVec3) -> DVec3 {
-        match self.planes[v] {
-            _ if self.is_passed_by[v] => DVec3::ZERO,
-            Some(normal) => away.dot(normal) * normal,
+        let first = self.first_copy[v];
+        match self.planes.get(&first) {
+            _ if self.passed_by.contains(&first) => DVec3::ZERO,
+            Some(&normal) => away.dot(normal) * normal,
             None => away,
         }
     }
 
+    /// The vertices that are passed by, ascending.
     pub(super) fn passed_by(&self) -> Vec<VertexId> {
-        (0..)
-            .zip(&self.is_passed_by)
-            .filter(|&(_, &is_passed_by)| is_passed_by)
-            .map(|(v, _)| VertexId(v))
-            .collect()
+        if self.passed_by.is_empty() {
+            return Vec::new();
+        }
+        let all = (0..).zip(&self.first_copy).filter(|(_, first)| self.passed_by.contains(first));
+        all.map(|(v, _)| VertexId(v)).collect()
     }
 
     /// Whether all limits are the vertices themselves, so that there is nothing to do.
@@ -252,12 +254,12 @@ fn of_first_copies(rows: LimitRows, first_copy: &[u32]) -> Sparse {
 }
 
 /// The same rows, but for vertices that keep their place.
-fn keeping(rows: &Sparse, planes: &[Option<DVec3>]) -> Sparse {
+fn keeping(rows: &Sparse, planes: &HashMap<u32, DVec3>) -> Sparse {
     let mut matrix = Sparse::empty();
-    for (v, plane) in planes.iter().enumerate() {
-        match plane {
-            Some(_) => matrix.push([(v as u32, 1.0)]),
-            None => matrix.push(rows.row(v)),
+    for v in 0..rows.rows() as u32 {
+        match planes.contains_key(&v) {
+            true => matrix.push([(v, 1.0)]),
+            false => matrix.push(rows.row(v as usize)),
         }
     }
     matrix

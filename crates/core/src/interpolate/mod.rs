@@ -76,6 +76,9 @@ const THROUGH: f64 = 1e-10;
 /// How far beyond the distance that is asked for limits may be, as a share of the bounding box's diagonal.
 const NEAR: f64 = 1e-12;
 
+/// Vertices that are looked at between two calls of the observer: some milliseconds.
+const POLLED: u32 = 1 << 12;
+
 /// After so many attempts to keep vertices in planes all are led through.
 const MOST_ATTEMPTS: usize = 4;
 
@@ -118,7 +121,7 @@ options! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InterpolationMethod {
-    /// There was nothing to find: all limits are the vertices themselves, as with a scheme that interpolates.
+    /// There was nothing to find: all limits are the vertices themselves, as with a scheme that interpolates, or vertices of flat faces.
     Unchanged,
     /// Conjugate gradients on systems that are symmetric and positive definite.
     ConjugateGradients,
@@ -189,7 +192,8 @@ pub fn interpolate_observed(
     watch.triangles(mesh.face_count());
     watch.stage(Stage::Interpolating, Some(mesh.vertex_count()))?;
     let table = LimitTable::new(scheme);
-    let mut points = ControlPoints::new(mesh, table.position_rows(mesh, &mut |_| watch.poll())??);
+    let rows = table.position_rows(mesh, &mut |_| watch.poll())??;
+    let mut points = ControlPoints::new(mesh, rows, &mut |_| watch.poll())?;
     if points.is_solved() {
         return Ok(Interpolated {
             mesh: mesh.clone(),
@@ -211,7 +215,7 @@ pub fn interpolate_observed(
         let limits = table.positions_polled(&control, &mut |done| watch.done(done))??;
         let most = within + points.rounding() + THROUGH * mesh.diagonal();
         attempt += 1;
-        if !points.lead_through(&limits, most, attempt >= MOST_ATTEMPTS) {
+        if !points.lead_through(&limits, (most, attempt >= MOST_ATTEMPTS), &mut |_| watch.poll())? {
             break (moved, control, limits);
         }
         watch.stage(Stage::Interpolating, Some(mesh.vertex_count()))?;

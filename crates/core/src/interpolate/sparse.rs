@@ -54,6 +54,11 @@ impl Sparse {
         &self.columns[self.starts[i]..self.starts[i + 1]]
     }
 
+    /// The weights of a row, in the order of its columns.
+    pub(super) fn weights_mut(&mut self, i: usize) -> &mut [f64] {
+        &mut self.weights[self.starts[i]..self.starts[i + 1]]
+    }
+
     /// The product of a row with a vector.
     #[inline]
     pub(super) fn row_times(&self, i: usize, x: &[DVec3]) -> DVec3 {

@@ -31,10 +31,32 @@ pub(crate) fn model(name: &str) -> Mesh {
 
 /// The greatest distance of the library's limits from the vertices of a mesh, but for those that are passed by.
 pub(crate) fn from_limits(found: &Interpolated, scheme: &dyn Scheme, vertices: &Mesh) -> f64 {
+    let may_be = beside_long_edges(vertices);
+    assert!(found.passed_by.iter().all(|v| may_be.contains(&v.0)), "{:?} of {may_be:?}", found.passed_by);
     let limits = LimitTable::new(scheme).positions(&found.mesh).unwrap();
     let through = |v: &usize| !found.passed_by.contains(&VertexId(*v as u32));
     let distances = (0..limits.len()).filter(through).map(|v| distance(limits[v], vertices.positions()[v]));
     distances.fold(0.0, f64::max)
+}
+
+/// The ends of tagged and boundary edges more than three times as long as the shortest such edge at one of their ends: by the tags and faces alone.
+fn beside_long_edges(mesh: &Mesh) -> Vec<u32> {
+    let mut faces = std::collections::BTreeMap::new();
+    for &[a, b, c] in mesh.triangles() {
+        [[a, b], [b, c], [c, a]]
+            .iter()
+            .for_each(|&[p, q]| *faces.entry([p.min(q), p.max(q)]).or_insert(0) += 1);
+    }
+    let boundary = faces.iter().filter(|&(_, &count)| count == 1).map(|(&ends, _)| ends);
+    let lines: Vec<[u32; 2]> = boundary.chain(mesh.tags().creases.iter().map(|tag| tag.vertices)).collect();
+    let length = |[a, b]: [u32; 2]| distance(mesh.positions()[a as usize], mesh.positions()[b as usize]);
+    let shortest = |v: u32| {
+        let own = lines.iter().filter(|ends| ends.contains(&v)).map(|&ends| length(ends));
+        own.fold(f64::INFINITY, f64::min)
+    };
+    let is_long =
+        |ends: &&[u32; 2]| length(**ends) > 3.0 * shortest(ends[0]).min(shortest(ends[1])) * (1.0 - 1e-12);
+    lines.iter().filter(is_long).flatten().copied().collect()
 }
 
 pub(crate) fn farthest(a: &[Point], b: &[Point]) -> f64 {
