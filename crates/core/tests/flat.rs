@@ -523,9 +523,12 @@ fn what_folds_is_the_same_at_each_tolerance() {
                 plate.with_positions(positions).unwrap()
             }
         };
-        let within = |share: f64| exact(&mesh, &Loop, &within(share * mesh.diagonal()).unfold(true)).unwrap();
+        let within_of = |share: f64| within(share * mesh.diagonal()).unfold(true);
+        let within = |share: f64| exact(&mesh, &Loop, &within_of(share)).unwrap();
         let fine = within(1e-4);
-        for found in [0.03, 0.01, 3e-3].map(within) {
+        let balanced = within_of(0.01).balance(true);
+        let balanced = exact(&mesh, &Loop, &balanced).unwrap();
+        for found in [0.03, 0.01, 3e-3].map(within).into_iter().chain([balanced]) {
             let options = CertifiedOptions::default().gap(Some(1e-4 * mesh.diagonal()));
             let apart = certified_hausdorff(found.mesh.as_triangles(), fine.mesh.as_triangles(), &options);
             let apart = apart.unwrap();

@@ -48,7 +48,8 @@ pub struct ExactOptions {
     pub origins: bool,
     /// Regions of control faces whose limit surface lies in a plane are triangulated from their rims alone, with no vertices
     /// inside but those of the control mesh. Triangles that lie in one plane side by side though the surface is curved elsewhere, as on a
-    /// cylinder's side, are put together, too. Else all follow the hierarchy. With [`Self::balance`] of regions that [`Self::unfold`] is about alone. Default: yes.
+    /// cylinder's side, are put together, too. Else all follow the hierarchy. With [`Self::balance`] only regions for which [`Self::unfold`] takes what their
+    /// rims enclose. Default: yes.
     pub flat_regions: bool,
     /// Where the scheme's rules fold the surface over in a flat region, as they do where slivers of a fan meet a hole, what the
     /// region's rim encloses is taken for the surface: what people mean, and what [`Exact::unfolded`](super::Exact::unfolded)

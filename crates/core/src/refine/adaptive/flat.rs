@@ -204,41 +204,33 @@ impl FlatRegions {
             true => found.enclosed((control, edges), IN_PLANE * size, watch)?,
             false => vec![false; found.regions.len()],
         };
-        if options.balance && !found.keep_folded(control, most, watch)? {
-            return Ok(Self::default());
+        if options.balance {
+            found.keep_enclosed(watch)?;
+            if found.regions.is_empty() {
+                return Ok(Self::default());
+            }
         }
         found.by_rim = found.by_rim((control, edges), (options, most), watch)?;
         found.join((control, edges), &normals, (most, size), watch)?;
         Ok(found)
     }
 
-    /// Leaves no regions but those that fold, for all that was proven, and for which what their rims enclose stands: balanced vertices
-    /// are no better in planes, but the surface is to be the same. Says whether there are any.
-    fn keep_folded(
-        &mut self,
-        control: &Control<'_>,
-        most: f64,
-        watch: &SharedWatch<'_>,
-    ) -> Result<bool, Cancelled> {
-        let is_kept = watch.pieces(self.regions.len(), 1, |block| {
-            let (faces, plane) = &self.regions[block.start];
-            self.is_enclosed[block.start]
-                && !faces.iter().all(|&face| is_unfolded(control, face, plane, most))
-        })?;
-        let mut numbers = Vec::with_capacity(is_kept.len());
+    /// Leaves no regions but those for which what their rims enclose stands: that is the surface, whatever is done about the rest.
+    fn keep_enclosed(&mut self, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
         let mut kept = 0;
-        for &is_kept in &is_kept {
-            numbers.push(if is_kept { kept } else { NONE });
+        let number = |&is_kept: &bool| {
             kept += u32::from(is_kept);
-        }
+            if is_kept { kept - 1 } else { NONE }
+        };
+        let numbers: Vec<u32> = self.is_enclosed.iter().map(number).collect();
         watch.each(self.of_face.iter_mut().zip(&mut self.is_merged), |(region, is_merged)| {
             *region = numbers.get(*region as usize).copied().unwrap_or(NONE);
             *is_merged = *region != NONE;
         })?;
-        let mut kept = is_kept.iter();
-        self.regions.retain(|_| kept.next().copied().unwrap_or(false));
+        let mut numbers = numbers.into_iter();
+        self.regions.retain(|_| numbers.next().is_some_and(|number| number != NONE));
         self.is_enclosed = vec![true; self.regions.len()];
-        Ok(!self.regions.is_empty())
+        Ok(())
     }
 
     /// Which regions are judged by their rims alone, where distances alone are asked for: those with nothing but sharp edges and

@@ -131,7 +131,8 @@ impl FlatRegions {
         let own = &regions.list[region];
         let (before, by_rim) = (&own.triangles, self.is_by_rim(own));
         let is_divided = own.flat.is_none_or(|flat| before.len() > self.regions[flat as usize].0.len());
-        let may_change = is_divided || by_rim || self.unfolds && own.has_turned(net);
+        let is_enclosed = own.flat.is_some_and(|flat| self.is_enclosed[flat as usize]);
+        let may_change = is_divided || by_rim || is_enclosed && own.has_turned(net);
         if !may_change {
             return Fate::Stays;
         }
@@ -139,7 +140,6 @@ impl FlatRegions {
         let Some(outline) = Outline::of(own, net, regions, &mut flat) else {
             return if by_rim { Fate::Fails } else { Fate::Stays };
         };
-        let is_enclosed = own.flat.is_some_and(|flat| self.is_enclosed[flat as usize]);
         let has_turned = outline.has_turned || is_enclosed && by_rim && own.is_turned_at_corners(mesh.0, net);
         // Where the surface is proven not to be turned over, coarse triangles alone are.
         let was_folded = has_turned && (is_enclosed || !by_rim);
