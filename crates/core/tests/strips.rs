@@ -7,6 +7,7 @@ mod support;
 
 use limitmesh::Mesh;
 use limitmesh::measure::{SamplingOptions, hausdorff};
+use limitmesh::mesh::{BoundaryRule, PolygonSoup};
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 use support::{Point, Random, creased, cross, distance, dot, minus, peg};
@@ -322,4 +323,29 @@ fn balanced_pegs_take_no_more_triangles() {
             assert!(4 * told <= 6 * count && 4 * count <= 6 * told, "{facets}, {tolerance}: {told}, {count}");
         }
     }
+}
+
+/// A pentagon with a corner a billionth from the edge opposite, nearly flat: the mesh by which its bound was to be made tight had far too many
+/// triangles, which each of thousands of rounds put together to tell whether strips left fewer.
+#[test]
+fn nearer_meshes_with_too_many_triangles_are_given_up() {
+    let at = [
+        [1.0, 0.25, -1.5e-8],
+        [4.0, 0.25, -6.4e-8],
+        [4.0, 3.25, -5.4e-9],
+        [2.5, 0.250000001, 1.5e-7],
+        [1.0, 3.25, 3.1e-7],
+    ];
+    let mut soup = PolygonSoup { positions: at.to_vec(), ..PolygonSoup::default() };
+    soup.faces.push(&[4, 3, 2, 1, 0]);
+    let (mesh, _) = Mesh::from_soup(&soup, &Default::default()).unwrap();
+    let (mesh, _) = mesh.with_boundary(BoundaryRule::Fixed).with_divided_concave_corners().unwrap();
+    let options = ExactOptions::default().tolerance(0.01 * mesh.diagonal()).unfold(true);
+    let mut calls = 0;
+    let mut count = |at: &limitmesh::progress::Progress| {
+        calls += usize::from(at.triangles > 50_000);
+        if calls > 100 { core::ops::ControlFlow::Break(()) } else { core::ops::ControlFlow::Continue(()) }
+    };
+    let found = limitmesh::refine::exact_observed(&mesh, &Loop, &options, &mut count).unwrap();
+    assert!(found.error.upper <= 0.01 * mesh.diagonal() && found.stop == ExactStop::Met);
 }

@@ -23,6 +23,9 @@ const MERGED_SHARE: usize = 16;
 const MOST_NARROWER: usize = 4;
 const OVERRUN: f64 = 1.5;
 
+/// That leaves no less than this part of the triangles beyond the control mesh's own that there was room for.
+const LEAST_ROOM: f64 = 0.25;
+
 /// Distances fall with about this power of the number of triangles: 1 where surfaces are curved, 2 where rims alone are.
 const FALLING: f64 = 1.5;
 
@@ -163,13 +166,11 @@ fn within_caps(
             return Ok(found);
         }
         // Flat regions whose rims cross, or that share edges, keep more triangles than plans counted.
-        let over = count.saturating_sub(room) as f64;
-        room = most.saturating_sub((OVERRUN * over) as usize);
+        let over = (OVERRUN * count.saturating_sub(room) as f64) as usize;
+        let least = (LEAST_ROOM * room.saturating_sub(mesh.face_count()) as f64) as usize;
+        room = most.saturating_sub(over).max(mesh.face_count() + least);
         let share = room as f64 / count as f64;
         guess = Some(found.error.upper / share.powf(FALLING)).filter(|_| found.error.certified);
-        if room < mesh.face_count() {
-            break;
-        }
     }
     within_room(mesh, scheme, (&options.clone().flat_regions(false), demands), (most, None), observer)
 }
