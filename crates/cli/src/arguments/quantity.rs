@@ -36,6 +36,16 @@ const UNITS: [(Unit, &str, f64); 7] = [
     (Unit::Ft, "ft", 304_800.0),
 ];
 
+/// The units as 3MF packages have them.
+const IN_PACKAGES: [(Unit, LengthUnit); 6] = [
+    (Unit::Um, LengthUnit::Micron),
+    (Unit::Mm, LengthUnit::Millimeter),
+    (Unit::Cm, LengthUnit::Centimeter),
+    (Unit::M, LengthUnit::Meter),
+    (Unit::In, LengthUnit::Inch),
+    (Unit::Ft, LengthUnit::Foot),
+];
+
 impl Unit {
     /// How it is written after a number.
     pub(crate) fn name(self) -> &'static str {
@@ -44,26 +54,12 @@ impl Unit {
 
     /// The unit that a 3MF package names.
     pub(crate) fn of_package(unit: LengthUnit) -> Self {
-        match unit {
-            LengthUnit::Micron => Self::Um,
-            LengthUnit::Centimeter => Self::Cm,
-            LengthUnit::Inch => Self::In,
-            LengthUnit::Foot => Self::Ft,
-            LengthUnit::Meter => Self::M,
-            _ => Self::Mm,
-        }
+        IN_PACKAGES.iter().find(|pair| pair.1 == unit).map_or(Self::Mm, |pair| pair.0)
     }
 
     /// As a 3MF package has it; millimetres where nobody says.
     pub(crate) fn in_package(unit: Option<Self>) -> LengthUnit {
-        match unit.unwrap_or(Self::Mm) {
-            Self::Um => LengthUnit::Micron,
-            Self::Mm => LengthUnit::Millimeter,
-            Self::Cm => LengthUnit::Centimeter,
-            Self::M => LengthUnit::Meter,
-            Self::In => LengthUnit::Inch,
-            Self::Ft => LengthUnit::Foot,
-        }
+        IN_PACKAGES.iter().find(|pair| Some(pair.0) == unit).map_or(LengthUnit::Millimeter, |pair| pair.1)
     }
 
     fn micrometres(self) -> f64 {

@@ -17,7 +17,7 @@ use super::super::channels::Channels;
 use super::attribute_goals::AttributeGoals;
 use super::carried::Carried;
 use super::control::Control;
-use super::exact::Goals;
+use super::goals::Goals;
 use super::put_back::{MOST_WIDE, PutBack, channel, moved_positions};
 use super::selection::Selection;
 use super::several::{self, Progressed};
@@ -180,7 +180,7 @@ impl Job {
         channels.on_parts(&control.featured.concave.parts, &control.featured.mesh);
         let kept = kept_edges(&own, &control, &channels);
         let goals = Goals::new(&arguments, &control.featured.mesh, control.diagonal)?.keeping_origins(kept);
-        let attributes = attribute_goals((&own, stretch), &control, &channels, (&arguments, goals.length()))?;
+        let attributes = attribute_goals((&own, stretch), &control, &channels, (&arguments, goals.length))?;
         let goals = goals.with_attributes(attributes);
         let parameters = several::parameters(&arguments, &goals);
         if self.output.is_none() || arguments.exact.dry_run {

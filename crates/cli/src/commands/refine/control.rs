@@ -2,7 +2,6 @@
 
 use limitmesh::Mesh;
 
-use super::exact::{Before, BeforeSurface};
 use super::interpolation;
 use crate::arguments::{Featured, RefineArguments, Way};
 use crate::bulk::Bulk;
@@ -21,6 +20,22 @@ pub(super) struct Control {
     pub(super) interpolation: Option<InterpolationReport>,
     /// What lengths are given in per cent of.
     pub(super) diagonal: f64,
+}
+
+/// The mesh that was read, before corners were divided and control points moved.
+pub(super) struct Before {
+    /// Where somebody asks how far the result is from it.
+    pub(super) surface: Option<BeforeSurface>,
+    /// The input's face of each face.
+    pub(super) faces: Vec<u32>,
+    /// How far the limits of the control points are from its vertices at most, where they were moved for that.
+    pub(super) residual: Option<f64>,
+}
+
+/// Positions and triangles of the mesh that was read.
+pub(super) struct BeforeSurface {
+    pub(super) positions: Vec<[f64; 3]>,
+    pub(super) triangles: Vec<[u32; 3]>,
 }
 
 impl Control {

@@ -3,7 +3,7 @@
 use limitmesh::Mesh;
 use limitmesh::refine::{Estimate, exact_estimate_observed};
 
-use super::exact::Goals;
+use super::goals::Goals;
 use crate::arguments::RefineArguments;
 use crate::format::{bytes, counted};
 use crate::output;

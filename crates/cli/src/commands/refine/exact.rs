@@ -1,194 +1,29 @@
 //! Exact refinement: from the goals on the command line to the mesh, its certified distance, and what is said of it.
 
-use limitmesh::carry::borders;
-use limitmesh::criterion::Camera;
-use limitmesh::mesh::FaceParts;
+use limitmesh::Mesh;
 use limitmesh::progress::Stage;
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, Origin, exact_observed};
-use limitmesh::{Mesh, Triangles};
-use limitmesh_io::{Format, WriteOptions};
+use limitmesh::refine::{Exact, ExactStop, exact_observed};
 
 use super::super::channels::Channels;
 use super::super::normals::Normals;
-use super::attribute_goals::AttributeGoals;
 use super::carried::Trail;
-use super::input_distance::InputDistance;
+use super::control::Before;
+use super::goals::{Goals, unit_in_words, written};
+use super::input_distance::{self, InputDistance};
 use super::provenance::Provenance;
-use super::{INTERPOLATE, Refined, cameras, view, view_report};
-use crate::arguments::{ConcaveCorners, Extent, Featured, Length, MOST_EXACT, RefineArguments, Unit};
-use crate::dihedral::Dihedrals;
+use super::{Refined, view_report};
+use crate::arguments::{Featured, RefineArguments};
 use crate::failure::Outcome;
-use crate::format::{bytes, counted, number, thousands, upper_bound};
+use crate::format::{bytes, counted, thousands, upper_bound};
 use crate::progress::{Phases, Progress};
 use crate::report::refinement::exact_stop_name;
 use crate::report::{
-    AttributeReport, CameraReport, ErrorReport, ExactParametersReport, InputDistanceReport, MethodReport,
-    ParametersReport, RoundEntry,
+    CameraReport, ErrorReport, ExactParametersReport, InputDistanceReport, MethodReport, ParametersReport,
+    RoundEntry,
 };
-
-/// The tolerance where no goal is given: facets can hardly be seen then in a picture a thousand pixels wide.
-const USUAL_TOLERANCE: Extent = Extent::Percent(0.1);
 
 /// A part of the distance that rounding makes up and that is told.
 const NOTED: f64 = 0.01;
-
-/// The distance in pixels where cameras are given without one.
-const USUAL_PIXELS: f64 = 1.0;
-
-/// The goals, with those that hold where none is given.
-pub(super) struct Goals {
-    /// In the mesh's unit.
-    length: Option<f64>,
-    /// The same as a person gave it.
-    tolerance: Option<Extent>,
-    /// Of the input's bounding box.
-    diagonal: f64,
-    /// How far the output's format may round a vertex.
-    rounding: f64,
-    angle_degrees: Option<f64>,
-    triangles: Option<usize>,
-    pixels: Option<f64>,
-    cameras: Vec<Camera>,
-    /// Whether triangles must not reach over several control faces.
-    tells_faces_apart: bool,
-    /// Edges of the control mesh along which edges stay when they are collapsed.
-    kept_edges: Vec<[u32; 2]>,
-    /// Whether the result tells where vertices and triangles came from.
-    keeps_origins: bool,
-    attributes: AttributeGoals,
-}
-
-impl Goals {
-    /// The same where the control mesh carries channels.
-    ///
-    /// # Errors
-    /// A channel with a tolerance does not fit it.
-    pub(super) fn carrying(
-        mut self,
-        channels: &Channels,
-        control: &Mesh,
-        arguments: &RefineArguments,
-    ) -> anyhow::Result<Self> {
-        self.kept_edges = borders(channels.all(), control);
-        self.tells_faces_apart = channels.vary_within_faces() || !self.kept_edges.is_empty();
-        self.attributes.add_channels(channels, control, &arguments.channels)?;
-        Ok(self)
-    }
-
-    /// The same with goals beside the shape.
-    pub(super) fn with_attributes(mut self, attributes: AttributeGoals) -> Self {
-        self.attributes = attributes;
-        self
-    }
-
-    /// The greatest distance from the limit surface, if that is asked for.
-    pub(super) fn length(&self) -> Option<f64> {
-        self.length
-    }
-
-    /// `diagonal` is what lengths are given in per cent of.
-    ///
-    /// # Errors
-    /// A file of cameras that cannot be read, or a camera inside the mesh.
-    pub(super) fn new(arguments: &RefineArguments, control: &Mesh, diagonal: f64) -> anyhow::Result<Self> {
-        let exact = &arguments.exact;
-        let cameras = cameras::all(arguments)?;
-        cameras::check(&cameras, control, arguments)?;
-        let none = exact.tolerance.is_none()
-            && exact.triangles.is_none()
-            && arguments.angle.is_none()
-            && cameras.is_empty();
-        let tolerance = exact.tolerance.or(none.then_some(USUAL_TOLERANCE));
-        let length = tolerance.map(|tolerance| tolerance.length(diagonal, arguments.build.unit));
-        Ok(Self {
-            length: length.transpose()?,
-            tolerance,
-            diagonal,
-            rounding: most_rounding(arguments, control),
-            angle_degrees: arguments.angle,
-            triangles: exact.triangles,
-            pixels: (!cameras.is_empty()).then(|| exact.pixels.unwrap_or(USUAL_PIXELS)),
-            cameras,
-            tells_faces_apart: false,
-            kept_edges: Vec::new(),
-            keeps_origins: false,
-            attributes: AttributeGoals::default(),
-        })
-    }
-
-    /// The same, where the result is to tell where vertices and triangles came from, and edges of the control mesh stay along which sides
-    /// are told apart.
-    pub(super) fn keeping_origins(mut self, kept_edges: Vec<[u32; 2]>) -> Self {
-        (self.keeps_origins, self.kept_edges) = (true, kept_edges);
-        self
-    }
-
-    pub(super) fn options(&self, arguments: &RefineArguments) -> ExactOptions {
-        let mut options = ExactOptions::default()
-            .max_triangles(Some(arguments.max_triangles()))
-            .max_memory(arguments.exact.max_memory)
-            .balance(arguments.exact.balance)
-            .optimize(arguments.exact.optimize)
-            .kept_edges(self.kept_edges.clone())
-            .attributes(self.attributes.options())
-            .flat_regions(!arguments.exact.divide_flat && !self.tells_faces_apart)
-            .unfold(arguments.features.concave_corners() == ConcaveCorners::Divided)
-            .origins(
-                arguments.exact.provenance
-                    || !arguments.exact.no_input_distance
-                    || self.tells_faces_apart
-                    || self.keeps_origins,
-            );
-        if let Some(pixels) = self.pixels {
-            options = options.pixels(pixels, self.cameras.clone());
-        }
-        if let Some(view) = view(arguments) {
-            options = options.view(view);
-        }
-        if let Some(length) = self.length {
-            // What rounding takes afterwards, unless that is most of it.
-            let room = length - self.rounding;
-            options = options.tolerance(if room > 0.5 * length { room } else { length });
-        }
-        if let Some(degrees) = self.angle_degrees {
-            options = options.angle(degrees.to_radians());
-        }
-        if let Some(count) = self.triangles {
-            options = options.triangles(count);
-        }
-        if let Some(levels) = arguments.exact.max_levels {
-            options = options.max_levels(levels);
-        }
-        options
-    }
-
-    /// The goals on quality that were not met, or all where nobody knows which, as a list in words.
-    fn in_words(&self, found: &Exact) -> String {
-        let is_far = self.length.is_some_and(|length| found.error.upper > length);
-        let is_off = self.attributes.reached(found).iter().any(AttributeReport::is_missed);
-        let tolerance = self.tolerance.filter(|_| is_far || !is_off).map(|tolerance| match tolerance {
-            Extent::Length(Length { value, unit }) => {
-                format!("the tolerance of {}{}", as_typed(value), unit_in_words(unit))
-            }
-            Extent::Percent(percent) => format!("the tolerance of {} %", as_typed(percent)),
-        });
-        let angle = self.angle_degrees.map(|degrees| format!("the angle of {}°", as_typed(degrees)));
-        let pixels = self.pixels.map(|pixels| format!("the {} pixels", as_typed(pixels)));
-        let attributes = self.attributes.in_words().filter(|_| is_off || !is_far).map(str::to_owned);
-        let goals: Vec<String> = [tolerance, angle, pixels, attributes].into_iter().flatten().collect();
-        if goals.is_empty() { "the triangles asked for".to_owned() } else { goals.join(" and ") }
-    }
-}
-
-/// ` mm`, or nothing where no unit is known.
-pub(super) fn unit_in_words(unit: Option<Unit>) -> String {
-    unit.map_or_else(String::new, |unit| format!(" {}", unit.name()))
-}
-
-/// The fewest digits that say exactly this number, as a person would write it.
-fn as_typed(x: f64) -> String {
-    if (1e-6..1e9).contains(&x) { format!("{x}") } else { format!("{x:e}") }
-}
 
 /// Refines until the goals are met or a cap is reached.
 ///
@@ -213,12 +48,8 @@ pub(super) fn run(
     progress.stage(format!("refining {}", counted(control.face_count(), "triangle", "triangles")));
     let options = goals.options(arguments);
     let mut found = exact_observed(control, arguments.scheme()?, &options, &mut observer)?;
-    let mut moved = moved((control, before, &concave.parts), &found, goals, arguments, progress)?;
-    if let (Some(moved), Some(BeforeSurface { positions, triangles })) = (&mut moved, &before.surface) {
-        let expected = goals.length.into_iter().chain([found.error.upper]).fold(0.0, f64::max);
-        let meshes = [Triangles { positions, triangles }, found.mesh.as_triangles()];
-        *moved = moved.narrowed(meshes, expected, &mut progress.observer())?;
-    }
+    let moved =
+        input_distance::measured((control, before, &concave.parts), &found, goals, arguments, progress)?;
     let rounding = written(arguments)
         .map_or(0.0, |(format, options)| limitmesh_io::rounding(format, &options, found.mesh.positions()));
     if let Some(note) = round(&mut found, rounding, goals) {
@@ -233,7 +64,7 @@ pub(super) fn run(
     let attributes = goals.attributes.reached(&found);
     achieved.extend(goals.attributes.achieved(&attributes, &unit_in_words(arguments.build.unit)));
     if let Some(moved) = &moved {
-        achieved.extend(moved_in_words(moved, &error, control, goals, arguments));
+        achieved.extend(input_distance::in_words(moved, &error, control, goals, arguments));
     }
     let outcome = outcome(&found, control, goals, &achieved, arguments);
     let inverted = found.inverted_triangles();
@@ -270,22 +101,6 @@ pub(super) fn run(
     })
 }
 
-/// The format and options of the output, if there is one.
-fn written(arguments: &RefineArguments) -> Option<(Format, WriteOptions)> {
-    let format = arguments.format().ok().flatten()?;
-    Some((format, WriteOptions::default().ascii(arguments.ascii)))
-}
-
-/// How far the output's format rounds a vertex at most: all lie in the box of the control mesh's.
-fn most_rounding(arguments: &RefineArguments, control: &Mesh) -> f64 {
-    let largest = control.positions().as_flattened().iter().fold(0.0f64, |most, x| most.max(x.abs()));
-    // Half of the last place of `f32`, and of its least number, along each axis.
-    let most = 3f64.sqrt() * (largest * f64::from(f32::EPSILON) * 0.5 + 0.5 * f64::from(f32::from_bits(1)));
-    let is_rounded = written(arguments)
-        .is_some_and(|(format, options)| limitmesh_io::rounding(format, &options, &[[0.1; 3]]) > 0.0);
-    if is_rounded { most } else { 0.0 }
-}
-
 /// Counts what writing rounds among the distance; a note where that is much of it.
 fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
     let proven = found.error.upper;
@@ -305,87 +120,6 @@ fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
 
 /// A mesh that is off by no more than this share of the diagonal is the surface itself, as files in single precision have it.
 const EXACT: f64 = 1e-6;
-
-/// Share of the diagonal that a mesh may be off by that stands for the limit surface, where triangles reach over several control
-/// faces.
-const STAND_IN: f64 = 5e-4;
-
-/// The mesh that was read, before corners were divided and control points moved.
-pub(super) struct Before {
-    /// Where somebody asks how far the result is from it.
-    pub(super) surface: Option<BeforeSurface>,
-    /// The input's face of each face.
-    pub(super) faces: Vec<u32>,
-    /// How far the limits of the control points are from its vertices at most, where they were moved for that.
-    pub(super) residual: Option<f64>,
-}
-
-/// Positions and triangles of the mesh that was read.
-pub(super) struct BeforeSurface {
-    pub(super) positions: Vec<[f64; 3]>,
-    pub(super) triangles: Vec<[u32; 3]>,
-}
-
-/// How far the result is from the mesh that was read.
-fn moved(
-    (control, before, parts): (&Mesh, &Before, &FaceParts),
-    found: &Exact,
-    goals: &Goals,
-    arguments: &RefineArguments,
-    progress: &Progress,
-) -> anyhow::Result<Option<InputDistance>> {
-    let Some(BeforeSurface { positions, triangles }) = &before.surface else { return Ok(None) };
-    let input = Triangles { positions, triangles };
-    let residual = before.residual.unwrap_or(0.0);
-    let on_whole = |found: &Exact| -> Vec<Origin> {
-        let origins = found.origins.iter().map(|origin| parts.on_whole(origin.face, origin.barycentric));
-        origins.map(|(face, barycentric)| Origin { face, barycentric }).collect()
-    };
-    let origins = on_whole(found);
-    if let Some(moved) = InputDistance::new(input, (found, &origins), residual)? {
-        return Ok(Some(moved));
-    }
-    if !found.error.certified {
-        return Ok(None);
-    }
-    // Triangles that reach over several control faces: the limit surface lies between, with another mesh near it.
-    let options =
-        ExactOptions::default().tolerance(STAND_IN * goals.diagonal).max_triangles(Some(MOST_EXACT));
-    let between = exact_observed(control, arguments.scheme()?, &options, &mut progress.observer())?;
-    let apart = between.error.upper + found.error.upper;
-    let moved = InputDistance::new(input, (&between, &on_whole(&between)), residual)?;
-    Ok(moved.map(|moved| moved.of_other(input, (found, &origins), apart)).transpose()?)
-}
-
-/// How far the result is from the mesh that was read, if that is farther than it is from the limit surface, and what would
-/// keep it nearer.
-fn moved_in_words(
-    moved: &InputDistanceReport,
-    error: &ErrorReport,
-    control: &Mesh,
-    goals: &Goals,
-    arguments: &RefineArguments,
-) -> Vec<String> {
-    let expected = goals.length.into_iter().chain(error.upper).fold(0.0, f64::max);
-    if moved.upper <= expected {
-        return Vec::new();
-    }
-    let mut lines = vec![moved.in_words(&unit_in_words(arguments.build.unit))];
-    let is_tagged = arguments.features.crease_angle.is_some() || !control.tags().creases.is_empty();
-    let dihedrals = (!is_tagged).then(|| Dihedrals::of(control));
-    if let Some(Dihedrals { suggested_crease_angle_degrees: Some(angle), sharp_edges, .. }) = dihedrals {
-        let edges = counted(sharp_edges, "edge that looks", "edges that look");
-        lines.push(format!("(--crease-angle {} would keep {edges} sharp)", number(angle)));
-    }
-    if arguments
-        .interpolation
-        .within(goals.diagonal, arguments.build.unit)
-        .is_ok_and(|within| within.is_none())
-    {
-        lines.push(INTERPOLATE.to_owned());
-    }
-    lines
-}
 
 /// What was reached, in sentences of a line each.
 fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, arguments: &RefineArguments) -> Vec<String> {

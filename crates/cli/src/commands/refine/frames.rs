@@ -15,7 +15,8 @@ use super::super::channels::{Channels, Destination};
 use super::super::normals::Normals;
 use super::carried::Trail;
 use super::control::Control;
-use super::exact::{self, Goals};
+use super::exact;
+use super::goals::Goals;
 use super::{Refined, check, jobs, write};
 use crate::arguments::{RefineArguments, Unit, Way};
 use crate::failure::{Outcome, usage};
@@ -73,7 +74,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     let mesh = &found.refined.mesh;
     progress.note(in_words(&found, (worst, diagonal), &name, refining));
     let stop = match found.refined.stop {
-        ExactStop::Met | ExactStop::Cones if goals.length().is_some_and(|length| worst > length) => {
+        ExactStop::Met | ExactStop::Cones if goals.length.is_some_and(|length| worst > length) => {
             ExactStop::Rounding
         }
         stop => stop,
@@ -104,7 +105,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         ExactStop::Met | ExactStop::Cones => Outcome::Done,
         ExactStop::Rounding => Outcome::StoppedShort(format!(
             "the tolerance of {} is finer than rounding leaves certain",
-            number(goals.length().unwrap_or_default())
+            number(goals.length.unwrap_or_default())
         )),
         // Caps on triangles and memory are errors: there would be no mesh for all frames.
         _ => Outcome::StoppedShort(format!(

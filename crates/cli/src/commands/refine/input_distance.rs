@@ -13,11 +13,20 @@
 //! normals: along the surface, vertices drift where triangles are of different sizes, and the interval is wide there. Of a mesh that is not
 //! too large the two are measured then, by the certified search.
 
-use limitmesh::Triangles;
 use limitmesh::measure::{Bvh, CertifiedOptions, MeasureError, certified_hausdorff_between_observed};
+use limitmesh::mesh::FaceParts;
 use limitmesh::progress::Observer;
-use limitmesh::refine::{Exact, Origin};
+use limitmesh::refine::{Exact, ExactOptions, Origin, exact_observed};
+use limitmesh::{Mesh, Triangles};
 
+use super::INTERPOLATE;
+use super::control::{Before, BeforeSurface};
+use super::goals::{Goals, unit_in_words};
+use crate::arguments::{MOST_EXACT, RefineArguments};
+use crate::dihedral::Dihedrals;
+use crate::format::{counted, number};
+use crate::progress::Progress;
+use crate::report::{ErrorReport, InputDistanceReport};
 use crate::vector::{distance, dot, minus};
 
 /// Points whose distance is measured.
@@ -33,6 +42,10 @@ const MOST_TRIANGLES: usize = 200_000;
 
 /// What rounding may do to a computed point or distance, as a share of the greatest coordinate: some hundred units in the last place.
 const ROUNDING: f64 = 2e-14;
+
+/// Share of the diagonal that a mesh may be off by that stands for the limit surface, where triangles reach over several control
+/// faces.
+const STAND_IN: f64 = 5e-4;
 
 /// The distance between the mesh that was read and the refined one lies between these.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,6 +120,73 @@ impl InputDistance {
     pub(super) fn rounded(self, rounding: f64) -> Self {
         Self { lower: (self.lower - rounding).max(0.0), upper: self.upper + rounding }
     }
+}
+
+/// How far the result is from the mesh that was read; `None` where nobody asks, or nothing is proven.
+///
+/// # Errors
+/// Coordinates too large to be measured, or somebody asked to stop.
+pub(super) fn measured(
+    (control, before, parts): (&Mesh, &Before, &FaceParts),
+    found: &Exact,
+    goals: &Goals,
+    arguments: &RefineArguments,
+    progress: &Progress,
+) -> anyhow::Result<Option<InputDistance>> {
+    let Some(BeforeSurface { positions, triangles }) = &before.surface else { return Ok(None) };
+    let input = Triangles { positions, triangles };
+    let residual = before.residual.unwrap_or(0.0);
+    let on_whole = |found: &Exact| -> Vec<Origin> {
+        let origins = found.origins.iter().map(|origin| parts.on_whole(origin.face, origin.barycentric));
+        origins.map(|(face, barycentric)| Origin { face, barycentric }).collect()
+    };
+    let origins = on_whole(found);
+    let narrowed = |moved: InputDistance| {
+        let expected = goals.expected(Some(found.error.upper));
+        moved.narrowed([input, found.mesh.as_triangles()], expected, &mut progress.observer())
+    };
+    if let Some(moved) = InputDistance::new(input, (found, &origins), residual)? {
+        return Ok(Some(narrowed(moved)?));
+    }
+    if !found.error.certified {
+        return Ok(None);
+    }
+    // Triangles that reach over several control faces: the limit surface lies between, with another mesh near it.
+    let options =
+        ExactOptions::default().tolerance(STAND_IN * goals.diagonal).max_triangles(Some(MOST_EXACT));
+    let between = exact_observed(control, arguments.scheme()?, &options, &mut progress.observer())?;
+    let apart = between.error.upper + found.error.upper;
+    let moved = InputDistance::new(input, (&between, &on_whole(&between)), residual)?;
+    Ok(moved.map(|moved| narrowed(moved.of_other(input, (found, &origins), apart)?)).transpose()?)
+}
+
+/// How far the result is from the mesh that was read, if that is farther than it is from the limit surface, and what would
+/// keep it nearer.
+pub(super) fn in_words(
+    moved: &InputDistanceReport,
+    error: &ErrorReport,
+    control: &Mesh,
+    goals: &Goals,
+    arguments: &RefineArguments,
+) -> Vec<String> {
+    if moved.upper <= goals.expected(error.upper) {
+        return Vec::new();
+    }
+    let mut lines = vec![moved.in_words(&unit_in_words(arguments.build.unit))];
+    let is_tagged = arguments.features.crease_angle.is_some() || !control.tags().creases.is_empty();
+    let dihedrals = (!is_tagged).then(|| Dihedrals::of(control));
+    if let Some(Dihedrals { suggested_crease_angle_degrees: Some(angle), sharp_edges, .. }) = dihedrals {
+        let edges = counted(sharp_edges, "edge that looks", "edges that look");
+        lines.push(format!("(--crease-angle {} would keep {edges} sharp)", number(angle)));
+    }
+    if arguments
+        .interpolation
+        .within(goals.diagonal, arguments.build.unit)
+        .is_ok_and(|within| within.is_none())
+    {
+        lines.push(INTERPOLATE.to_owned());
+    }
+    lines
 }
 
 fn greatest(mesh: Triangles<'_>) -> f64 {

@@ -9,6 +9,7 @@ mod control;
 mod estimate;
 mod exact;
 mod frames;
+mod goals;
 mod input_distance;
 mod jobs;
 mod package;

@@ -13,7 +13,7 @@ use limitmesh_io::{Format, Package};
 use super::super::channels::Channels;
 use super::carried::Carried;
 use super::control::Control;
-use super::exact::Goals;
+use super::goals::Goals;
 use super::several::{self, Progressed};
 use super::{Refined, estimate};
 use crate::arguments::{RefineArguments, Unit};

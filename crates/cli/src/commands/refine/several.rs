@@ -9,7 +9,8 @@ use limitmesh_render::Style;
 
 use super::super::channels::Channels;
 use super::control::Control;
-use super::exact::{self, Goals};
+use super::exact;
+use super::goals::Goals;
 use super::{Refined, phases, picture, stepwise, summary, turned_over};
 use crate::arguments::{Extent, Length, RefineArguments, Way};
 use crate::bulk::Bulk;

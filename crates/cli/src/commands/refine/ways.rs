@@ -5,7 +5,9 @@ use limitmesh::Mesh;
 use limitmesh_io::Format;
 
 use super::super::channels::Channels;
-use super::exact::{self, Before, Goals};
+use super::control::Before;
+use super::exact;
+use super::goals::Goals;
 use super::{Refined, restricted, sqrt3, stepwise};
 use crate::arguments::{Featured, RefineArguments, Way};
 use crate::progress::Progress;
