@@ -165,7 +165,9 @@ impl Closing<'_> {
     ) {
         let Self { control, goal, max_levels, .. } = *self;
         let mut wanting: Vec<&mut Judged> = leaves.iter_mut().filter(|leaf| !leaf.is_said()).collect();
-        if !wanting.is_empty() {
+        if matches!(goal, Goal::Nothing) {
+            wanting.into_iter().for_each(|leaf| leaf.say((Verdict::NONE, false)));
+        } else if !wanting.is_empty() {
             let closer = Closer { judge: goal.judge(control, max_levels, face), allowance };
             let piece = piece.get_or_insert_with(|| Box::new(control.piece(face)));
             closer.judge(piece.surface(control.rules), 0, &mut wanting, is_stopped);

@@ -32,6 +32,11 @@ use kept::Kept;
 /// Control faces that are passed over together: some milliseconds.
 const POLLED: u32 = 1 << 12;
 
+/// The part of arrays (one in so many) that is kept free behind them, for what is divided later; and with balanced vertices, where that is a sixth
+/// of all: arrays that become too short are copied. Nobody touches what is not used.
+pub(super) const SPARE: usize = 32;
+pub(super) const SPARE_BALANCED: usize = 4;
+
 /// What is emitted.
 pub(super) struct Emission {
     pub(super) positions: Vec<[f64; 3]>,
@@ -174,13 +179,13 @@ impl Last<'_> {
 
 /// Emits leaves. `closed` is what the walks over the faces found, `before` what was
 /// emitted last and the control faces that were walked over since: others are taken over as they are. `has_origins` if origins are
-/// asked for.
+/// asked for; one in `spare` of the arrays is kept free.
 pub(super) fn emit(
     (control, watch): (&Control<'_>, &SharedWatch<'_>),
     edges: &Edges<'_>,
     (decision, chains): (&Decision, &Chains),
     closed: &[Closed],
-    (scope, has_origins): (Scope<'_>, bool),
+    (scope, has_origins, spare): (Scope<'_>, bool, usize),
     before: Option<(Last<'_>, &[bool])>,
 ) -> Result<Emission, RefineError> {
     let faces = control.mesh.face_count();
@@ -231,7 +236,10 @@ pub(super) fn emit(
             arrays.rearrange(length, (&shifts.0, &shifts.1), watch)?;
             arrays
         }
-        _ => Arrays::fresh(length, room(control, chains, (closed, scope), length), has_origins, watch)?,
+        _ => {
+            let room = room(control, chains, (closed, scope), (length, spare));
+            Arrays::fresh(length, room, has_origins, watch)?
+        }
     };
     let Arrays { positions, normals, origins, triangles, twins, parents } = arrays;
     let mut emission = Emission {
@@ -275,14 +283,15 @@ fn room(
     control: &Control<'_>,
     chains: &Chains,
     (closed, scope): (&[Closed], Scope<'_>),
-    length: Lengths,
+    (length, spare): (Lengths, usize),
 ) -> Lengths {
     if matches!(scope, Scope::Areas(_)) {
         return length;
     }
     let count = |of: fn(&Closed) -> u32| closed.iter().map(|face| of(face) as usize).sum::<usize>();
     let vertices = control.mesh.vertex_count() + chains.count() + count(|face| face.vertices);
-    Lengths { vertices, triangles: count(|face| face.triangles) }
+    let with_spare = |count: usize| count + count / spare;
+    Lengths { vertices: with_spare(vertices), triangles: with_spare(count(|face| face.triangles)) }
 }
 
 /// Where the vertices and triangles of control faces that are kept stood before, and where they stand now.

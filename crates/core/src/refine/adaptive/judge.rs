@@ -81,6 +81,8 @@ pub(super) enum Goal {
     Partly(f64, f64, Vec<bool>),
     /// All faces divided by so many levels, marked ones once more, whatever comes of it.
     Even(u32, Vec<bool>),
+    /// Nothing: all triangles are looked at among their neighbours later.
+    Nothing,
 }
 
 impl Goal {
@@ -92,6 +94,7 @@ impl Goal {
             Self::Partly(distance, ..) => (*distance, false),
             // Bounds as tight as they get.
             Self::Even(..) => (0.0, true),
+            Self::Nothing => (f64::INFINITY, true),
         };
         let (rules, criteria) = (control.rules, control.criteria.as_ref());
         let (back_faces, rim_alone) = (&control.back_faces, control.flat.is_its_rim(face));
@@ -109,7 +112,7 @@ impl Goal {
             Self::Within(distance) => *distance,
             Self::Partly(_, less, is_finer) if is_finer[face as usize] => *less,
             Self::Partly(distance, ..) => *distance,
-            Self::Even(..) => f64::INFINITY,
+            Self::Even(..) | Self::Nothing => f64::INFINITY,
         }
     }
 }

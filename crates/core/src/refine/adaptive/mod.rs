@@ -396,7 +396,8 @@ impl Engine<'_> {
     ) -> Result<Emission, RefineError> {
         let chains = (&plan.decision, &plan.chains);
         let has_origins = self.has_origins && !matches!(scope, Scope::Areas(_));
-        let extend = (scope, has_origins);
+        let spare = if self.is_balanced { emit::SPARE_BALANCED } else { emit::SPARE };
+        let extend = (scope, has_origins, spare);
         emit::emit((self.control, self.watch), &self.edges, chains, &plan.closed, extend, before)
     }
 

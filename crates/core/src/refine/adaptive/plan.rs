@@ -118,7 +118,9 @@ impl Engine<'_> {
             return Ok(None);
         };
         let faces = self.control.mesh.face_count();
-        let mut plan = Plan::of(goal, decision, faces);
+        // What closes gaps is looked at with all the rest once vertices are moved, where nothing counts but distances.
+        let is_asked = !self.is_balanced || self.control.criteria.is_some();
+        let mut plan = Plan::of(if is_asked { goal } else { Goal::Nothing }, decision, faces);
         Ok(self.carry_out(&mut plan, Dirty::all(faces), most)?.then_some(plan))
     }
 

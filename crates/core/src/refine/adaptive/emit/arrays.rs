@@ -12,9 +12,6 @@ use crate::refine::exact_result::Origin;
 /// Origins that are written together: some milliseconds.
 const FILLED: usize = 1 << 17;
 
-/// The part of arrays (one in so many) that is kept free behind them, for what is divided later.
-const SPARE: usize = 32;
-
 /// What is written of each vertex and triangle.
 #[derive(Default)]
 pub(super) struct Arrays {
@@ -79,8 +76,7 @@ impl Arrays {
     ) -> Result<Self, Cancelled> {
         let vertices = (length.vertices, room.vertices);
         let triangles = (length.triangles, room.triangles);
-        let mut origins =
-            limitmesh_pages::with_capacity(if has_origins { with_spare(room.vertices) } else { 0 });
+        let mut origins = limitmesh_pages::with_capacity(if has_origins { room.vertices } else { 0 });
         if has_origins {
             extend_origins(&mut origins, length.vertices, watch)?;
         }
@@ -137,13 +133,9 @@ impl Arrays {
     }
 }
 
-fn with_spare(count: usize) -> usize {
-    count + count / SPARE
-}
-
 /// So many zeros, with room for more; nobody touches what is not used.
 fn zeros<T: Clone + Default>((count, room): (usize, usize)) -> Vec<T> {
-    limitmesh_pages::defaults_with_room(count, with_spare(room))
+    limitmesh_pages::defaults_with_room(count, room)
 }
 
 /// Adds origins of vertices that are not known yet: piece by piece, since they are no zeros, which cost nothing.
