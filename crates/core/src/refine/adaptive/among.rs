@@ -32,6 +32,25 @@ const MOST_TRIES: usize = 8;
 /// Values nearer to each other than this part tell nothing any more: the budget is spent but for some per cent.
 const NEAR: f64 = 0.98;
 
+/// Distances at irregular vertices fall by this part each time at least.
+const HALVED: f64 = 0.5;
+
+/// What fails by more times than this says nothing of those below it.
+const MOST_TIMES: f64 = 64.0;
+
+/// Of a leaf that has been split at a corner of its control face, or beside the leaf there, the next one at the corner; which of its parent's children
+/// that is; and whether the leaf was beside it.
+fn towards_corner(place: Place) -> Option<(Place, usize, bool)> {
+    let parent = place.parent()?;
+    let (first, last) = (place.digit(0), place.digit(place.level - 1));
+    let is_at_corner = first < 3 && (0..parent.level).all(|level| parent.digit(level) == first);
+    match last {
+        _ if !is_at_corner => None,
+        3 => Some((parent.child(first), first, true)),
+        _ => (last == first).then(|| (place.child(first), first, false)),
+    }
+}
+
 impl Engine<'_> {
     /// Emits a plan whose triangles come to `goal` at most among their neighbours, dividing what fails; `None` if there are too
     /// many triangles. Where a budget is all that ends the division, what does not fit any more counts as it is.
@@ -77,8 +96,11 @@ impl Engine<'_> {
             if !is_full {
                 // What cannot be balanced was not measured.
                 let hopeless = if is_alone { bulges.failing() } else { Vec::new() };
-                for (failing, allowed) in [(hopeless, Some(allowed)), (failing, None)] {
-                    is_split |= self.divide(&mut plan, &failing, allowed, &mut dirty)?;
+                for (failing, allowed) in [(&hopeless, Some(allowed)), (&failing, None)] {
+                    is_split |= self.divide(&mut plan, failing, allowed, &mut dirty)?;
+                }
+                if is_alone {
+                    self.divide_towards_corners(&mut plan, &failing, goal, &mut dirty)?;
                 }
             }
             if !is_split {
@@ -128,6 +150,40 @@ impl Engine<'_> {
             fresh.clear();
         }
         Ok(is_split)
+    }
+
+    /// Divides the leaves at a corner of a control face, and those beside them, as often as one that fails there lets expect: at irregular vertices
+    /// distances fall like the edges, or more slowly, not by a quarter each time, and what fails does so again, level by level.
+    fn divide_towards_corners(
+        &self,
+        plan: &mut Plan,
+        failing: &[(Place, f64)],
+        goal: &Goal,
+        dirty: &mut Dirty,
+    ) -> Result<(), RefineError> {
+        for &(place, value) in failing {
+            let Some((mut corner, child, is_beside)) = towards_corner(place) else { continue };
+            let times = value / goal.allowed(place.face);
+            let mut left = if times <= MOST_TIMES { HALVED * times } else { 0.0 };
+            while left > 1.0 && corner.level + u32::from(is_beside) < self.max_levels {
+                self.watch.poll()?;
+                self.split_leaf(plan, corner, dirty)?;
+                if is_beside {
+                    self.split_leaf(plan, corner.child(3), dirty)?;
+                }
+                corner = corner.child(child);
+                left *= HALVED;
+            }
+        }
+        Ok(())
+    }
+
+    /// Splits a node that has no children.
+    fn split_leaf(&self, plan: &mut Plan, place: Place, dirty: &mut Dirty) -> Result<(), RefineError> {
+        match plan.decision.trees.word_at(place) {
+            Some(word) if !quadtree::is_split(word) => self.split(&mut plan.decision.trees, place, dirty),
+            _ => Ok(()),
+        }
     }
 
     /// The finest mesh with balanced triangles within a value; `None` if that takes more triangles than there may be.

@@ -16,7 +16,7 @@ use super::bulges::{Bulge, Bulges, FoundLast};
 use super::changes::Changes;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
-use super::judge::{DIVISIONS, Goal, HALVINGS};
+use super::judge::{DIVISIONS, Goal};
 use super::quadtree::Place;
 use super::settle::{Neighbours, beside, neighbours, sharp_edges};
 use super::surface::GeneralPiece;
@@ -31,7 +31,7 @@ use crate::vector::{DVec3, vector};
 /// Control faces that one call takes together.
 const BLOCK: usize = 64;
 
-/// Halvings of a net for tight bounds: towards a corner at which points drift too fast, where only short pieces are near.
+/// Halvings of a net: towards a corner at which points drift too fast, where only short pieces are near.
 const MOST_HALVINGS: usize = 10;
 
 /// What rounding leaves of a height that is just good enough.
@@ -366,7 +366,7 @@ impl<'a> Measuring<'a> {
         };
         Effort {
             target: allowed.min(self.length),
-            halvings: if self.length.is_finite() { MOST_HALVINGS } else { HALVINGS },
+            halvings: MOST_HALVINGS,
             open: emitted.open,
             chord: among.chord,
             slopes: among.slopes,
