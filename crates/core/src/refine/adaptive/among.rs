@@ -100,7 +100,7 @@ impl Engine<'_> {
                     is_split |= self.divide(&mut plan, failing, allowed, &mut dirty)?;
                 }
                 if is_alone {
-                    self.divide_towards_corners(&mut plan, &failing, goal, &mut dirty)?;
+                    is_split |= self.divide_towards_corners(&mut plan, &failing, goal, &mut dirty)?;
                 }
             }
             if !is_split {
@@ -153,37 +153,40 @@ impl Engine<'_> {
     }
 
     /// Divides the leaves at a corner of a control face, and those beside them, as often as one that fails there lets expect: at irregular vertices
-    /// distances fall like the edges, or more slowly, not by a quarter each time, and what fails does so again, level by level.
+    /// distances fall like the edges, or more slowly, not by a quarter each time, and what fails does so again, level by level. Says whether there
+    /// are any.
     fn divide_towards_corners(
         &self,
         plan: &mut Plan,
         failing: &[(Place, f64)],
         goal: &Goal,
         dirty: &mut Dirty,
-    ) -> Result<(), RefineError> {
+    ) -> Result<bool, RefineError> {
+        let mut is_split = false;
         for &(place, value) in failing {
             let Some((mut corner, child, is_beside)) = towards_corner(place) else { continue };
             let times = value / goal.allowed(place.face);
             let mut left = if times <= MOST_TIMES { HALVED * times } else { 0.0 };
             while left > 1.0 && corner.level + u32::from(is_beside) < self.max_levels {
                 self.watch.poll()?;
-                self.split_leaf(plan, corner, dirty)?;
+                is_split |= self.split_leaf(plan, corner, dirty)?;
                 if is_beside {
-                    self.split_leaf(plan, corner.child(3), dirty)?;
+                    is_split |= self.split_leaf(plan, corner.child(3), dirty)?;
                 }
                 corner = corner.child(child);
                 left *= HALVED;
             }
         }
-        Ok(())
+        Ok(is_split)
     }
 
-    /// Splits a node that has no children.
-    fn split_leaf(&self, plan: &mut Plan, place: Place, dirty: &mut Dirty) -> Result<(), RefineError> {
-        match plan.decision.trees.word_at(place) {
-            Some(word) if !quadtree::is_split(word) => self.split(&mut plan.decision.trees, place, dirty),
-            _ => Ok(()),
+    /// Splits a node if it has no children.
+    fn split_leaf(&self, plan: &mut Plan, place: Place, dirty: &mut Dirty) -> Result<bool, RefineError> {
+        let is_leaf = plan.decision.trees.word_at(place).is_some_and(|word| !quadtree::is_split(word));
+        if is_leaf {
+            self.split(&mut plan.decision.trees, place, dirty)?;
         }
+        Ok(is_leaf)
     }
 
     /// The finest mesh with balanced triangles within a value; `None` if that takes more triangles than there may be.
