@@ -1,9 +1,13 @@
 //! The constrained Delaunay triangulation of what a rim in the plane encloses.
 
+use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 /// Points and edges that are taken between two questions whether that is still of use.
 const ASKED: usize = 256;
+
+/// Halvings of a square in each direction along the curve through it.
+const ORDER: u32 = 16;
 
 /// Triangles that cover what lies to the left of the directed rim edges, with all points for vertices. `None` where two points are
 /// at one place or rim edges cross or touch, and when stopped. Points are at most some units from the origin.
@@ -13,13 +17,15 @@ pub(super) fn triangulated(
     is_stopped: &dyn Fn() -> bool,
 ) -> Option<Vec<[u32; 3]>> {
     let mut net = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
-    let mut handles = Vec::with_capacity(points.len());
-    for (at, &[x, y]) in points.iter().enumerate() {
+    let order = along_curve(points);
+    let mut handles = vec![FixedVertexHandle::from_index(0); points.len()];
+    for (at, &point) in order.iter().enumerate() {
+        let [x, y] = points[point as usize];
         let handle = net.insert(Point2::new(x, y)).ok()?;
         if handle.index() != at || at.is_multiple_of(ASKED) && is_stopped() {
             return None;
         }
-        handles.push(handle);
+        handles[point as usize] = handle;
     }
     for (at, &[from, to]) in rim.iter().enumerate() {
         let (from, to) = (handles[from as usize], handles[to as usize]);
@@ -44,7 +50,40 @@ pub(super) fn triangulated(
         pending.extend(open.map(|edge| edge.rev().face()));
     }
     let inside = net.inner_faces().filter(|face| is_inside[face.fix().index()]);
-    Some(inside.map(|face| face.vertices().map(|vertex| vertex.fix().index() as u32)).collect())
+    Some(inside.map(|face| face.vertices().map(|vertex| order[vertex.fix().index()])).collect())
+}
+
+/// The numbers of points in the order in which Hilbert's curve passes them: each is inserted beside the one before, so that it is found in a few steps
+/// however the points were numbered.
+fn along_curve(points: &[[f64; 2]]) -> Vec<u32> {
+    let corner = [0, 1].map(|axis| points.iter().fold(f64::INFINITY, |low, point| low.min(point[axis])));
+    let size =
+        points.iter().flat_map(|point| [point[0] - corner[0], point[1] - corner[1]]).fold(0.0, f64::max);
+    let scale = f64::from((1u32 << ORDER) - 1) / size;
+    // Where all are at one place there is no order among them.
+    let cell = |x: f64| if scale.is_finite() { (x * scale) as u32 } else { 0 };
+    let place = |[x, y]: [f64; 2]| along_hilbert_curve([cell(x - corner[0]), cell(y - corner[1])]);
+    let mut order: Vec<(u32, u32)> =
+        (0..).zip(points).map(|(number, &point)| (place(point), number)).collect();
+    order.sort_unstable();
+    order.into_iter().map(|(_, number)| number).collect()
+}
+
+/// Where Hilbert's curve (D. Hilbert, *Ueber die stetige Abbildung einer Linie auf ein Flächenstück*, 1891) passes a cell of a square of 2 to the power of
+/// [`ORDER`] by as many: quarter by quarter, the curve in each turned so that it goes on where the one before ended.
+fn along_hilbert_curve([mut x, mut y]: [u32; 2]) -> u32 {
+    let mut passed = 0;
+    for level in (0..ORDER).rev() {
+        let (right, upper) = (x >> level & 1, y >> level & 1);
+        passed = passed << 2 | (3 * right ^ upper);
+        if upper == 0 {
+            if right == 1 {
+                (x, y) = (!x, !y);
+            }
+            core::mem::swap(&mut x, &mut y);
+        }
+    }
+    passed
 }
 
 #[cfg(test)]
@@ -83,6 +122,20 @@ mod tests {
         // Euler: 2 (8 + 1) − 8 − 2 · 0.
         assert_eq!(triangles.len(), 10);
         assert!((0..9).all(|point| triangles.as_flattened().contains(&point)));
+    }
+
+    /// Cells one after the other on the curve are neighbours, and all are passed.
+    #[test]
+    fn the_curve_goes_from_cell_to_cell() {
+        const SIDE: u32 = 64;
+        let cells = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| [x, y]));
+        let mut passed: Vec<(u32, [u32; 2])> = cells.map(|cell| (along_hilbert_curve(cell), cell)).collect();
+        passed.sort_unstable();
+        for (at, pair) in passed.windows(2).enumerate() {
+            let [(before, [a, b]), (after, [c, d])] = [pair[0], pair[1]];
+            assert!(before as usize == at && after as usize == at + 1);
+            assert_eq!(a.abs_diff(c) + b.abs_diff(d), 1, "{pair:?}");
+        }
     }
 
     #[test]
