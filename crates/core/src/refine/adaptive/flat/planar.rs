@@ -75,7 +75,7 @@ fn along_hilbert_curve([mut x, mut y]: [u32; 2]) -> u32 {
     let mut passed = 0;
     for level in (0..ORDER).rev() {
         let (right, upper) = (x >> level & 1, y >> level & 1);
-        passed = passed << 2 | (3 * right ^ upper);
+        passed = passed << 2 | ((3 * right) ^ upper);
         if upper == 0 {
             if right == 1 {
                 (x, y) = (!x, !y);
