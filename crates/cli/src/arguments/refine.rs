@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use limitmesh::scheme::Scheme;
-use limitmesh_io::Format;
+use limitmesh_io::{Format, WriteOptions};
 use serde::Serialize;
 
 use super::values;
 use super::{
     AssetArguments, BuildArguments, ChannelArguments, ExactArguments, FeatureArguments, FileFormat,
-    InterpolationArguments, RefiningScheme, Seam,
+    InterpolationArguments, RefiningScheme, Seam, Unit,
 };
 use crate::failure::{UsageError, usage};
 use crate::output::is_standard_output;
@@ -292,5 +292,10 @@ impl RefineArguments {
             }
             None => Ok(Some(Format::from_path(path).map_err(|unknown| UsageError(unknown.to_string()))?)),
         }
+    }
+
+    /// How the output is written.
+    pub(crate) fn write_options(&self) -> WriteOptions {
+        WriteOptions::default().ascii(self.ascii).unit(Unit::in_package(self.build.unit))
     }
 }

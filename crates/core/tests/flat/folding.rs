@@ -303,6 +303,8 @@ fn what_folds_is_the_same_at_each_tolerance() {
         for share in [0.03, 0.01, 3e-3] {
             assert_as_near_as_told(&within(share), &fine, &format!("{case} within {share}"));
         }
+        let balanced = super::within(0.01 * mesh.diagonal()).unfold(true).balance(true);
+        assert_as_near_as_told(&exact(&mesh, &Loop, &balanced).unwrap(), &fine, &format!("{case} balanced"));
         (unfolded, folded) = (unfolded + fine.unfolded, folded + usize::from(fine.inverted_triangles() > 0));
     }
     assert!(unfolded > 2 && folded > 2, "{unfolded} {folded}");

@@ -9,7 +9,7 @@ use anyhow::Context;
 use limitmesh::mesh::Tags;
 use limitmesh::refine::{Exact, ExactStop, Frame, Frames, exact_frames_observed};
 use limitmesh::{Mesh, PolygonSoup};
-use limitmesh_io::{Format, WriteOptions};
+use limitmesh_io::Format;
 
 use super::super::channels::{Channels, Destination};
 use super::super::normals::Normals;
@@ -18,7 +18,7 @@ use super::control::Control;
 use super::exact;
 use super::goals::Goals;
 use super::{Refined, check, jobs, write};
-use crate::arguments::{RefineArguments, Unit, Way};
+use crate::arguments::{RefineArguments, Way};
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, seconds, upper_bound};
 use crate::input::{self, Input};
@@ -299,7 +299,7 @@ fn write_all(
         progress.stage(format!("writing {}", job.output_name()));
         found.replay.frame(&frames[number], &mut frame)?;
         let mut moved = found.refined.clone().moved_to(&frame)?;
-        let options = WriteOptions::default().ascii(job.ascii).unit(Unit::in_package(job.build.unit));
+        let options = job.write_options();
         let rounding = limitmesh_io::rounding(format, &options, moved.mesh.positions());
         let mut error = found.errors[number];
         error.upper += rounding;

@@ -43,33 +43,6 @@ pub(super) struct Goals {
 }
 
 impl Goals {
-    /// The same where the control mesh carries channels.
-    ///
-    /// # Errors
-    /// A channel with a tolerance does not fit it.
-    pub(super) fn carrying(
-        mut self,
-        channels: &Channels,
-        control: &Mesh,
-        arguments: &RefineArguments,
-    ) -> anyhow::Result<Self> {
-        self.kept_edges = borders(channels.all(), control);
-        self.tells_faces_apart = channels.vary_within_faces() || !self.kept_edges.is_empty();
-        self.attributes.add_channels(channels, control, &arguments.channels)?;
-        Ok(self)
-    }
-
-    /// The same with goals beside the shape.
-    pub(super) fn with_attributes(mut self, attributes: AttributeGoals) -> Self {
-        self.attributes = attributes;
-        self
-    }
-
-    /// How far from the limit surface the result may be, or is where that is farther.
-    pub(super) fn expected(&self, upper: Option<f64>) -> f64 {
-        self.length.into_iter().chain(upper).fold(0.0, f64::max)
-    }
-
     /// `diagonal` is what lengths are given in per cent of.
     ///
     /// # Errors
@@ -98,6 +71,33 @@ impl Goals {
             keeps_origins: false,
             attributes: AttributeGoals::default(),
         })
+    }
+
+    /// The same where the control mesh carries channels.
+    ///
+    /// # Errors
+    /// A channel with a tolerance does not fit it.
+    pub(super) fn carrying(
+        mut self,
+        channels: &Channels,
+        control: &Mesh,
+        arguments: &RefineArguments,
+    ) -> anyhow::Result<Self> {
+        self.kept_edges = borders(channels.all(), control);
+        self.tells_faces_apart = channels.vary_within_faces() || !self.kept_edges.is_empty();
+        self.attributes.add_channels(channels, control, &arguments.channels)?;
+        Ok(self)
+    }
+
+    /// The same with goals beside the shape.
+    pub(super) fn with_attributes(mut self, attributes: AttributeGoals) -> Self {
+        self.attributes = attributes;
+        self
+    }
+
+    /// How far from the limit surface the result may be, or is where that is farther.
+    pub(super) fn expected(&self, upper: Option<f64>) -> f64 {
+        self.length.into_iter().chain(upper).fold(0.0, f64::max)
     }
 
     /// The same, where the result is to tell where vertices and triangles came from, and edges of the control mesh stay along which sides
@@ -177,7 +177,7 @@ fn as_typed(x: f64) -> String {
 /// The format and options of the output, if there is one.
 pub(super) fn written(arguments: &RefineArguments) -> Option<(Format, WriteOptions)> {
     let format = arguments.format().ok().flatten()?;
-    Some((format, WriteOptions::default().ascii(arguments.ascii)))
+    Some((format, arguments.write_options()))
 }
 
 /// How far the output's format rounds a vertex at most: all lie in the box of the control mesh's.

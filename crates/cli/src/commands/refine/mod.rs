@@ -31,7 +31,7 @@ use limitmesh::Mesh;
 use limitmesh::criterion::{View, Viewpoint};
 use limitmesh::mesh::{Channel, Semantic, Tags};
 use limitmesh::refine::ExactStop;
-use limitmesh_io::{Format, Output, WriteOptions};
+use limitmesh_io::{Format, Output};
 use limitmesh_render::Style;
 
 use super::channels::{Channels, Destination};
@@ -302,12 +302,7 @@ fn write(
         output = output.vertex_properties(vertices).face_properties(faces);
     }
     let output = output.creases(&mesh.tags().creases).corners(&mesh.tags().corners);
-    output::write_mesh(
-        path,
-        format,
-        &output,
-        &WriteOptions::default().ascii(arguments.ascii).unit(Unit::in_package(arguments.build.unit)),
-    )
+    output::write_mesh(path, format, &output, &arguments.write_options())
 }
 
 /// The view that makes the angle depend on the viewer.

@@ -51,6 +51,11 @@ fn towards_corner(place: Place) -> Option<(Place, usize, bool)> {
     }
 }
 
+/// Whether there is a node at a place that has no children.
+fn is_leaf(plan: &Plan, place: Place) -> bool {
+    plan.decision.trees.word_at(place).is_some_and(|word| !quadtree::is_split(word))
+}
+
 impl Engine<'_> {
     /// Emits a plan whose triangles come to `goal` at most among their neighbours, dividing what fails; `None` if there are too
     /// many triangles. Where a budget is all that ends the division, what does not fit any more counts as it is.
@@ -127,7 +132,7 @@ impl Engine<'_> {
         for &(place, height) in failing {
             self.watch.poll()?;
             // Triangles of a leaf may fail for both reasons.
-            if plan.decision.trees.word_at(place).is_none_or(quadtree::is_split) {
+            if !is_leaf(plan, place) {
                 continue;
             }
             let mut left = allowed.map_or(0.0, |allowed| height / (4.0 * SURELY * allowed));
@@ -182,11 +187,11 @@ impl Engine<'_> {
 
     /// Splits a node if it has no children.
     fn split_leaf(&self, plan: &mut Plan, place: Place, dirty: &mut Dirty) -> Result<bool, RefineError> {
-        let is_leaf = plan.decision.trees.word_at(place).is_some_and(|word| !quadtree::is_split(word));
-        if is_leaf {
+        let may_be = is_leaf(plan, place);
+        if may_be {
             self.split(&mut plan.decision.trees, place, dirty)?;
         }
-        Ok(is_leaf)
+        Ok(may_be)
     }
 
     /// The finest mesh with balanced triangles within a value; `None` if that takes more triangles than there may be.
@@ -231,6 +236,26 @@ impl Engine<'_> {
             chains,
             closed,
             emission,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A leaf by its path below its control face.
+    fn leaf(path: &[usize]) -> Place {
+        path.iter().fold(Place::root(0), |place, &child| place.child(child))
+    }
+
+    #[test]
+    fn corners_are_told_from_what_lies_elsewhere() {
+        // At a corner, the next one there is a child; beside it, a sibling.
+        assert_eq!(towards_corner(leaf(&[2, 2])), Some((leaf(&[2, 2, 2]), 2, false)));
+        assert_eq!(towards_corner(leaf(&[1, 1, 3])), Some((leaf(&[1, 1, 1]), 1, true)));
+        for elsewhere in [&[] as &[usize], &[3], &[3, 3], &[0, 1], &[0, 1, 1], &[0, 3, 0], &[2, 3, 3]] {
+            assert_eq!(towards_corner(leaf(elsewhere)), None, "{elsewhere:?}");
         }
     }
 }

@@ -45,15 +45,7 @@ impl Bulges {
             }
         })?;
         let mut offsets = vec![0.0; stays.len()];
-        // The others, most of them in the first round alone, with their numbers among these.
-        let (mut others, mut numbers) = (Vec::new(), vec![0u32; stays.len()]);
-        watch.each((0u32..).zip(stays.iter().zip(&mut numbers)), |(vertex, (stays, number))| {
-            if !stays {
-                *number = others.len() as u32;
-                others.push(vertex);
-            }
-        })?;
-        let mut around = vec![Around::NOTHING; others.len()];
+        let mut around = vec![Around::NOTHING; stays.len()];
         watch.each(faces(), |(triangles, bulge)| {
             for ((triangle, last), range) in triangles.iter().zip(bulge.offsets_last()).zip(&bulge.ranges) {
                 for (&vertex, offset) in triangle.iter().zip(last) {
@@ -61,13 +53,15 @@ impl Bulges {
                     if stays[vertex] {
                         offsets[vertex] = offset;
                     } else {
-                        around[numbers[vertex] as usize].add(*range, offset);
+                        around[vertex].add(*range, offset);
                     }
                 }
             }
         })?;
-        watch.each(others.iter().zip(&around), |(&vertex, around)| {
-            offsets[vertex as usize] = around.offset(allowed);
+        watch.each(stays.iter().zip(&around).zip(&mut offsets), |((&stays, around), offset)| {
+            if !stays {
+                *offset = around.offset(allowed);
+            }
         })?;
         watch.each(0..control.mesh.face_count() as u32, |face| {
             let open = control.open(face);

@@ -27,9 +27,6 @@ impl Decision {
         (max_levels, most): (u32, usize),
         closing: impl Fn(u32) -> Option<&'c Extent> + Sync,
     ) -> Result<Option<Vec<u32>>, RefineError> {
-        if matches!(goal, Goal::Nothing) {
-            return Ok(Some(Vec::new()));
-        }
         let faces = control.mesh.face_count() as u32;
         let mut wanting = Vec::new();
         watch.each(0..faces, |face| {
