@@ -151,6 +151,25 @@ pub(crate) type Poll<'a> = dyn FnMut(usize) -> Result<(), Cancelled> + 'a;
 /// they may leave it as it is. On the calling thread it polls.
 pub(crate) type IsStopped<'a> = dyn Fn() -> bool + 'a;
 
+/// Items of which each takes much less than a microsecond and that blocks take between two such questions.
+const ASKED: usize = 1 << 12;
+
+/// The same items, with the question now and then whether they are still of use; there are no more of them where they are not.
+pub(crate) fn asking<I: IntoIterator>(items: I, is_stopped: &IsStopped<'_>) -> impl Iterator<Item = I::Item> {
+    let mut taken = 0usize;
+    items.into_iter().take_while(move |_| {
+        taken += 1;
+        !taken.is_multiple_of(ASKED) || !is_stopped()
+    })
+}
+
+/// [`sort_polled`] of a block, which leaves the items as they may be where they are of no use any more.
+pub(crate) fn sort_asking<T: Send + Sync + Ord>(items: &mut [T], is_stopped: &IsStopped<'_>) {
+    let poll = &mut |_| if is_stopped() { Err(Cancelled) } else { Ok(()) };
+    // Who stops knows that.
+    let _ = sort_polled(items, poll, T::cmp);
+}
+
 /// [`pieces_polled`] for pieces that may take long.
 pub(crate) fn long_pieces_polled<T: Send, F: Fn(Range<usize>, &IsStopped<'_>) -> T + Sync>(
     n: usize,

@@ -242,6 +242,28 @@ fn single_faces_that_take_long_are_observed() {
     });
 }
 
+/// So are flat faces with very many vertices inside, which are triangulated as one, and ends wherever in that it is told to.
+#[test]
+fn large_flat_regions_are_observed() {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(|| {
+        const SIDE: u32 = 150;
+        let place = |i: u32| [f64::from(i % SIDE), f64::from(i / SIDE), 0.0];
+        let plate = Mesh::from_triangles((0..SIDE * SIDE).map(place).collect(), grid(SIDE, SIDE)).unwrap();
+        let options = ExactOptions::default().tolerance(1e-4 * plate.diagonal()).unfold(true);
+        let mut run = |observer: &mut Observer<'_>| exact_observed(&plate, &Loop, &options, observer);
+        let (result, calls) = calls_by_event(&mut run);
+        let triangles = result.mesh.face_count();
+        assert!(triangles > plate.face_count());
+        let of_stage =
+            |stage| calls.iter().filter(move |(event, _)| event.0 == stage).map(|(_, count)| count);
+        let count: usize = of_stage(Stage::Assembling).sum();
+        assert!(count >= triangles / 100, "{count} calls for {triangles} triangles");
+        for (i, &(_, count)) in calls.iter().enumerate() {
+            (0..count).step_by(count / 12 + 1).for_each(|at| cancel_at("plate", (i, at), &mut run));
+        }
+    });
+}
+
 /// On one thread, where every run makes the same calls: with several, how many of them fall between two steps is chance.
 #[test]
 fn estimates_are_observed() {

@@ -154,6 +154,9 @@ impl FlatRegions {
             let mut next = 0;
             while let Some(&face) = faces.get(next) {
                 next += 1;
+                if next.is_multiple_of(BLOCK) {
+                    watch.poll()?;
+                }
                 let open = control.open(face);
                 for edge in (0..3u32).filter(|&edge| !open[edge as usize]) {
                     let Some(beside) = edges.twin(3 * face + edge).map(|twin| twin / 3) else { continue };

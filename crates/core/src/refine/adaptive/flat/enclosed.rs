@@ -13,7 +13,7 @@ use super::FlatRegions;
 use super::flattened::Flattened;
 use super::merge::SAME_AREA;
 use crate::node::along_edge;
-use crate::parallel::IsStopped;
+use crate::parallel::{IsStopped, asking};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
@@ -56,10 +56,11 @@ impl FlatRegions {
         if self.has_smooth_rim((control, edges), region) {
             return None;
         }
-        let rim: Vec<u32> = self.rim((control, edges), region).collect();
+        let rim: Vec<u32> = asking(self.rim((control, edges), region), is_stopped).collect();
         let levels = Self::divisions(rim.len());
-        let (mut numbers, mut positions) = (HashMap::new(), Vec::new());
-        for &vertex in faces.iter().flat_map(|&face| &control.mesh.triangles()[face as usize]) {
+        let (mut numbers, mut positions) = (HashMap::with_capacity(faces.len()), Vec::new());
+        let corners = faces.iter().flat_map(|&face| &control.mesh.triangles()[face as usize]);
+        for &vertex in asking(corners, is_stopped) {
             numbers.entry(vertex).or_insert_with(|| {
                 positions.push(control.positions[vertex as usize]);
                 positions.len() as u32 - 1
@@ -89,7 +90,7 @@ impl FlatRegions {
             chords.extend(starts.zip(ends).map(<[u32; 2]>::from));
         }
         let mut flat = Flattened::new(plane, self.off_planes, &positions);
-        for vertex in 0..positions.len() as u32 {
+        for vertex in asking(0..positions.len() as u32, is_stopped) {
             flat.number(vertex);
             // None is off the plane.
             flat.area([vertex; 3])?;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::{Plane, planar};
-use crate::parallel::IsStopped;
+use crate::parallel::{IsStopped, asking};
 use crate::vector::{DVec3, vector};
 
 /// Twice the area of a triangle may be as far below zero by rounding, where the region is as large as one.
@@ -73,7 +73,7 @@ impl<'a> Flattened<'a> {
     ) -> Option<(Vec<[u32; 3]>, f64)> {
         let mut triangles = planar::triangulated(&self.points()?, rim, is_stopped)?;
         let (mut area, mut is_used) = (0.0, vec![false; self.vertices.len()]);
-        for triangle in &mut triangles {
+        for triangle in asking(&mut triangles, is_stopped) {
             triangle.iter().for_each(|&number| is_used[number as usize] = true);
             *triangle = triangle.map(|number| self.vertices[number as usize]);
             area += self.area(*triangle).filter(|&part| self.is_positive(part))?;

@@ -10,7 +10,7 @@ use super::flattened::Flattened;
 use super::gaps::chords;
 use super::replace::{Assembled, Covering, Merged, edges};
 use super::strips::{Net, Region, Regions};
-use crate::parallel::IsStopped;
+use crate::parallel::{IsStopped, asking, sort_asking};
 use crate::progress::{Cancelled, SharedWatch};
 
 /// Regions that one call takes together.
@@ -132,15 +132,16 @@ impl FlatRegions {
         let (before, by_rim) = (&own.triangles, self.is_by_rim(own));
         let is_divided = own.flat.is_none_or(|flat| before.len() > self.regions[flat as usize].0.len());
         let is_enclosed = own.flat.is_some_and(|flat| self.is_enclosed[flat as usize]);
-        let may_change = is_divided || by_rim || is_enclosed && own.has_turned(net);
+        let may_change = is_divided || by_rim || is_enclosed && own.has_turned(net, is_stopped);
         if !may_change {
             return Fate::Stays;
         }
         let mut flat = Flattened::new(&own.plane, self.off_planes, net.positions);
-        let Some(outline) = Outline::of(own, net, regions, &mut flat) else {
+        let Some(outline) = Outline::of(own, net, regions, (&mut flat, is_stopped)) else {
             return if by_rim { Fate::Fails } else { Fate::Stays };
         };
-        let has_turned = outline.has_turned || is_enclosed && by_rim && own.is_turned_at_corners(mesh.0, net);
+        let has_turned =
+            outline.has_turned || is_enclosed && by_rim && own.is_turned_at_corners(mesh.0, net, is_stopped);
         // Where the surface is proven not to be turned over, coarse triangles alone are.
         let was_folded = has_turned && (is_enclosed || !by_rim);
         if !is_divided && !has_turned || was_folded && !is_enclosed {
@@ -175,7 +176,7 @@ impl FlatRegions {
         if !is_same {
             return None;
         }
-        Some(Covering { triangles: by_face(triangles, &along)?, lines, was_folded })
+        Some(Covering { triangles: by_face(triangles, &along, is_stopped)?, lines, was_folded })
     }
 }
 
@@ -198,10 +199,15 @@ struct Outline {
 
 impl Outline {
     /// Numbers the control vertices inside; `None` where a triangle is not in the plane.
-    fn of(own: &Region, net: &Net<'_>, regions: &Regions, flat: &mut Flattened<'_>) -> Option<Self> {
+    fn of(
+        own: &Region,
+        net: &Net<'_>,
+        regions: &Regions,
+        (flat, is_stopped): (&mut Flattened<'_>, &IsStopped<'_>),
+    ) -> Option<Self> {
         let (rim, after) = (Vec::new(), HashMap::new());
         let mut found = Self { rim, after, area: 0.0, length: 0.0, has_turned: false };
-        for &triangle in &own.triangles {
+        for &triangle in asking(&own.triangles, is_stopped) {
             let part = flat.area(net.triangles[triangle as usize])?;
             found.area += part;
             found.has_turned |= !flat.is_positive(part);
@@ -248,7 +254,9 @@ fn without_shared_edges(
         triangle.iter().for_each(|&vertex| is_covered[vertex as usize] = true);
     })?;
     // By its ends, the region that an edge is inside of; none where it is on rims, or elsewhere.
-    let mut owners = HashMap::new();
+    let covered: usize = coverings.iter().flatten().map(|covering| covering.triangles.len()).sum();
+    // With room for the edges before and after: maps that grow move all that they have at once.
+    let mut owners = HashMap::with_capacity(3 * covered);
     watch.each((0..).zip(net.triangles), |(number, &triangle)| {
         let own = regions.of(number);
         for [from, to] in edges(triangle) {
@@ -259,47 +267,65 @@ fn without_shared_edges(
         }
     })?;
     let mut all_lines = HashSet::new();
-    watch.each((0u32..).zip(&mut coverings), |(region, covering)| {
-        let Some(Covering { triangles, lines, .. }) = covering else { return };
+    for (region, covering) in (0u32..).zip(&mut coverings) {
+        let Some(Covering { triangles, lines, .. }) = covering else { continue };
         let all = || triangles.iter().flat_map(|&(triangle, _)| edges(triangle));
-        let directed: HashSet<[u32; 2]> = all().collect();
-        let is_inner = |&[from, to]: &[u32; 2]| directed.contains(&[to, from]);
-        let inner: Vec<[u32; 2]> = all().filter(|ends| ends[0] < ends[1] && is_inner(ends)).collect();
+        let mut directed = HashSet::with_capacity(3 * triangles.len());
+        watch.each(all(), |ends| {
+            directed.insert(ends);
+        })?;
+        let mut inner: Vec<[u32; 2]> = Vec::new();
+        watch.each(all(), |[from, to]| {
+            if from < to && directed.contains(&[to, from]) {
+                inner.push([from, to]);
+            }
+        })?;
         let is_others = |ends: [u32; 2]| owners.get(&ends).is_some_and(|&owner| owner != Some(region));
         // A line has one region on either side: where sheets touch, two may have the same ends.
         let is_taken = |&[from, to]: &[u32; 2]| {
             all_lines.contains(&[from, to])
                 || !all_lines.contains(&[to, from]) && is_others([from.min(to), from.max(to)])
         };
-        if inner.iter().any(|&ends| is_others(ends)) || lines.iter().any(is_taken) {
+        let mut is_shared = lines.iter().any(is_taken);
+        watch.each(&inner, |&ends| is_shared |= is_others(ends))?;
+        if is_shared {
             *covering = None;
-        } else {
-            owners.extend(inner.into_iter().map(|ends| (ends, Some(region))));
-            for &[from, to] in &*lines {
-                all_lines.insert([from, to]);
-                owners.entry([from.min(to), from.max(to)]).or_insert(None);
-            }
+            continue;
         }
-    })?;
+        watch.each(inner, |ends| {
+            owners.insert(ends, Some(region));
+        })?;
+        for &[from, to] in &*lines {
+            all_lines.insert([from, to]);
+            owners.entry([from.min(to), from.max(to)]).or_insert(None);
+        }
+    }
     Ok(coverings)
 }
 
 /// Gives each triangle a control face: that of a rim edge of its own, else that of a triangle beside it. `None` where one is
 /// reached from no rim.
-fn by_face(triangles: Vec<[u32; 3]>, along: &HashMap<[u32; 2], u32>) -> Option<Vec<([u32; 3], u32)>> {
-    let mut by_edge = HashMap::new();
-    for (at, &triangle) in triangles.iter().enumerate() {
+fn by_face(
+    triangles: Vec<[u32; 3]>,
+    along: &HashMap<[u32; 2], u32>,
+    is_stopped: &IsStopped<'_>,
+) -> Option<Vec<([u32; 3], u32)>> {
+    // Maps that grow move all that they have at once.
+    let mut by_edge = HashMap::with_capacity(3 * triangles.len());
+    for (at, &triangle) in asking(triangles.iter().enumerate(), is_stopped) {
         edges(triangle).into_iter().for_each(|ends| {
             by_edge.insert(ends, at);
         });
     }
     let on_rim =
         |&triangle: &[u32; 3]| edges(triangle).into_iter().find_map(|ends| along.get(&ends).copied());
-    let mut faces: Vec<Option<u32>> = triangles.iter().map(on_rim).collect();
+    let mut faces: Vec<Option<u32>> = asking(triangles.iter(), is_stopped).map(on_rim).collect();
+    if is_stopped() {
+        return None;
+    }
     let mut known: Vec<usize> = (0..faces.len()).filter(|&at| faces[at].is_some()).collect();
-    let mut next = 0;
-    while let Some(&at) = known.get(next) {
-        next += 1;
+    for next in asking(0.., is_stopped) {
+        let Some(&at) = known.get(next) else { break };
         for [from, to] in edges(triangles[at]) {
             if along.contains_key(&[from, to]) {
                 continue;
@@ -312,8 +338,8 @@ fn by_face(triangles: Vec<[u32; 3]>, along: &HashMap<[u32; 2], u32>) -> Option<V
             }
         }
     }
-    let faces: Vec<u32> = faces.into_iter().collect::<Option<_>>()?;
-    let mut covering: Vec<([u32; 3], u32)> = triangles.into_iter().zip(faces).collect();
-    covering.sort_by_key(|&(_, face)| face);
-    Some(covering)
+    let numbered = (0u32..).zip(faces).map(|(at, face)| Some((face?, at)));
+    let mut order: Vec<(u32, u32)> = asking(numbered, is_stopped).collect::<Option<_>>()?;
+    sort_asking(&mut order, is_stopped);
+    Some(asking(order, is_stopped).map(|(face, at)| (triangles[at as usize], face)).collect())
 }

@@ -3,6 +3,8 @@
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
+use crate::parallel::{IsStopped, asking, sort_asking};
+
 /// Points and edges that are taken between two questions whether that is still of use.
 const ASKED: usize = 256;
 
@@ -14,10 +16,13 @@ const ORDER: u32 = 16;
 pub(super) fn triangulated(
     points: &[[f64; 2]],
     rim: &[[u32; 2]],
-    is_stopped: &dyn Fn() -> bool,
+    is_stopped: &IsStopped<'_>,
 ) -> Option<Vec<[u32; 3]>> {
     let mut net = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
-    let order = along_curve(points);
+    let order = along_curve(points, is_stopped);
+    if is_stopped() {
+        return None;
+    }
     let mut handles = vec![FixedVertexHandle::from_index(0); points.len()];
     for (at, &point) in order.iter().enumerate() {
         let [x, y] = points[point as usize];
@@ -41,7 +46,12 @@ pub(super) fn triangulated(
         let edge = net.get_edge_from_neighbors(handles[from as usize], handles[to as usize])?;
         pending.push(edge.face());
     }
+    let mut passed = 0usize;
     while let Some(face) = pending.pop() {
+        passed += 1;
+        if passed.is_multiple_of(ASKED) && is_stopped() {
+            return None;
+        }
         let inner = face.as_inner()?;
         if core::mem::replace(&mut is_inside[face.fix().index()], true) {
             continue;
@@ -49,13 +59,13 @@ pub(super) fn triangulated(
         let open = inner.adjacent_edges().into_iter().filter(|edge| !edge.is_constraint_edge());
         pending.extend(open.map(|edge| edge.rev().face()));
     }
-    let inside = net.inner_faces().filter(|face| is_inside[face.fix().index()]);
+    let inside = asking(net.inner_faces(), is_stopped).filter(|face| is_inside[face.fix().index()]);
     Some(inside.map(|face| face.vertices().map(|vertex| order[vertex.fix().index()])).collect())
 }
 
 /// The numbers of points in the order in which Hilbert's curve passes them: each is inserted beside the one before, so that it is found in a few steps
 /// however the points were numbered.
-fn along_curve(points: &[[f64; 2]]) -> Vec<u32> {
+fn along_curve(points: &[[f64; 2]], is_stopped: &IsStopped<'_>) -> Vec<u32> {
     let corner = [0, 1].map(|axis| points.iter().fold(f64::INFINITY, |low, point| low.min(point[axis])));
     let size =
         points.iter().flat_map(|point| [point[0] - corner[0], point[1] - corner[1]]).fold(0.0, f64::max);
@@ -63,9 +73,9 @@ fn along_curve(points: &[[f64; 2]]) -> Vec<u32> {
     // Where all are at one place there is no order among them.
     let cell = |x: f64| if scale.is_finite() { (x * scale) as u32 } else { 0 };
     let place = |[x, y]: [f64; 2]| along_hilbert_curve([cell(x - corner[0]), cell(y - corner[1])]);
-    let mut order: Vec<(u32, u32)> =
-        (0..).zip(points).map(|(number, &point)| (place(point), number)).collect();
-    order.sort_unstable();
+    let numbered = asking((0..).zip(points), is_stopped);
+    let mut order: Vec<(u32, u32)> = numbered.map(|(number, &point)| (place(point), number)).collect();
+    sort_asking(&mut order, is_stopped);
     order.into_iter().map(|(_, number)| number).collect()
 }
 

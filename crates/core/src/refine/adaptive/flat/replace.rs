@@ -3,9 +3,13 @@
 
 use super::strips::{Net, Region};
 use crate::mesh::{Junctions, NONE, Tags};
+use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::Origin;
 use std::collections::{HashMap, HashSet};
+
+/// Half-edges that are numbered anew between two calls of the observer: some milliseconds.
+const POLLED: u32 = 1 << 14;
 
 /// What the emitted mesh consists of.
 pub(in super::super) struct Assembled {
@@ -69,7 +73,10 @@ impl Merged<'_> {
     ) -> Result<Assembled, Cancelled> {
         self.unfold_normals(&mut whole);
         let exchange = self.exchange(&whole, starts, watch)?;
-        let new: HashMap<[u32; 2], u32> = exchange.half_edges().collect();
+        let mut new = HashMap::with_capacity(3 * exchange.fresh.len());
+        watch.each(exchange.half_edges(), |(ends, h)| {
+            new.insert(ends, h);
+        })?;
         let mut twins = core::mem::take(&mut whole.twins);
         let mut junctions = core::mem::take(&mut whole.junctions);
         let numbers = Numbers { exchange: &exchange, whole: &whole, starts, new: &new };
@@ -117,13 +124,16 @@ impl Merged<'_> {
     ) -> Result<Exchange, Cancelled> {
         let mut others: Vec<(u32, u32, [u32; 3])> = Vec::new();
         let mut is_changed = vec![false; starts.len() - 1];
-        watch.each((0u32..).zip(self.list.iter().zip(self.coverings)), |(number, (region, covering))| {
-            let Some(covering) = covering else { return };
-            others.extend(covering.triangles.iter().map(|&(triangle, face)| (face, number, triangle)));
-            let faces = region.triangles.iter().map(|&triangle| whole.parents[triangle as usize]);
-            faces.for_each(|face| is_changed[face as usize] = true);
+        let covered = || (0u32..).zip(self.list.iter().zip(self.coverings));
+        let covered =
+            || covered().filter_map(|(number, (region, own))| Some((number, region, own.as_ref()?)));
+        let fresh =
+            covered().flat_map(|(number, _, own)| own.triangles.iter().map(move |&own| (number, own)));
+        watch.each(fresh, |(number, (triangle, face))| others.push((face, number, triangle)))?;
+        watch.each(covered().flat_map(|(_, region, _)| &region.triangles), |&triangle| {
+            is_changed[whole.parents[triangle as usize] as usize] = true;
         })?;
-        others.sort_by_key(|&(face, region, _)| (face, region));
+        parallel::sort_polled(&mut others, &mut |_| watch.poll(), Ord::cmp)?;
         others.iter().for_each(|&(face, ..)| is_changed[face as usize] = true);
         let mut others = others.into_iter().peekable();
         let mut found = Exchange::default();
@@ -154,12 +164,11 @@ impl Merged<'_> {
     ) -> Result<Vec<(u32, u32)>, Cancelled> {
         let mut rims = Vec::new();
         let covered = self.list.iter().zip(self.coverings).filter(|(_, covering)| covering.is_some());
-        watch.each(covered, |(region, _)| {
-            for h in region.triangles.iter().flat_map(|&triangle| 3 * triangle..3 * triangle + 3) {
-                let (now, twin) = (numbers.of(h), twins[h as usize]);
-                if now != NONE && twin != NONE {
-                    rims.push((now, numbers.of(twin)));
-                }
+        let triangles = covered.flat_map(|(region, _)| &region.triangles);
+        watch.each(triangles.flat_map(|&triangle| 3 * triangle..3 * triangle + 3), |h| {
+            let (now, twin) = (numbers.of(h), twins[h as usize]);
+            if now != NONE && twin != NONE {
+                rims.push((now, numbers.of(twin)));
             }
         })?;
         Ok(rims)
@@ -179,14 +188,12 @@ impl Merged<'_> {
                 .zip(self.coverings)
                 .filter_map(|(region, covering)| Some((region, covering.as_ref()?)))
         };
-        watch.each(covered(), |(region, _)| {
-            let vertices = region.triangles.iter().flat_map(|&triangle| whole.triangles[triangle as usize]);
-            vertices.for_each(|vertex| is_gone[vertex as usize] = true);
+        watch.each(covered().flat_map(|(region, _)| &region.triangles), |&triangle| {
+            whole.triangles[triangle as usize].iter().for_each(|&vertex| is_gone[vertex as usize] = true);
         })?;
         is_gone[..corners].fill(false);
-        watch.each(covered(), |(_, covering)| {
-            let vertices = covering.triangles.iter().flat_map(|(triangle, _)| triangle);
-            vertices.for_each(|&vertex| is_gone[vertex as usize] = false);
+        watch.each(covered().flat_map(|(_, covering)| &covering.triangles), |(triangle, _)| {
+            triangle.iter().for_each(|&vertex| is_gone[vertex as usize] = false);
         })?;
         let mut next = 0;
         let mut renamed = Vec::with_capacity(is_gone.len());
@@ -378,6 +385,7 @@ impl Numbers<'_> {
     /// Gives the half-edges in a list by half-edge their numbers. Most are of the same control face as where they stand.
     fn renumber(&self, twins: &mut [u32], watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
         let ranges = self.starts.windows(2).zip(&self.exchange.starts);
+        let mut passed = 0;
         for (range, &now) in ranges {
             let (from, to) = (3 * range[0], 3 * range[1]);
             let moved = (now != NONE).then(|| (3 * now).wrapping_sub(from));
@@ -386,6 +394,12 @@ impl Numbers<'_> {
                 _ if *twin != NONE => *twin = self.of(*twin),
                 _ => {}
             })?;
+            // Most faces are too small for that to poll.
+            passed += to - from;
+            if passed >= POLLED {
+                watch.poll()?;
+                passed = 0;
+            }
         }
         Ok(())
     }

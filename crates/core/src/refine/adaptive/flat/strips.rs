@@ -14,6 +14,7 @@ use limitmesh_pages::filled;
 use super::{FlatRegions, Plane};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::NONE;
+use crate::parallel::{IsStopped, asking};
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::normal_net::{CUBIC, tangents};
 use crate::patch::{Patch, VertexSector};
@@ -100,18 +101,24 @@ pub(super) struct Region {
 
 impl Region {
     /// Whether some of its triangles are turned over.
-    pub(super) fn has_turned(&self, net: &Net<'_>) -> bool {
-        self.triangles.iter().any(|&triangle| {
+    pub(super) fn has_turned(&self, net: &Net<'_>, is_stopped: &IsStopped<'_>) -> bool {
+        asking(&self.triangles, is_stopped).any(|&triangle| {
             let [a, b, c] = net.triangles[triangle as usize].map(|vertex| net.at(vertex));
             (b - a).cross(c - a).dot(self.plane.normal) < 0.0
         })
     }
 
     /// Whether the surface is turned over at a corner of its control faces.
-    pub(super) fn is_turned_at_corners(&self, control: &Control<'_>, net: &Net<'_>) -> bool {
+    pub(super) fn is_turned_at_corners(
+        &self,
+        control: &Control<'_>,
+        net: &Net<'_>,
+        is_stopped: &IsStopped<'_>,
+    ) -> bool {
         let mut last = NONE;
         let is_new = |face: &u32| core::mem::replace(&mut last, *face) != *face;
-        let mut faces = self.triangles.iter().map(|&triangle| net.face(triangle)).filter(is_new);
+        let triangles = asking(&self.triangles, is_stopped);
+        let mut faces = triangles.map(|&triangle| net.face(triangle)).filter(is_new);
         faces.any(|face| control.corners(face).iter().any(|at| at.normal.dot(self.plane.normal) < 0.0))
     }
 }
@@ -208,18 +215,16 @@ fn has_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
 impl FlatRegions {
     /// The flat regions and the strips of what was emitted.
     pub(super) fn regions(&self, net: &Net<'_>, watch: &SharedWatch<'_>) -> Result<Regions, Cancelled> {
-        let list = (0u32..).zip(&self.regions).map(|(region, (faces, plane))| {
-            let triangles = faces.iter().flat_map(|&face| net.of_face(face)).collect();
-            Region { triangles, plane: *plane, flat: Some(region) }
-        });
-        let mut regions = Regions {
-            list: list.collect(),
-            of_triangle: filled(NONE, net.triangles.len()),
-            is_dropped: Vec::new(),
-        };
-        watch.each((0..).zip(&regions.list), |(number, region)| {
-            region.triangles.iter().for_each(|&triangle| regions.of_triangle[triangle as usize] = number);
-        })?;
+        let of_triangle = filled(NONE, net.triangles.len());
+        let mut regions = Regions { list: Vec::new(), of_triangle, is_dropped: Vec::new() };
+        for (number, (faces, plane)) in (0u32..).zip(&self.regions) {
+            let mut triangles = Vec::new();
+            watch.each(faces.iter().flat_map(|&face| net.of_face(face)), |triangle| {
+                regions.of_triangle[triangle as usize] = number;
+                triangles.push(triangle);
+            })?;
+            regions.list.push(Region { triangles, plane: *plane, flat: Some(number) });
+        }
         if self.straight.is_empty() {
             return Ok(regions);
         }
