@@ -11,7 +11,9 @@ mod part_bounds;
 
 use core::array::from_fn;
 
-use super::quartic_cell::{CUBIC, CURVE_CUBIC, Domain, QUARTIC, QUARTIC_SLOPE, QuarticJet, quadratic};
+use super::quartic_cell::{
+    CUBIC, CURVE_CUBIC, Domain, QUARTIC, QUARTIC_SLOPE, QuarticJet, edge_range, quadratic, quadratic_height,
+};
 use crate::patch::{Quartic, reciprocal_power};
 use crate::vector::DVec3;
 use crate::vector::Extremes;
@@ -51,6 +53,8 @@ pub(crate) enum Mark {
 pub(crate) struct RowTarget {
     /// Greatest bound of the distance.
     pub(crate) distance: f64,
+    /// The range of heights counts by this, beside the greatest height on one side; 0 where it does not.
+    pub(crate) range_share: f64,
     /// Tilt of the triangles beside a part at most, as a chord.
     pub(crate) tilt: f64,
     /// Tangents of the angles of the triangles beside a part at least.
@@ -193,7 +197,7 @@ impl<'a> RowBlock<'a> {
 
     /// The divisions below which parts certainly fail, as far as the second derivatives in a few places tell, and those by which
     /// they pass.
-    pub(crate) fn levels(&self, distance: f64) -> (u32, u32) {
+    pub(crate) fn levels(&self, &RowTarget { distance, range_share, .. }: &RowTarget) -> (u32, u32) {
         let [u, v] = self.tangents;
         let normal = u.cross(v).normalize_or_zero();
         let (mut least, mut most) = (f64::INFINITY, 0.0f64);
@@ -201,7 +205,8 @@ impl<'a> RowBlock<'a> {
         for [s, t] in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]] {
             let place = [self.at[0] + s * self.size, self.at[1] + t * self.size];
             let [uu, uv, vv] = self.jet.second_at(place).map(|c| normal.dot(c) * square);
-            let height = super::quartic_cell::quadratic_height([uu, uu - 2.0 * uv + vv, vv]);
+            let bends = [uu, uu - 2.0 * uv + vv, vv];
+            let height = quadratic_height(bends).larger(range_share * edge_range(bends));
             (least, most) = (least.smaller(height), most.larger(height));
         }
         let levels = |height: f64| {

@@ -39,7 +39,7 @@ use super::deviation::Deviation;
 use super::triangle_frame::TriangleFrame;
 use crate::patch::Quartic;
 use crate::vector::{DVec3, Extremes, hypotenuse};
-pub(crate) use heights::{Heights, quadratic_height};
+pub(crate) use heights::{Heights, edge_range, quadratic_height};
 
 /// Bounds Σ λₐλ_b|λ_b − λₐ|/12 over the triangle, which is 0.1176/12 at most: a polynomial wherever the coordinates are in
 /// order, whose Bernstein coefficients over small parts are less (`the_cubic_constant_holds`).

@@ -118,6 +118,7 @@ pub(super) fn measure(
         [bound, low, tilts, slopes, drift_slopes].map(|row| &mut row.as_chunks_mut::<LANES>().0[..fours]);
     let (allowed, share) = (below(target.slope), below(target.drift_share));
     let neighbour = above(target.tilt);
+    let range_share = below(target.range_share);
     let size = f32x4::splat(parts.size);
     let facing: f32 = if parts.is_turned { -1.0 } else { 1.0 };
     for i in 0..fours {
@@ -125,7 +126,11 @@ pub(super) fn measure(
         let triangle = Triangle::of(at(&e0), at(&e1), facing);
         let bends = [at(&w0), at(&w1), at(&w2)];
         let off = 2.0 * triangle.unsure * size * triangle.length;
-        let (least, most) = heights(bends.map(|bend| dot(bend, triangle.normal)));
+        let seen = bends.map(|bend| dot(bend, triangle.normal));
+        let (mut least, most) = heights(seen);
+        if range_share > 0.0 {
+            least = least.fast_max(range_share * edge_range(seen) + rest.height);
+        }
         let height = most + 0.3 * triangle.unsure * size + rest.height;
         let tilt = triangle.tilt([at(&m0), at(&m1), at(&m2)]);
         let chord = tilt + neighbour;
@@ -269,6 +274,13 @@ fn heights([p, q, s]: [f32x4; 3]) -> (f32x4, f32x4) {
     (edges.fast_max(known), edges.fast_max(above) * A_LITTLE_MORE)
 }
 
+/// The range of the heights of such a quadratic over the edges.
+#[inline(always)]
+fn edge_range([p, q, s]: [f32x4; 3]) -> f32x4 {
+    let (low, high) = (p.fast_min(q).fast_min(s), p.fast_max(q).fast_max(s));
+    0.125 * (high.fast_max(f32x4::ZERO) - low.fast_min(f32x4::ZERO))
+}
+
 /// Rows of numbers, four at a time, by axis.
 type Fours<'a> = [&'a [[f32; LANES]]; 3];
 
@@ -292,7 +304,9 @@ impl Found {
         let mut greatest = extent.bound * scale;
         for (i, mark) in marks.iter_mut().enumerate().take(count) {
             let bound = f64::from(self.bound[i]);
-            *mark = if bound <= most {
+            *mark = if f64::from(self.low[i]) > most {
+                Mark::Fails
+            } else if bound <= most {
                 extent.tilt = extent.tilt.larger(f64::from(self.tilt[i]));
                 extent.slope = extent.slope.smaller(f64::from(self.slope[i]));
                 extent.drift_slope = extent.drift_slope.larger(f64::from(self.drift_slope[i]));
@@ -300,8 +314,6 @@ impl Found {
                     (greatest, worst) = (bound, Some(i));
                 }
                 Mark::Passes
-            } else if f64::from(self.low[i]) > most {
-                Mark::Fails
             } else {
                 Mark::Open
             };

@@ -30,7 +30,18 @@ fn piece(numbers: &mut Numbers, noise: f64) -> Quartic {
 
 #[test]
 fn samples_of_parts_that_pass_lie_within_the_target() {
+    samples_lie_within(0.0);
+}
+
+/// The same where the range of heights counts beside the greatest.
+#[test]
+fn ranges_of_heights_of_parts_that_pass_lie_within_the_target() {
+    samples_lie_within(0.95);
+}
+
+fn samples_lie_within(range_share: f64) {
     let mut numbers = Numbers(5);
+    let mut uneven = 0;
     let (mut passed, mut failed, mut open) = (0, 0, 0);
     for round in 0..60 {
         let piece = piece(&mut numbers, [0.0, 0.01, 0.03][round % 3]);
@@ -40,8 +51,8 @@ fn samples_of_parts_that_pass_lie_within_the_target() {
         let divisions = 1 + (round % 4) as u32;
         let n = 1usize << divisions;
         let step = size / n as f64;
-        let distance = 0.03 * step * step * (1.0 + 0.5 * numbers.next());
-        let target = RowTarget { distance, tilt: 0.2, slope: f64::INFINITY, drift_share: 0.3 };
+        let distance = 0.03 * (1.0 + range_share) * step * step * (1.0 + 0.5 * numbers.next());
+        let target = RowTarget { distance, range_share, tilt: 0.2, slope: f64::INFINITY, drift_share: 0.3 };
         let mut extent = RowExtent::NONE;
         let mut marks = Marks::default();
         CellRows::default().test(&block, divisions, &target, &mut extent, &mut marks);
@@ -59,7 +70,7 @@ fn samples_of_parts_that_pass_lie_within_the_target() {
                     };
                     let domain = corners.map(|[i, j]| [at[0] + step * i, at[1] + step * j]);
                     let frame = TriangleFrame::new(domain.map(|[u, v]| piece.point(u, v)));
-                    let (mut highest, mut outside) = (0.0f64, 0.0f64);
+                    let (mut low, mut high, mut outside) = (0.0f64, 0.0f64, 0.0f64);
                     for a in 0..=12 {
                         for b in 0..=12 - a {
                             let (b, c) = (f64::from(a) / 12.0, f64::from(b) / 12.0);
@@ -69,12 +80,14 @@ fn samples_of_parts_that_pass_lie_within_the_target() {
                                     + c * (domain[2][x] - domain[0][x])
                             });
                             let point = piece.point(place[0], place[1]);
-                            highest = highest.max(frame.height(point).abs());
+                            let height = frame.height(point);
+                            (low, high) = (low.min(height), high.max(height));
                             for edge in 0..3 {
                                 outside = outside.max(frame.beside(edge, point).outside);
                             }
                         }
                     }
+                    let (highest, range) = (high.max(-low), range_share * (high - low));
                     let tilts = domain.map(|[u, v]| piece.normal(u, v).distance(frame.normal()));
                     let tilt = tilts.into_iter().fold(0.0, f64::max);
                     match marks.at(i as usize, j as usize, is_headlong) {
@@ -83,13 +96,19 @@ fn samples_of_parts_that_pass_lie_within_the_target() {
                             let chord = tilt + target.tilt;
                             let value = highest * (1.0 + 0.5 * chord * chord) + chord * outside;
                             assert!(value <= distance, "round {round}: {value} of {distance}");
+                            // Of ranges no more than the quadratic part is looked at.
+                            let rest = 2.0 * block.rest(step.abs());
+                            assert!(range <= 1.001 * distance + rest, "round {round}: {range}, {distance}");
                             assert!(
                                 tilt <= extent.tilt && frame.least_slope() >= extent.slope * (1.0 - 1e-9)
                             );
                         }
                         Mark::Fails => {
+                            let rest = 2.0 * block.rest(step.abs());
                             failed += 1;
-                            assert!(highest > 0.98 * distance, "round {round}: {highest} of {distance}");
+                            uneven += usize::from(highest < 0.98 * distance);
+                            let counted = if highest < 0.98 * distance { range + rest } else { highest };
+                            assert!(counted > 0.98 * distance, "round {round}: {counted} of {distance}");
                         }
                         Mark::Open => open += 1,
                     }
@@ -98,6 +117,7 @@ fn samples_of_parts_that_pass_lie_within_the_target() {
         }
     }
     assert!(passed > 500 && failed > 500 && open > 0, "{passed} {failed} {open}");
+    assert!((uneven > 100) == (range_share > 0.0), "{uneven}");
 }
 
 /// What is told of their rounding holds against the polynomial in double precision, at sizes from 1e-9 to 1e9.

@@ -59,6 +59,11 @@ impl Heights {
         ((quadratic - rest).larger(0.0), quadratic + rest)
     }
 
+    /// The range of heights from one side to the other is no less, as far as the edges tell.
+    pub(crate) fn least_range(&self) -> f64 {
+        edge_range(self.bends())
+    }
+
     /// The least and the greatest value of the quadratic part, and how far off the heights may be from it at most.
     pub(crate) fn about(&self) -> (f64, f64, f64) {
         let (low, high) = quadratic_range(self.bends(), [0.0; 3]);
@@ -253,6 +258,12 @@ fn quadratic_range([p, q, s]: [f64; 3], [a, b, c]: [f64; 3]) -> (f64, f64) {
         }
     }
     (low, high)
+}
+
+/// The range of the heights over the edges of a quadratic that is 0 at the corners, by its second derivatives along these.
+pub(crate) fn edge_range([p, q, s]: [f64; 3]) -> f64 {
+    let (low, high) = (p.smaller(q).smaller(s), p.larger(q).larger(s));
+    0.125 * (high.larger(0.0) - low.smaller(0.0))
 }
 
 /// The greatest height of a quadratic that is 0 at the corners, by its second derivatives along the edges from the first

@@ -17,9 +17,6 @@ use crate::refine::RefineError;
 use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{Exact, ExactStop};
 
-/// How far triangles may miss the surface before their corners are moved: by half that much afterwards at best.
-const UNBALANCED: f64 = 1.9;
-
 /// Heights of parts are at most so many times what they should be, a quarter.
 const SURELY: f64 = 1.5;
 
@@ -77,8 +74,8 @@ impl Engine<'_> {
             if self.is_balanced {
                 let sources = self.sources(&plan, &emission);
                 bulges.look(&sources, self.watch, &marked(&touched), (allowed, self.max_levels))?;
-                let offsets = bulges.offsets(self.control, &emission, allowed, self.watch)?;
-                emission.shift(offsets, self.watch)?;
+                let moves = bulges.offsets(self.control, &mut emission, allowed, self.watch)?;
+                emission.shift(moves, self.watch)?;
             }
             self.watch.stage(Stage::Bounding, None)?;
             // Of triangles of which nothing but distances is asked it is known what they came to.
@@ -196,7 +193,7 @@ impl Engine<'_> {
 
     /// The finest mesh with balanced triangles within a value; `None` if that takes more triangles than there may be.
     pub(super) fn balanced(&self, limit: f64, most: usize) -> Result<Option<Outcome>, RefineError> {
-        let Some(plan) = self.plan(Goal::Within(UNBALANCED * limit), most)? else { return Ok(None) };
+        let Some(plan) = self.plan(Goal::Balanced(limit), most)? else { return Ok(None) };
         self.emit_among(plan, &Goal::Within(limit), (most, false))
     }
 
@@ -242,7 +239,39 @@ impl Engine<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::demands::Demands;
+    use super::super::judge::UNBALANCED;
+    use super::super::with_engine;
     use super::*;
+    use crate::models::stirred;
+    use crate::progress::unobserved;
+    use crate::scheme::Loop;
+
+    /// How many triangles could not be balanced however their corners were moved, and how many there are.
+    fn hopeless(name: &str, share: f64, goal: impl Fn(f64) -> Goal) -> [usize; 2] {
+        let mesh = stirred(name, 0);
+        let limit = share * mesh.diagonal();
+        let options = ExactOptions::default().tolerance(limit).balance(true);
+        with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
+            let mut plan = engine.plan(goal(limit), usize::MAX)?.unwrap();
+            let faces: Vec<u32> = (0..plan.closed.len() as u32).collect();
+            let emission = engine.emit_all(&mut plan)?;
+            let mut bulges = Bulges::default();
+            bulges.look(&engine.sources(&plan, &emission), engine.watch, &faces, (limit, 30))?;
+            Ok([bulges.failing().len(), emission.triangles.len()])
+        })
+        .unwrap()
+    }
+
+    #[test]
+    fn what_cannot_be_balanced_is_divided_before_it_is_looked_at() {
+        for (name, share) in [("cup", 1e-4), ("bunny", 1e-3), ("head", 1e-3)] {
+            let [few, triangles] = hopeless(name, share, Goal::Balanced);
+            let [many, fewer_triangles] = hopeless(name, share, |limit| Goal::Within(UNBALANCED * limit));
+            assert!(6 * few < many && many > 10, "{name}: {few}, {many}");
+            assert!(triangles > fewer_triangles, "{name}: {triangles}, {fewer_triangles}");
+        }
+    }
 
     /// A leaf by its path below its control face.
     fn leaf(path: &[usize]) -> Place {

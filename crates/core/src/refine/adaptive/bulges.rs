@@ -12,6 +12,7 @@ use super::backs::{Behind, looks_away};
 use super::control::Control;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
+use super::judge::HOPELESS;
 use super::measure::{Measured, fail};
 use super::quadtree::Place;
 use crate::certificate::{BentFour, FOUR, TriangleFrame};
@@ -27,9 +28,6 @@ const SAMPLED_LEVELS: usize = 2;
 
 /// Control faces that one call takes together.
 const BLOCK: usize = 64;
-
-/// Heights in a range of so many times what is allowed on either side are too much, wherever the corners are.
-const HOPELESS: f64 = 2.0;
 
 /// The range of heights over a triangle that is divided in any case.
 pub(super) const ENDS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];

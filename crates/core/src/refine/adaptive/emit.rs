@@ -60,9 +60,18 @@ pub(super) struct Emission {
     pub(super) conditions: Vec<(Condition, u32, u32)>,
     /// Where the vertices lay before they were moved; empty where none was.
     feet: Vec<[f64; 3]>,
+    /// How the vertices of control faces that were taken over were moved before.
+    before: Moves,
     numbers: Numbers,
-    /// By control face, whether everything of it is here.
-    is_whole: Vec<bool>,
+    /// By control face, how much of it is here.
+    extend: Vec<Extend>,
+}
+
+/// How far vertices were moved, and where they lie since; empty where none was.
+#[derive(Default)]
+struct Moves {
+    offsets: Vec<f64>,
+    positions: Vec<[f64; 3]>,
 }
 
 /// The numbers of vertices.
@@ -91,19 +100,48 @@ impl Emission {
 
     /// Whether everything is here, and no control face has changed since.
     pub(super) fn is_complete(&self, is_changed: &[bool]) -> bool {
-        self.is_whole.iter().zip(is_changed).all(|(&is_whole, &is_changed)| is_whole && !is_changed)
+        self.extend.iter().zip(is_changed).all(|(extend, &is_changed)| extend.is_whole() && !is_changed)
     }
 
-    /// Moves the vertices along their normals.
-    pub(super) fn shift(&mut self, offsets: Vec<f64>, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
+    /// Whether a control face was written anew, not taken over.
+    pub(super) fn is_new(&self, face: u32) -> bool {
+        self.extend[face as usize] == Extend::All
+    }
+
+    /// The vertices of a control face that is here; some more than once.
+    pub(super) fn vertices_of(&self, face: u32) -> impl Iterator<Item = u32> {
+        let half_edges = (3 * face..3 * face + 3).flat_map(|h| self.borders.along(h));
+        let starts = half_edges.map(|&h| self.triangles[h as usize / 3][h as usize % 3]);
+        self.vertices_inside(face).map(|vertex| vertex as u32).chain(starts)
+    }
+
+    /// How far the vertices of control faces that were taken over were moved before; of others that is not known. `None` where all are
+    /// new, or none was moved.
+    pub(super) fn offsets_before(&mut self) -> Option<Vec<f64>> {
+        let offsets = core::mem::take(&mut self.before.offsets);
+        (!offsets.is_empty()).then_some(offsets)
+    }
+
+    /// Moves the vertices along their normals. Only those of some control faces are moved otherwise than before.
+    pub(super) fn shift(
+        &mut self,
+        (offsets, faces): (Vec<f64>, Vec<u32>),
+        watch: &SharedWatch<'_>,
+    ) -> Result<(), Cancelled> {
         self.offsets = offsets;
-        let mut feet = limitmesh_pages::with_capacity(self.positions.len());
-        watch.each(0..self.positions.len(), |vertex| {
-            feet.push(self.positions[vertex]);
-            let moved = vector(self.positions[vertex]) + self.step(vertex as u32);
-            self.positions[vertex] = moved.to_array();
-        })?;
-        self.feet = feet;
+        let mut moved = core::mem::take(&mut self.before.positions);
+        let at = |vertex: u32| (vector(self.positions[vertex as usize]) + self.step(vertex)).to_array();
+        if moved.is_empty() {
+            moved = limitmesh_pages::with_capacity(self.positions.len());
+            watch.each(0..self.positions.len() as u32, |vertex| moved.push(at(vertex)))?;
+        } else {
+            watch.each(faces, |face| {
+                self.vertices_of(face).for_each(|vertex| moved[vertex as usize] = at(vertex));
+            })?;
+            let copies = self.junctions.vertices.iter().flatten();
+            copies.for_each(|&vertex| moved[vertex as usize] = at(vertex));
+        }
+        self.feet = core::mem::replace(&mut self.positions, moved);
         Ok(())
     }
 
@@ -145,6 +183,12 @@ pub(super) enum Extend {
     Kept,
     /// Everything.
     All,
+}
+
+impl Extend {
+    fn is_whole(self) -> bool {
+        self >= Self::Kept
+    }
 }
 
 /// What is emitted of a plan. Half-edges beyond which nothing was have the twin [`UNKNOWN`].
@@ -193,7 +237,7 @@ pub(super) fn emit(
     let is_kept = |face: u32| {
         // Normals on sharp edges are averages by now.
         let is_here = |(before, is_changed): &(Last<'_>, &[bool])| {
-            let is_whole = before.emission().is_whole[face as usize];
+            let is_whole = before.emission().extend[face as usize].is_whole();
             is_whole && !is_changed[face as usize] && control.open(face) == [false; 3]
         };
         before.as_ref().is_some_and(is_here)
@@ -241,7 +285,7 @@ pub(super) fn emit(
             Arrays::fresh(length, room, has_origins, watch)?
         }
     };
-    let Arrays { positions, normals, origins, triangles, twins, parents } = arrays;
+    let Arrays { positions, normals, origins, triangles, twins, parents, moves } = arrays;
     let mut emission = Emission {
         positions,
         normals,
@@ -256,8 +300,9 @@ pub(super) fn emit(
         junctions: Junctions::default(),
         conditions: Vec::new(),
         feet: Vec::new(),
+        before: moves,
         numbers,
-        is_whole: Vec::new(),
+        extend: Vec::new(),
     };
     corners(control, &mut emission, watch)?;
     let jobs = jobs(control, edges, chains, &counts, &mut emission, watch)?;
@@ -272,7 +317,7 @@ pub(super) fn emit(
         write(control, edges, (decision, chains), (closed, kept.as_ref(), only), job, is_stopped)
     });
     emission.conditions = conditions?.concat();
-    emission.is_whole = extend.into_iter().map(|extend| extend >= Extend::Kept).collect();
+    emission.extend = extend;
     join(edges, &mut emission, watch)?;
     sharp_edges((control, watch), edges, chains, &mut emission)?;
     Ok(emission)
@@ -339,7 +384,7 @@ struct Counts<'a> {
 impl Counts<'_> {
     fn each(&self, count: impl Fn(&Closed) -> u32) -> impl Iterator<Item = u32> {
         let faces = self.closed.iter().zip(self.extend);
-        faces.map(move |(face, &extend)| if extend >= Extend::Kept { count(face) } else { 0 })
+        faces.map(move |(face, &extend)| if extend.is_whole() { count(face) } else { 0 })
     }
 
     fn triangles(&self) -> impl Iterator<Item = u32> {
@@ -391,8 +436,8 @@ fn fraction(at: u32) -> f64 {
 
 /// Makes the half-edges on both sides of control edges twins; what is beyond those that are here alone is not known.
 fn join(edges: &Edges<'_>, emission: &mut Emission, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
-    let Emission { borders, twins, is_whole, .. } = emission;
-    let is_whole = |h: u32| is_whole[h as usize / 3];
+    let Emission { borders, twins, extend, .. } = emission;
+    let is_whole = |h: u32| extend[h as usize / 3].is_whole();
     // Half-edges of areas that were passed over have no number.
     let mut meet = |[a, b]: [u32; 2], beyond: u32| {
         if a != NONE {
@@ -425,7 +470,7 @@ fn sharp_edges(
         return Ok(());
     }
     for face in 0..control.mesh.face_count() as u32 {
-        let open = if emission.is_whole[face as usize] { control.open(face) } else { [false; 3] };
+        let open = if emission.extend[face as usize].is_whole() { control.open(face) } else { [false; 3] };
         if open != [false; 3] || face.is_multiple_of(POLLED) {
             watch.poll()?;
         }

@@ -51,6 +51,15 @@ const NEAR_MISS: f64 = 1.05;
 /// What faces count on of those beside them is guessed anew where a distance falls by more than this.
 const MOST_TIMES: f64 = 1.5;
 
+/// How far triangles may miss the surface before their corners are moved: by half that much afterwards at best.
+pub(super) const UNBALANCED: f64 = 1.9;
+
+/// Heights in a range of so many times what is allowed on either side are too much, however corners are moved.
+pub(super) const HOPELESS: f64 = 2.0;
+
+/// The range of heights that a few points of a piece that need not be regular tell is about this part of what there is.
+const SEEN: f64 = 0.8;
+
 /// Unit vectors are off by no more than this.
 const ROUNDING: f64 = 1e-12;
 
@@ -77,7 +86,9 @@ impl Allowance {
 pub(super) enum Goal {
     /// Greatest value of a triangle.
     Within(f64),
-    /// The same, and a lesser one for marked faces.
+    /// Greatest distance of a triangle once its corners are moved off the surface ([`super::offsets`]): before, it may be nearly twice as far.
+    Balanced(f64),
+    /// The same as [`Self::Within`], and a lesser one for marked faces.
     Partly(f64, f64, Vec<bool>),
     /// All faces divided by so many levels, marked ones once more, whatever comes of it.
     Even(u32, Vec<bool>),
@@ -90,6 +101,7 @@ impl Goal {
     pub(super) fn judge<'a>(&self, control: &'a Control<'_>, max_levels: u32, face: u32) -> Judge<'a> {
         let (distance, is_lenient) = match self {
             Self::Within(distance) => (*distance, false),
+            Self::Balanced(distance) => (UNBALANCED * distance, false),
             Self::Partly(_, less, is_finer) if is_finer[face as usize] => (*less, false),
             Self::Partly(distance, ..) => (*distance, false),
             // Bounds as tight as they get.
@@ -98,7 +110,19 @@ impl Goal {
         };
         let (rules, criteria) = (control.rules, control.criteria.as_ref());
         let (back_faces, rim_alone) = (&control.back_faces, control.flat.is_its_rim(face));
-        Judge { rules, criteria, back_faces, face, rim_alone, max_levels, limit: distance, is_lenient }
+        let is_balanced = matches!(self, Self::Balanced(_)) && criteria.is_none();
+        let range_share = if is_balanced { UNBALANCED / HOPELESS } else { 0.0 };
+        Judge {
+            rules,
+            criteria,
+            back_faces,
+            face,
+            rim_alone,
+            max_levels,
+            limit: distance,
+            range_share,
+            is_lenient,
+        }
     }
 
     /// Whether not much less is asked of a face than by another goal, so that what it counted on of those beside it will do.
@@ -110,6 +134,7 @@ impl Goal {
     pub(super) fn allowed(&self, face: u32) -> f64 {
         match self {
             Self::Within(distance) => *distance,
+            Self::Balanced(distance) => UNBALANCED * distance,
             Self::Partly(_, less, is_finer) if is_finer[face as usize] => *less,
             Self::Partly(distance, ..) => *distance,
             Self::Even(..) | Self::Nothing => f64::INFINITY,
@@ -132,6 +157,8 @@ pub(super) struct Judge<'a> {
     max_levels: u32,
     /// Greatest value: a distance where nothing else counts.
     pub(super) limit: f64,
+    /// Ranges of heights from one side to the other count by this, beside the greatest height on one side.
+    range_share: f64,
     /// Everything passes, and all that counts is how far it is off among its neighbours.
     is_lenient: bool,
 }
@@ -170,6 +197,8 @@ impl Judge<'_> {
             let is_less = by_derivatives.bound(chord, slopes) <= by_net.bound(chord, slopes);
             return self.decided(&seen, if is_less { by_derivatives } else { by_net }, allowance);
         }
+        let low =
+            if self.range_share > 0.0 { low.larger(self.range_share * heights.least_range()) } else { low };
         if exceeds(low, self.limit) && !self.is_kept(&seen) {
             return Verdict { outcome: Outcome::Fails, extent: Extent { bound: low, ..seen.extent() } };
         }
@@ -236,9 +265,17 @@ impl Judge<'_> {
 
     /// Whether a triangle is to be divided whatever else its piece is, since some of its points stand too high.
     pub(super) fn surely_fails(&self, seen: &Seen, points: &[DVec3]) -> bool {
-        let height = || points.iter().map(|&point| seen.frame.height(point).abs()).fold(0.0, f64::larger);
+        let height = || self.counted(seen, points.iter().copied());
         let has_limit = self.criteria.is_none() && !self.rim_alone && !self.is_kept(seen);
         has_limit && exceeds(height(), self.limit)
+    }
+
+    /// What the heights of some points come to.
+    fn counted(&self, seen: &Seen, points: impl Iterator<Item = DVec3>) -> f64 {
+        let heights = points.map(|point| seen.frame.height(point));
+        let (low, high) =
+            heights.fold((0.0f64, 0.0f64), |(low, high), height| (low.smaller(height), high.larger(height)));
+        high.larger(-low).larger(self.range_share / SEEN * (high - low))
     }
 
     /// A triangle over a regular piece, as far as its net decides at a glance.
@@ -257,7 +294,9 @@ impl Judge<'_> {
             let extent = Extent { bound: attained, ..seen.extent() };
             return Some(Verdict { outcome: Outcome::Fails, extent });
         }
-        Some(self.decided(seen, deviation, allowance)).filter(Verdict::passes)
+        // Heights of both signs are not told apart.
+        let may_be_uneven = 2.0 * self.range_share * deviation.height > self.limit;
+        Some(self.decided(seen, deviation, allowance)).filter(|verdict| verdict.passes() && !may_be_uneven)
     }
 
     /// A triangle over a part of any piece, so many levels below its control face.
@@ -367,7 +406,13 @@ impl Judge<'_> {
     /// The same for rows of triangles.
     pub(super) fn row_target(&self, allowance: &Allowance) -> RowTarget {
         let Allowance { tilt, slope } = *allowance;
-        RowTarget { distance: self.limit, tilt, slope, drift_share: DRIFT_SHARE }
+        RowTarget {
+            distance: self.limit,
+            tilt,
+            slope,
+            range_share: self.range_share,
+            drift_share: DRIFT_SHARE,
+        }
     }
 
     /// Whether a triangle may pass, as far as some points of its piece tell.
@@ -379,7 +424,7 @@ impl Judge<'_> {
         level: u32,
     ) -> bool {
         let seen = Seen::of(corners, level);
-        let height = seen.highest(points);
+        let height = self.counted(&seen, points.iter().map(|point| point.position));
         match self.criteria {
             None => height <= self.limit,
             Some(criteria) => {

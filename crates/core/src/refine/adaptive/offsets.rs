@@ -24,46 +24,30 @@ const STAYS: f64 = 0.75;
 
 impl Bulges {
     /// How far each vertex is to be moved along its normal: by the mean of the middles around, or as near to that as leaves all
-    /// heights around well within `allowed`; where nothing does, to the middle of them all; or as far as before.
+    /// heights around well within `allowed`; where nothing does, to the middle of them all; or as far as before. With the control faces
+    /// whose vertices may be moved otherwise than when those of the emission before were.
     pub(super) fn offsets(
         &self,
         control: &Control<'_>,
-        emission: &Emission,
+        emission: &mut Emission,
         allowed: f64,
         watch: &SharedWatch<'_>,
-    ) -> Result<Vec<f64>, Cancelled> {
-        // Where all triangles around were there before.
-        let mut stays = vec![true; emission.positions.len()];
-        let faces = || {
-            (0..).zip(&self.0).map(|(face, bulge)| (&emission.triangles[emission.triangles_of(face)], bulge))
-        };
-        watch.each(faces().filter(|(_, bulge)| bulge.waits), |(triangles, bulge)| {
-            for (triangle, last) in triangles.iter().zip(bulge.offsets_last()) {
-                if last[0].is_nan() {
-                    triangle.iter().for_each(|&vertex| stays[vertex as usize] = false);
+    ) -> Result<(Vec<f64>, Vec<u32>), Cancelled> {
+        let last = emission.offsets_before();
+        let faces = self.0.len() as u32;
+        let may_change =
+            |face: &u32| last.is_none() || emission.is_new(*face) || self.0[*face as usize].waits;
+        let changing: Vec<u32> = (0..faces).filter(may_change).collect();
+        let mut offsets = last.unwrap_or_else(|| limitmesh_pages::defaults(emission.positions.len()));
+        let around = self.around(control, emission, &changing, &mut offsets, watch)?;
+        watch.each(&changing, |&face| {
+            for vertex in emission.vertices_of(face) {
+                if let Some(around) = around.of(vertex) {
+                    offsets[vertex as usize] = around.offset(allowed);
                 }
             }
         })?;
-        let mut offsets = vec![0.0; stays.len()];
-        let mut around = vec![Around::NOTHING; stays.len()];
-        watch.each(faces(), |(triangles, bulge)| {
-            for ((triangle, last), range) in triangles.iter().zip(bulge.offsets_last()).zip(&bulge.ranges) {
-                for (&vertex, offset) in triangle.iter().zip(last) {
-                    let vertex = vertex as usize;
-                    if stays[vertex] {
-                        offsets[vertex] = offset;
-                    } else {
-                        around[vertex].add(*range, offset);
-                    }
-                }
-            }
-        })?;
-        watch.each(stays.iter().zip(&around).zip(&mut offsets), |((&stays, around), offset)| {
-            if !stays {
-                *offset = around.offset(allowed);
-            }
-        })?;
-        watch.each(0..control.mesh.face_count() as u32, |face| {
+        watch.each(&changing, |&face| {
             let open = control.open(face);
             for edge in (0..3).filter(|&edge| open[edge as usize]) {
                 for &h in emission.borders.along(3 * face + edge) {
@@ -76,7 +60,78 @@ impl Bulges {
         control.lasting.tagged_vertices().for_each(|vertex| offsets[vertex.index()] = 0.0);
         let copies = emission.junctions.vertices.iter().flatten();
         copies.for_each(|&vertex| offsets[vertex as usize] = 0.0);
-        Ok(offsets)
+        Ok((offsets, changing))
+    }
+
+    /// The heights around the vertices of some control faces where not all triangles were there before; other vertices there are moved as
+    /// far as they were with these.
+    fn around(
+        &self,
+        control: &Control<'_>,
+        emission: &Emission,
+        faces: &[u32],
+        offsets: &mut [f64],
+        watch: &SharedWatch<'_>,
+    ) -> Result<AllAround, Cancelled> {
+        let mut around = AllAround::none(emission.positions.len());
+        let triangles_of =
+            |face: u32| (&emission.triangles[emission.triangles_of(face)], &self.0[face as usize]);
+        watch.each(faces, |&face| {
+            let (triangles, bulge) = triangles_of(face);
+            if bulge.waits {
+                let all = triangles.iter().zip(bulge.offsets_last());
+                all.filter(|(_, last)| last[0].is_nan())
+                    .for_each(|(triangle, _)| triangle.iter().for_each(|&vertex| around.add_vertex(vertex)));
+            }
+        })?;
+        let mut is_corner = vec![false; control.mesh.vertex_count()];
+        let corners = |face: u32| control.mesh.triangles()[face as usize].map(|vertex| vertex as usize);
+        watch.each(faces, |&face| corners(face).into_iter().for_each(|corner| is_corner[corner] = true))?;
+        watch.each(0..self.0.len() as u32, |face| {
+            if !corners(face).into_iter().any(|corner| is_corner[corner]) {
+                return;
+            }
+            let (triangles, bulge) = triangles_of(face);
+            for ((triangle, last), range) in triangles.iter().zip(bulge.offsets_last()).zip(&bulge.ranges) {
+                for (&vertex, offset) in triangle.iter().zip(last) {
+                    match around.of_mut(vertex) {
+                        Some(around) => around.add(*range, offset),
+                        None => offsets[vertex as usize] = offset,
+                    }
+                }
+            }
+        })?;
+        Ok(around)
+    }
+}
+
+/// The heights around some vertices.
+struct AllAround {
+    /// By vertex its number among them, counted from 1; 0 for others.
+    numbers: Vec<u32>,
+    around: Vec<Around>,
+}
+
+impl AllAround {
+    /// None of so many.
+    fn none(vertices: usize) -> Self {
+        Self { numbers: limitmesh_pages::defaults(vertices), around: Vec::new() }
+    }
+
+    fn add_vertex(&mut self, vertex: u32) {
+        let number = &mut self.numbers[vertex as usize];
+        if *number == 0 {
+            self.around.push(Around::NOTHING);
+            *number = self.around.len() as u32;
+        }
+    }
+
+    fn of_mut(&mut self, vertex: u32) -> Option<&mut Around> {
+        self.around.get_mut((self.numbers[vertex as usize] as usize).wrapping_sub(1))
+    }
+
+    fn of(&self, vertex: u32) -> Option<&Around> {
+        self.around.get((self.numbers[vertex as usize] as usize).wrapping_sub(1))
     }
 }
 

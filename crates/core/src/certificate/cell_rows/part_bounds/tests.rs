@@ -87,7 +87,8 @@ fn single_precision_is_on_the_safe_side() {
             ),
         };
         let rest = Remainder { height: 1e-6, curve: 2e-7, steep: 1e-6, first: 3e-6 };
-        let target = RowTarget { distance: 1.0, tilt: 0.1, slope: f64::INFINITY, drift_share: 0.41 };
+        let target =
+            RowTarget { distance: 1.0, range_share: 0.0, tilt: 0.1, slope: f64::INFINITY, drift_share: 0.41 };
         let mut found = Found::default();
         measure(8, &input, &rest, &target, &mut found);
         for (i, Part { corners, normals, bends }) in parts.iter().enumerate() {
@@ -155,7 +156,8 @@ fn heights_of_nearly_cylindrical_quadratics_are_no_less_than_they_are() {
 #[test]
 fn what_has_no_bound_is_within_nothing() {
     for distance in [1.0, f64::MAX, f64::INFINITY] {
-        let target = RowTarget { distance, tilt: 0.1, slope: f64::INFINITY, drift_share: 0.41 };
+        let target =
+            RowTarget { distance, range_share: 0.0, tilt: 0.1, slope: f64::INFINITY, drift_share: 0.41 };
         let mut found = Found::default();
         (found.bound[0], found.bound[1]) = (f32::INFINITY, f32::NAN);
         let (mut extent, mut marks) = (RowExtent::NONE, [Mark::Passes; 3]);

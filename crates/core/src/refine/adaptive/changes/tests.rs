@@ -12,7 +12,7 @@ use super::super::judge::Goal;
 use super::super::measure::{Measured, measure};
 use super::super::quadtree::{Place, is_split};
 use super::super::settle::{beside, sharp_edges};
-use super::super::{Engine, Plan, with_engine};
+use super::super::{Engine, Plan, join_copies, with_engine};
 use super::*;
 use crate::certificate::SubTriangle;
 use crate::mesh::Mesh;
@@ -117,7 +117,7 @@ fn rounds(name: &str, mesh: &Mesh, (share, seed): (f64, u64), counts: &mut [usiz
             let name = format!("{name}, round {round}");
             let touched = plan.is_touched.clone();
             let kept = plan.emission.take();
-            let anew = engine.emit_some(&plan, Scope::All)?;
+            let mut anew = engine.emit_some(&plan, Scope::All)?;
             plan.emission = kept;
             let mut emission = engine.emit_all(&mut plan)?;
             assert_eq!((&emission.triangles, &emission.twins), (&anew.triangles, &anew.twins), "{name}");
@@ -131,8 +131,15 @@ fn rounds(name: &str, mesh: &Mesh, (share, seed): (f64, u64), counts: &mut [usiz
                 let is_near = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-9 * limit;
                 assert!(known.iter().zip(anew).all(is_near), "{name}");
             }
-            let offsets = bulges.offsets(engine.control, &emission, limit, watch)?;
-            emission.shift(offsets, watch)?;
+            let moves = bulges.offsets(engine.control, &mut emission, limit, watch)?;
+            emission.shift(moves, watch)?;
+            // What was taken over lies where it would if all were moved anew.
+            anew.junctions = emission.junctions.clone();
+            join_copies(&mut anew.positions, &anew.junctions.vertices);
+            let moves = bulges.offsets(engine.control, &mut anew, limit, watch)?;
+            assert_eq!(moves.1, faces, "{name}");
+            anew.shift(moves, watch)?;
+            assert_eq!((&emission.offsets, &emission.positions), (&anew.offsets, &anew.positions), "{name}");
             let changes = Changes::since((Some(&bulges), true), &touched, &emission, watch)?;
             let sources = engine.sources(&plan, &emission);
             let sharp = sharp_edges(&emission, watch)?;

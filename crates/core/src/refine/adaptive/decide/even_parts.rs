@@ -38,7 +38,7 @@ impl Decider<'_> {
     pub(super) fn rows(&mut self, ground: &Ground, spot: Spot, place: Place) -> AtOnce {
         let target = self.judge.row_target(&self.allowance);
         let block = RowBlock::of(&ground.piece, ground.jet(), [spot.u, spot.v], spot.size);
-        let (least, most) = block.levels(target.distance);
+        let (least, most) = block.levels(&target);
         let fails = least > 0;
         if !fails {
             return AtOnce::NotHere { fails, may_be_below: most > 1 };

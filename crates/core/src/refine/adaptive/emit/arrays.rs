@@ -4,7 +4,7 @@
 use core::ops::Range;
 
 use super::kept::COPIED;
-use super::{Emission, NOWHERE};
+use super::{Emission, Moves, NOWHERE};
 use crate::parallel::{self, IsStopped};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::Origin;
@@ -21,6 +21,8 @@ pub(super) struct Arrays {
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) twins: Vec<u32>,
     pub(super) parents: Vec<u32>,
+    /// Empty where nothing was moved.
+    pub(super) moves: Moves,
 }
 
 /// How many vertices and triangles there are.
@@ -87,16 +89,23 @@ impl Arrays {
             triangles: zeros(triangles),
             twins: zeros((3 * triangles.0, 3 * triangles.1)),
             parents: zeros(triangles),
+            moves: Moves::default(),
         })
     }
 
     /// Those of an emission, which keeps none of them.
     pub(super) fn taken(emission: &mut Emission) -> Self {
         let take = core::mem::take::<Vec<[f64; 3]>>;
-        let (positions, feet) = (take(&mut emission.positions), take(&mut emission.feet));
-        Self {
+        let (mut positions, feet) = (take(&mut emission.positions), take(&mut emission.feet));
+        let mut moves = Moves::default();
+        if !feet.is_empty() {
+            moves.offsets = core::mem::take(&mut emission.offsets);
             // Where the vertices lay before they were moved.
-            positions: if feet.is_empty() { positions } else { feet },
+            moves.positions = core::mem::replace(&mut positions, feet);
+        }
+        Self {
+            positions,
+            moves,
             normals: take(&mut emission.normals),
             origins: core::mem::take(&mut emission.origins),
             triangles: core::mem::take(&mut emission.triangles),
@@ -113,7 +122,7 @@ impl Arrays {
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
         let twins = triangles.times(3);
-        let Self { positions, normals, origins, triangles: corners, twins: beyond, parents } = self;
+        let Self { positions, normals, origins, triangles: corners, twins: beyond, parents, moves } = self;
         type Task<'a> = Box<dyn FnOnce(&IsStopped<'_>) + Send + 'a>;
         let mut tasks: Vec<Task<'_>> = vec![
             Box::new(|is_stopped| rearrange(positions, ([0.0; 3], length.vertices), vertices, is_stopped)),
@@ -126,6 +135,15 @@ impl Arrays {
         if !origins.is_empty() {
             tasks.push(Box::new(|is_stopped| {
                 rearrange(origins, (NOWHERE, length.vertices), vertices, is_stopped);
+            }));
+        }
+        if !moves.offsets.is_empty() {
+            let Moves { offsets, positions } = moves;
+            tasks.push(Box::new(|is_stopped| {
+                rearrange(offsets, (0.0, length.vertices), vertices, is_stopped);
+            }));
+            tasks.push(Box::new(|is_stopped| {
+                rearrange(positions, ([0.0; 3], length.vertices), vertices, is_stopped);
             }));
         }
         parallel::each_long_polled(tasks, &mut |_| watch.poll(), |task, is_stopped| task(is_stopped))?;
