@@ -8,6 +8,15 @@ use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 #[cfg(feature = "parallel")]
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
+/// Shares that few elements are cut into, and elements of which none has more.
+const SHARES: usize = 48;
+const MOST_IN_SHARE: usize = 256;
+
+/// How many of so many elements one call takes together where each may take long: few enough for threads to end together.
+pub(crate) fn share(elements: usize) -> usize {
+    (elements / SHARES).clamp(1, MOST_IN_SHARE)
+}
+
 /// Below this many elements a loop stays on the calling thread: starting workers would cost more than the work.
 const SEQUENTIAL_BELOW: usize = 4096;
 
@@ -21,6 +30,22 @@ pub(crate) fn map<T: Send, F: Fn(usize) -> T + Sync + Send>(n: usize, f: F) -> V
         }
     }
     (0..n).map(f).collect()
+}
+
+/// So many default values, with room for more: as [`limitmesh_pages::defaults_with_room`], but that all threads touch what must be.
+pub(crate) fn defaults_with_room<T: Clone + Default + Send + Sync>(length: usize, capacity: usize) -> Vec<T> {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        let bytes = size_of::<T>().saturating_mul(capacity.max(length));
+        if bytes < limitmesh_pages::ALONE && length >= TOUCHED && rayon::current_num_threads() > 1 {
+            let mut array = limitmesh_pages::with_capacity(capacity.max(length));
+            let values = rayon::iter::repeat_n(T::default(), length);
+            array.par_extend(values.with_min_len(TOUCHED / 4));
+            return array;
+        }
+    }
+    limitmesh_pages::defaults_with_room(length, capacity)
 }
 
 /// Cuts `slots` into pieces of `piece` elements and calls `f(i, piece i)` for each.
@@ -43,6 +68,10 @@ pub(crate) fn for_each_chunk<T: Send, F: Fn(usize, &mut [T]) + Sync + Send>(
     }
     slots.chunks_mut(piece).enumerate().for_each(|(i, chunk)| f(i, chunk));
 }
+
+/// Elements that are touched by several threads from so many on.
+#[cfg(feature = "parallel")]
+const TOUCHED: usize = 1 << 16;
 
 /// Elements that are sorted together where that can be cancelled.
 const SORTED_AT_ONCE: usize = 1 << 15;

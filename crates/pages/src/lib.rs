@@ -11,7 +11,7 @@ const LEAST: usize = 1 << 22;
 
 /// From this number of bytes on allocators take memory from the system for an array alone (`M_MMAP_THRESHOLD` of the GNU C library is
 /// never greater), which is zero already and need not be touched.
-const ALONE: usize = 1 << 25;
+pub const ALONE: usize = 1 << 25;
 
 /// An empty vector with room for at least `capacity` elements, on large pages where they take megabytes.
 ///

@@ -17,6 +17,7 @@ use super::measure::{Measured, fail};
 use super::quadtree::Place;
 use crate::certificate::{BentFour, FOUR, TriangleFrame};
 use crate::criterion::Region;
+use crate::parallel;
 use crate::patch::{Rules, reciprocal_power};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
@@ -25,9 +26,6 @@ use waiting::Waiting;
 
 /// Levels below a leaf whose vertices are sampled where a piece is not regular.
 const SAMPLED_LEVELS: usize = 2;
-
-/// Control faces that one call takes together.
-const BLOCK: usize = 64;
 
 /// The range of heights over a triangle that is divided in any case.
 pub(super) const ENDS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
@@ -82,7 +80,7 @@ impl Bulges {
         let hopeless = HOPELESS * allowed;
         let emission = sources.emission;
         self.0.resize_with(emission.starts.len() - 1, Bulge::default);
-        let found = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
+        let found = watch.long_pieces(faces.len(), parallel::share(faces.len()), |block, is_stopped| {
             let found = faces[block].iter().map(|&face| {
                 let triangles = emission.triangles_of(face);
                 let found = Bulge::unknown(triangles.len(), scale(sources.control, face));

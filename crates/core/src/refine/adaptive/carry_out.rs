@@ -8,7 +8,7 @@ use super::chains::{Chains, first_of};
 use super::close::{Closed, Closing, Counts, Unfinished};
 use super::dirty::Dirty;
 use super::quadtree::{Place, Trees};
-use super::{BLOCK, CountsStrips, Engine, Plan, block};
+use super::{CountsStrips, Engine, Plan};
 use crate::parallel;
 use crate::refine::RefineError;
 
@@ -64,7 +64,7 @@ impl Engine<'_> {
     /// Neighbouring leaves are at most one level apart; adds what is split for that. Only what is dirty may have more leaves than before.
     fn restrict(&self, trees: &mut Trees, dirty: &mut Dirty) -> Result<(), RefineError> {
         let (faces, edges) = (dirty.replaced(), &self.edges);
-        let lists = self.watch.pieces(faces.len(), block(faces.len()), |block| {
+        let lists = self.watch.pieces(faces.len(), parallel::share(faces.len()), |block| {
             let mut pending = Pending::default();
             faces[block].iter().for_each(|&face| pending.push_tree(trees, edges, face));
             pending
@@ -139,7 +139,7 @@ impl Engine<'_> {
         split.sort_unstable_by(Place::in_order);
         let of_block =
             |block: &[u32]| block.iter().map(|&face| (face, again.remove(&face))).collect::<Vec<_>>();
-        let blocks: Vec<_> = faces.chunks(BLOCK).map(of_block).collect();
+        let blocks: Vec<_> = faces.chunks(parallel::share(faces.len())).map(of_block).collect();
         let poll = &mut |_| self.watch.poll();
         let found = parallel::each_long_polled(blocks, poll, |block, is_stopped| {
             let mut knots = Vec::new();
@@ -193,7 +193,7 @@ impl Engine<'_> {
             (core::mem::take(&mut plan.closed[face as usize]), unfinished)
         };
         let mut all = again.into_iter().map(take);
-        let next_block = || Some(all.by_ref().take(BLOCK).collect::<Vec<_>>());
+        let next_block = || Some(all.by_ref().take(parallel::share(faces.len())).collect::<Vec<_>>());
         let blocks = core::iter::from_fn(next_block).take_while(|block| !block.is_empty()).collect();
         let max_levels = self.max_levels;
         let trees = &plan.decision.trees;

@@ -8,10 +8,8 @@ use super::bulges::{Bulges, ENDS};
 use super::emit::Emission;
 use super::quadtree::Edges;
 use crate::mesh::NONE;
+use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
-
-/// Control faces that one call takes together.
-const BLOCK: usize = 256;
 
 /// What has become of a triangle.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -39,7 +37,7 @@ impl Changes {
         emission: &Emission,
         watch: &SharedWatch<'_>,
     ) -> Result<Self, Cancelled> {
-        let found = watch.pieces(is_touched.len(), BLOCK, |faces| {
+        let found = watch.pieces(is_touched.len(), parallel::share(is_touched.len()), |faces| {
             let (mut changes, mut have_changed) = (Vec::new(), Vec::new());
             for face in faces {
                 let triangles = emission.triangles_of(face as u32);
@@ -94,15 +92,17 @@ impl Changes {
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<u32>, Cancelled> {
         let has_changed = |face: u32| self.have_changed[face as usize];
-        let found = watch.pieces(self.have_changed.len(), BLOCK, |faces| {
-            let concerned = faces.map(|face| face as u32).filter(|&face| {
-                let mut beyond = (3 * face..3 * face + 3).filter_map(|h| edges.twin(h)).map(|twin| twin / 3);
-                let mut triangles = emission.triangles_of(face);
-                (has_changed(face) || beyond.any(has_changed))
-                    && triangles.any(|triangle| self.concern(emission, triangle as u32))
-            });
-            concerned.collect::<Vec<u32>>()
-        })?;
+        let found =
+            watch.pieces(self.have_changed.len(), parallel::share(self.have_changed.len()), |faces| {
+                let concerned = faces.map(|face| face as u32).filter(|&face| {
+                    let mut beyond =
+                        (3 * face..3 * face + 3).filter_map(|h| edges.twin(h)).map(|twin| twin / 3);
+                    let mut triangles = emission.triangles_of(face);
+                    (has_changed(face) || beyond.any(has_changed))
+                        && triangles.any(|triangle| self.concern(emission, triangle as u32))
+                });
+                concerned.collect::<Vec<u32>>()
+            })?;
         Ok(found.concat())
     }
 }

@@ -27,9 +27,6 @@ use crate::vector::DVec3;
 use even_parts::{AtOnce, MOST_TESTED};
 use found::Found;
 
-/// Control faces that one call takes together: enough to outweigh the call, few enough to share the work evenly.
-const BLOCK: usize = 64;
-
 /// Leaves that are added to the common count together.
 const COUNTED: usize = 256;
 
@@ -66,11 +63,12 @@ pub(super) fn decide(
     let count = Count { leaves: AtomicUsize::new(0), most };
     let expected = Expected::of_all((control, watch), goal)?;
     let mut found = limitmesh_pages::filled(Found::NOTHING, faces);
-    let blocks: Vec<_> = found.chunks_mut(BLOCK).enumerate().collect();
+    let size = parallel::share(faces);
+    let blocks: Vec<_> = found.chunks_mut(size).enumerate().collect();
     let pieces = parallel::each_long_polled(blocks, &mut |_| watch.poll(), |(block, found), is_stopped| {
         let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
         decider.expected = &expected;
-        for (face, found) in (BLOCK * block..).zip(found) {
+        for (face, found) in (size * block..).zip(found) {
             *found = decider.face(face as u32, None);
         }
         decider.tell();
@@ -98,7 +96,7 @@ pub(super) fn leaves_of(
     faces: &[(u32, usize)],
 ) -> Result<Vec<usize>, Cancelled> {
     let Engine { control, watch, ref edges, max_levels, .. } = *engine;
-    let blocks = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
+    let blocks = watch.long_pieces(faces.len(), parallel::share(faces.len()), |block, is_stopped| {
         let leaves = faces[block].iter().map(|&(face, most)| {
             let count = Count { leaves: AtomicUsize::new(0), most };
             let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));

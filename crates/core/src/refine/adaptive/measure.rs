@@ -24,12 +24,10 @@ use crate::certificate::{
     BesideEdges, Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
 };
 use crate::criterion::{Apart, Backs, Criteria, Region, Viewpoint};
+use crate::parallel;
 use crate::patch::{LimitPoint, Rules};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
-
-/// Control faces that one call takes together.
-const BLOCK: usize = 64;
 
 /// Halvings of a net: towards a corner at which points drift too fast, where only short pieces are near.
 const MOST_HALVINGS: usize = 10;
@@ -64,7 +62,7 @@ pub(super) fn measure(
     (faces, changes, bulges): (&[u32], Option<&Changes>, Option<&Bulges>),
 ) -> Result<Vec<Measured>, Cancelled> {
     let sharp = sharp_edges(sources.emission, watch)?;
-    let measured = watch.long_pieces(faces.len(), BLOCK, |block, is_stopped| {
+    let measured = watch.long_pieces(faces.len(), parallel::share(faces.len()), |block, is_stopped| {
         let measured = faces[block].iter().map(|&face| {
             let mut measuring = Measuring::of(sources, (face, &sharp), (goal, length), changes);
             let bulge = bulges.filter(|_| measuring.criteria.is_none() && !measuring.rim_alone);

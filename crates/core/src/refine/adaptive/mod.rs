@@ -84,12 +84,6 @@ use plan::Plan;
 use quadtree::{Edges, Place};
 use result::Outcome;
 
-/// Control faces that one call takes together.
-const BLOCK: usize = 256;
-
-/// Calls that few control faces are shared among.
-const SHARES: usize = 256;
-
 /// Triangles that splitting a leaf adds, closing included, on the average.
 const ADDED: usize = 6;
 
@@ -443,9 +437,4 @@ impl Engine<'_> {
         }
         Ok(count - saved.min(count))
     }
-}
-
-/// How many of so many control faces one call takes together where each takes little, but for faces that are divided very deeply.
-fn block(faces: usize) -> usize {
-    (faces / SHARES).clamp(1, BLOCK)
 }

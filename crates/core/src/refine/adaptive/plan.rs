@@ -3,6 +3,7 @@
 
 use limitmesh_pages::filled;
 
+use super::Engine;
 use super::chains::Chains;
 use super::close::Closed;
 use super::decide::{Decision, decide};
@@ -10,7 +11,7 @@ use super::dirty::Dirty;
 use super::emit::Emission;
 use super::judge::{Condition, Goal};
 use super::settle::SettledFaces;
-use super::{Engine, block};
+use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
 
@@ -96,7 +97,7 @@ impl Plan {
     /// Levels of the deepest tree.
     pub(super) fn levels(&self, watch: &SharedWatch<'_>) -> Result<usize, Cancelled> {
         let (trees, faces) = (&self.decision.trees, self.closed.len());
-        let levels = watch.pieces(faces, block(faces), |block| {
+        let levels = watch.pieces(faces, parallel::share(faces), |block| {
             block.map(|face| trees.depth(trees.root(face as u32)) as usize).max()
         });
         Ok(levels?.into_iter().flatten().max().unwrap_or(0))

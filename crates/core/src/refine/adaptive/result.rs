@@ -6,11 +6,12 @@ use super::flat::Assembled;
 use super::judge::Goal;
 use super::measure::{Measured, measure};
 use super::settle::sharp_edges;
-use super::{BLOCK, Engine, Plan, probe, sides};
+use super::{Engine, Plan, probe, sides};
 use crate::certificate::{TriangleFrame, exceeds};
 use crate::criterion::{Criteria, Region};
 use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::{Mesh, Topology, check_finite, outgoing_half_edges_polled};
+use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch, Stage};
 use crate::refine::RefineError;
 use crate::refine::exact_options::ExactOptions;
@@ -161,7 +162,8 @@ pub(super) fn open_cones(
         let backs = criteria.backs(&region, |_, viewpoint, _| shows_back(&corners, viewpoint).then_some(0.0));
         criteria.cone_ratio(frame.normal(), normals, &region, &backs) > 1.0 + CONE_ROUNDING
     };
-    let open =
-        watch.pieces(exact.mesh.face_count(), BLOCK, |block| block.filter(|&face| is_open(face)).count());
+    let open = watch.pieces(exact.mesh.face_count(), parallel::share(exact.mesh.face_count()), |block| {
+        block.filter(|&face| is_open(face)).count()
+    });
     Ok(open?.into_iter().sum())
 }

@@ -1,9 +1,9 @@
 //! The distance within which a number of triangles is expected, told by undivided faces and by some that are divided: where the search
 //! for a budget's begins.
 
+use super::super::Engine;
 use super::super::decide::leaves_of;
 use super::super::judge::Goal;
-use super::super::{Engine, block};
 use crate::certificate::TriangleFrame;
 use crate::parallel;
 use crate::progress::Cancelled;
@@ -139,7 +139,7 @@ pub(super) fn heights(engine: &Engine<'_>) -> Result<Vec<f64>, Cancelled> {
         let height = off(0).max(off(1)).max(off(2));
         if height > rounding { height } else { 0.0 }
     };
-    engine.watch.map(faces, block(faces), height)
+    engine.watch.map(faces, parallel::share(faces), height)
 }
 
 #[cfg(test)]

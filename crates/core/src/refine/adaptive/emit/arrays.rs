@@ -152,8 +152,8 @@ impl Arrays {
 }
 
 /// So many zeros, with room for more; nobody touches what is not used.
-fn zeros<T: Clone + Default>((count, room): (usize, usize)) -> Vec<T> {
-    limitmesh_pages::defaults_with_room(count, room)
+fn zeros<T: Clone + Default + Send + Sync>((count, room): (usize, usize)) -> Vec<T> {
+    parallel::defaults_with_room(count, room)
 }
 
 /// Adds origins of vertices that are not known yet: piece by piece, since they are no zeros, which cost nothing.
