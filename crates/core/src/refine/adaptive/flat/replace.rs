@@ -8,8 +8,8 @@ use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::Origin;
 use std::collections::{HashMap, HashSet};
 
-/// Half-edges that are numbered anew between two calls of the observer: some milliseconds.
-const POLLED: u32 = 1 << 14;
+/// Triangles and half-edges that are numbered anew together: less than a millisecond.
+const RENAMED: usize = 1 << 14;
 
 /// What the emitted mesh consists of.
 pub(in super::super) struct Assembled {
@@ -88,31 +88,35 @@ impl Merged<'_> {
         let borders = core::mem::take(&mut junctions.edges);
         borders.iter().for_each(|group| junctions.edges.push(group.iter().map(|&h| numbers.of(h))));
         junctions.vertices.rename(name);
-        let Assembled { mut triangles, mut parents, mut tags, positions, normals, origins, .. } = whole;
+        let Assembled {
+            mut triangles, mut parents, mut tags, mut positions, mut normals, mut origins, ..
+        } = whole;
         let fresh = &exchange.fresh;
-        exchange.carry_out(&mut twins, 3, fresh.iter().flat_map(|_| [NONE; 3]));
-        exchange.carry_out(&mut triangles, 1, fresh.iter().map(|fresh| fresh.triangle));
-        exchange.carry_out(&mut parents, 1, fresh.iter().map(|fresh| fresh.face));
+        let tasks: Vec<Task<'_>> = vec![
+            Box::new(|| exchange.carry_out(&mut twins, 3, fresh.iter().flat_map(|_| [NONE; 3]))),
+            Box::new(|| exchange.carry_out(&mut triangles, 1, fresh.iter().map(|fresh| fresh.triangle))),
+            Box::new(|| exchange.carry_out(&mut parents, 1, fresh.iter().map(|fresh| fresh.face))),
+        ];
+        at_once(tasks, watch)?;
         watch.each(rims, |(h, beyond)| twins[h as usize] = beyond)?;
         watch.each(exchange.half_edges(), |([from, to], h)| {
             if let Some(&twin) = new.get(&[to, from]) {
                 twins[h as usize] = twin;
             }
         })?;
-        watch.each(&mut triangles, |triangle| *triangle = triangle.map(name))?;
+        let poll = &mut |_| watch.poll();
+        parallel::for_each_chunk_polled(&mut triangles, RENAMED, poll, |_, triangles| {
+            triangles.iter_mut().for_each(|triangle| *triangle = triangle.map(name));
+        })?;
         tags.creases.iter_mut().for_each(|tag| tag.vertices = tag.vertices.map(name));
         tags.corners.iter_mut().for_each(|tag| tag.vertex = name(tag.vertex));
-        Ok(Assembled {
-            positions: kept(positions, &renamed),
-            normals: kept(normals, &renamed),
-            origins: kept(origins, &renamed),
-            triangles,
-            twins,
-            parents,
-            tags,
-            sides,
-            junctions,
-        })
+        let tasks: Vec<Task<'_>> = vec![
+            Box::new(|| keep(&mut positions, &renamed)),
+            Box::new(|| keep(&mut normals, &renamed)),
+            Box::new(|| keep(&mut origins, &renamed)),
+        ];
+        at_once(tasks, watch)?;
+        Ok(Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions })
     }
 
     /// The triangles with those that come in the place of others, by control face and region, in that order.
@@ -383,24 +387,33 @@ impl Numbers<'_> {
     }
 
     /// Gives the half-edges in a list by half-edge their numbers. Most are of the same control face as where they stand.
-    fn renumber(&self, twins: &mut [u32], watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
-        let ranges = self.starts.windows(2).zip(&self.exchange.starts);
-        let mut passed = 0;
-        for (range, &now) in ranges {
-            let (from, to) = (3 * range[0], 3 * range[1]);
-            let moved = (now != NONE).then(|| (3 * now).wrapping_sub(from));
-            watch.each(&mut twins[from as usize..to as usize], |twin| match moved {
-                Some(by) if (from..to).contains(twin) => *twin = twin.wrapping_add(by),
-                _ if *twin != NONE => *twin = self.of(*twin),
-                _ => {}
-            })?;
-            // Most faces are too small for that to poll.
-            passed += to - from;
-            if passed >= POLLED {
-                watch.poll()?;
-                passed = 0;
+    fn renumber(&self, mut twins: &mut [u32], watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
+        let faces = self.exchange.starts.len();
+        let share = parallel::share(faces);
+        let shares = (0..faces).step_by(share).map(|first| {
+            let faces = first..(first + share).min(faces);
+            let count = 3 * (self.starts[faces.end] - self.starts[faces.start]) as usize;
+            (faces, twins.split_off_mut(..count).unwrap_or_default())
+        });
+        let shares: Vec<_> = shares.collect();
+        parallel::each_long_polled(shares, &mut |_| watch.poll(), |(faces, mut twins), is_stopped| {
+            for face in faces {
+                let own = 3 * self.starts[face]..3 * self.starts[face + 1];
+                let now = self.exchange.starts[face];
+                let moved = (now != NONE).then(|| (3 * now).wrapping_sub(own.start));
+                let of_face = twins.split_off_mut(..own.len()).unwrap_or_default();
+                for twins in of_face.chunks_mut(RENAMED) {
+                    twins.iter_mut().for_each(|twin| match moved {
+                        Some(by) if own.contains(twin) => *twin = twin.wrapping_add(by),
+                        _ if *twin != NONE => *twin = self.of(*twin),
+                        _ => {}
+                    });
+                    if is_stopped() {
+                        return;
+                    }
+                }
             }
-        }
+        })?;
         Ok(())
     }
 
@@ -421,11 +434,19 @@ pub(super) fn edges(triangle: [u32; 3]) -> [[u32; 2]; 3] {
     [0, 1, 2].map(|edge| [triangle[edge], triangle[(edge + 1) % 3]])
 }
 
-/// What belongs to the vertices that are kept.
-fn kept<T>(mut of_vertices: Vec<T>, renamed: &[u32]) -> Vec<T> {
+/// Keeps what belongs to the vertices that are kept.
+fn keep<T>(of_vertices: &mut Vec<T>, renamed: &[u32]) {
     let mut is_kept = renamed.iter().map(|&name| name != NONE);
     of_vertices.retain(|_| is_kept.next().unwrap_or(true));
-    of_vertices
+}
+
+/// Something done to an array.
+type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
+
+/// Does something to some arrays, by as many threads as there are.
+fn at_once(tasks: Vec<Task<'_>>, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
+    parallel::each_long_polled(tasks, &mut |_| watch.poll(), |task, _| task())?;
+    Ok(())
 }
 
 #[cfg(test)]
