@@ -129,6 +129,7 @@ pub(super) fn measure(
         let seen = bends.map(|bend| dot(bend, triangle.normal));
         let (mut least, most) = heights(seen);
         if range_share > 0.0 {
+            // Of ranges the quadratic part counts alone: the remainder is taken away below.
             least = least.fast_max(range_share * edge_range(seen) + rest.height);
         }
         let height = most + 0.3 * triangle.unsure * size + rest.height;
