@@ -14,13 +14,15 @@ use crate::clock::one_thread;
 const RUNS: usize = 4;
 
 /// Prints a line for each `MODEL@PERCENT`, a tolerance in per cent of the diagonal, and `MODEL@n:COUNT`, a number of triangles;
-/// MODEL is a file or built in. `--balance` moves vertices off the surface, `--runs K` takes the least of K runs.
+/// MODEL is a file or built in. `--balance` moves vertices off the surface, `--runs K` takes the least of K runs. With `--threads N`
+/// it prints seconds by the clock on the wall instead, of one thread and of N in turn, and how many times as fast these are.
 pub(crate) fn tolerances(mut arguments: impl Iterator<Item = String>) -> Result<()> {
-    let (mut is_balanced, mut runs, mut jobs) = (false, RUNS, Vec::new());
+    let (mut is_balanced, mut runs, mut threads, mut jobs) = (false, RUNS, None, Vec::new());
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--balance" => is_balanced = true,
             "--runs" => runs = arguments.next().context("--runs needs a number")?.parse()?,
+            "--threads" => threads = Some(arguments.next().context("--threads needs a number")?.parse()?),
             _ => jobs.push(argument),
         }
     }
@@ -29,7 +31,12 @@ pub(crate) fn tolerances(mut arguments: impl Iterator<Item = String>) -> Result<
             "name models and goals: cup@0.01 is within 0.01 % of the diagonal, cup@n:5000 has 5,000 triangles"
         );
     }
-    println!("model and goal                                       triangles          ms");
+    match threads {
+        None => println!("model and goal                                       triangles          ms"),
+        Some(threads) => println!(
+            "model and goal                                       triangles  1 thread, ms  {threads} threads, ms  gain"
+        ),
+    }
     for job in &jobs {
         let (name, goal) = job.rsplit_once('@').with_context(|| format!("no goal in {job}"))?;
         let control = model(name)?;
@@ -38,14 +45,40 @@ pub(crate) fn tolerances(mut arguments: impl Iterator<Item = String>) -> Result<
             Some(count) => options.triangles(count.parse()?),
             None => options.tolerance(0.01 * goal.parse::<f64>()? * control.diagonal()),
         };
+        let run = || exact(&control, &Loop, &options);
+        if let Some(threads) = threads {
+            let (least, triangles) = in_turn([1, threads], runs, || Ok(run()?.mesh.face_count()))?;
+            let [one, more] = least.map(|seconds| 1e3 * seconds);
+            println!("{job:50} {triangles:11} {one:13.1} {more:14.1} {:5.2}", one / more);
+            continue;
+        }
         let (mut least, mut triangles) = (f64::INFINITY, 0);
         for _ in 0..runs {
-            let (seconds, result) = one_thread(|| exact(&control, &Loop, &options))?;
+            let (seconds, result) = one_thread(run)?;
             (least, triangles) = (least.min(seconds.all), result?.mesh.face_count());
         }
         println!("{job:50} {triangles:11} {:11.1}", 1e3 * least);
     }
     Ok(())
+}
+
+/// The least seconds by the clock on the wall that so many threads each take, in turn, and what comes of it.
+fn in_turn<T: Send>(
+    threads: [usize; 2],
+    runs: usize,
+    run: impl Fn() -> Result<T> + Sync,
+) -> Result<([f64; 2], T)> {
+    let pools = threads.map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build());
+    let (mut least, mut last) = ([f64::INFINITY; 2], None);
+    for _ in 0..runs {
+        for (pool, least) in pools.iter().zip(&mut least) {
+            let Ok(pool) = pool else { bail!("no pool of threads") };
+            let clock = std::time::Instant::now();
+            last = Some(pool.install(&run)?);
+            *least = least.min(clock.elapsed().as_secs_f64());
+        }
+    }
+    Ok((least, last.context("no runs")?))
 }
 
 /// A model that is built in, or a file's.

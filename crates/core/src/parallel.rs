@@ -37,11 +37,12 @@ pub(crate) fn defaults_with_room<T: Clone + Default + Send + Sync>(length: usize
     #[cfg(feature = "parallel")]
     {
         use rayon::prelude::*;
-        let bytes = size_of::<T>().saturating_mul(capacity.max(length));
-        if bytes < limitmesh_pages::ALONE && length >= TOUCHED && rayon::current_num_threads() > 1 {
+        let bytes = |elements: usize| size_of::<T>().saturating_mul(elements);
+        let is_alone = bytes(capacity.max(length)) >= limitmesh_pages::ALONE;
+        if !is_alone && bytes(length) >= TOUCHED && rayon::current_num_threads() > 1 {
             let mut array = limitmesh_pages::with_capacity(capacity.max(length));
             let values = rayon::iter::repeat_n(T::default(), length);
-            array.par_extend(values.with_min_len(TOUCHED / 4));
+            array.par_extend(values.with_min_len(TOUCHED / 4 / size_of::<T>().max(1)));
             return array;
         }
     }
@@ -69,9 +70,9 @@ pub(crate) fn for_each_chunk<T: Send, F: Fn(usize, &mut [T]) + Sync + Send>(
     slots.chunks_mut(piece).enumerate().for_each(|(i, chunk)| f(i, chunk));
 }
 
-/// Elements that are touched by several threads from so many on.
+/// Bytes that are touched by several threads from so many on.
 #[cfg(feature = "parallel")]
-const TOUCHED: usize = 1 << 16;
+const TOUCHED: usize = 1 << 18;
 
 /// Elements that are sorted together where that can be cancelled.
 const SORTED_AT_ONCE: usize = 1 << 15;

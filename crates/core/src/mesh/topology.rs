@@ -376,14 +376,21 @@ pub(crate) fn outgoing_half_edges_polled(
     vertex_count: usize,
     poll: &mut Poll<'_>,
 ) -> Result<Vec<u32>, Cancelled> {
+    let origins = triangles.as_flattened();
     let mut outgoing = limitmesh_pages::filled(NONE, vertex_count);
-    for (h, &v) in triangles.as_flattened().iter().enumerate() {
-        if h.is_multiple_of(POLLED) {
-            poll(h / 3)?;
-        }
-        let slot = &mut outgoing[v as usize];
-        if *slot == NONE || twins[h] == NONE {
-            *slot = h as u32;
+    // From the last to the first: which of a vertex's half-edges comes first no branch has to guess.
+    for (piece, origins) in origins.chunks(POLLED).enumerate().rev() {
+        let first = piece * POLLED;
+        poll((triangles.len() - first / 3) / 2)?;
+        let numbered = origins.iter().enumerate().rev();
+        numbered.for_each(|(at, &vertex)| outgoing[vertex as usize] = (first + at) as u32);
+    }
+    for (piece, twins) in twins.chunks(POLLED).enumerate() {
+        let first = piece * POLLED;
+        poll((triangles.len() + first / 3) / 2)?;
+        if twins.contains(&NONE) {
+            let numbered = (first..).zip(twins).filter(|&(_, &twin)| twin == NONE);
+            numbered.for_each(|(h, _)| outgoing[origins[h] as usize] = h as u32);
         }
     }
     Ok(outgoing)

@@ -16,6 +16,9 @@ use crate::progress::{Cancelled, SharedWatch};
 /// Regions that one call takes together.
 const BLOCK: usize = 1;
 
+/// Triangles whose edges one call looks at together: less than a millisecond.
+const EDGES: usize = 1 << 14;
+
 /// Areas before and after may differ by this part.
 pub(super) const SAME_AREA: f64 = 1e-9;
 
@@ -257,14 +260,15 @@ fn without_shared_edges(
     let covered: usize = coverings.iter().flatten().map(|covering| covering.triangles.len()).sum();
     // With room for the edges before and after: maps that grow move all that they have at once.
     let mut owners = HashMap::with_capacity(3 * covered);
-    watch.each((0..).zip(net.triangles), |(number, &triangle)| {
+    let touched = watch.pieces(net.triangles.len(), EDGES, |block| {
+        let all = block.flat_map(|number| edges(net.triangles[number]).map(|ends| (ends, number as u32)));
+        let touched = all.filter(|(ends, _)| ends.iter().all(|&vertex| is_covered[vertex as usize]));
+        touched.map(|([from, to], number)| ([from.min(to), from.max(to)], number)).collect::<Vec<_>>()
+    })?;
+    watch.each(touched.into_iter().flatten(), |(ends, number)| {
         let own = regions.of(number);
-        for [from, to] in edges(triangle) {
-            if is_covered[from as usize] && is_covered[to as usize] {
-                let owner = owners.entry([from.min(to), from.max(to)]).or_insert(own);
-                *owner = owner.filter(|_| *owner == own);
-            }
-        }
+        let owner = owners.entry(ends).or_insert(own);
+        *owner = owner.filter(|_| *owner == own);
     })?;
     let mut all_lines = HashSet::new();
     for (region, covering) in (0u32..).zip(&mut coverings) {

@@ -92,7 +92,11 @@ impl Merged<'_> {
             mut triangles, mut parents, mut tags, mut positions, mut normals, mut origins, ..
         } = whole;
         let fresh = &exchange.fresh;
+        // The longest first, so that threads end together.
         let tasks: Vec<Task<'_>> = vec![
+            Box::new(|| keep(&mut origins, &renamed)),
+            Box::new(|| keep(&mut positions, &renamed)),
+            Box::new(|| keep(&mut normals, &renamed)),
             Box::new(|| exchange.carry_out(&mut twins, 3, fresh.iter().flat_map(|_| [NONE; 3]))),
             Box::new(|| exchange.carry_out(&mut triangles, 1, fresh.iter().map(|fresh| fresh.triangle))),
             Box::new(|| exchange.carry_out(&mut parents, 1, fresh.iter().map(|fresh| fresh.face))),
@@ -110,12 +114,6 @@ impl Merged<'_> {
         })?;
         tags.creases.iter_mut().for_each(|tag| tag.vertices = tag.vertices.map(name));
         tags.corners.iter_mut().for_each(|tag| tag.vertex = name(tag.vertex));
-        let tasks: Vec<Task<'_>> = vec![
-            Box::new(|| keep(&mut positions, &renamed)),
-            Box::new(|| keep(&mut normals, &renamed)),
-            Box::new(|| keep(&mut origins, &renamed)),
-        ];
-        at_once(tasks, watch)?;
         Ok(Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions })
     }
 

@@ -22,7 +22,7 @@ use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
 use crate::refine::adaptive::quadtree::Edges;
 use crate::vector::{DVec3, unit_normal, unit_or_zero, vector};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Control faces that one call takes together.
 const BLOCK: usize = 64;
@@ -327,12 +327,8 @@ impl FlatRegions {
         regions: &Regions,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
-        let mut between = filled(Between::NOBODY, net.positions.len());
-        between[..net.corners].fill(Between { stays: true, ..Between::NOBODY });
-        watch.each((0u32..).zip(net.triangles), |(triangle, vertices)| {
-            let region = regions.of(triangle);
-            vertices.iter().for_each(|&vertex| between[vertex as usize].is_beside(region));
-        })?;
+        // Around a vertex one region follows another at rims alone, so that these tell of all that are there.
+        let mut between: HashMap<u32, Between> = HashMap::new();
         let mut starts = Vec::new();
         watch.each(&regions.list, |region| {
             for h in region.triangles.iter().flat_map(|&triangle| 3 * triangle..3 * triangle + 3) {
@@ -342,24 +338,28 @@ impl FlatRegions {
                 let [from, to] = net.ends(h);
                 let own = regions.of_triangle[h as usize / 3];
                 let Some(other) = net.beyond(h).and_then(|twin| regions.of(twin / 3)) else {
-                    between[from as usize].stays = true;
-                    between[to as usize].stays = true;
+                    for vertex in [from, to] {
+                        between.entry(vertex).or_default().stays = true;
+                    }
                     continue;
                 };
-                between[from as usize].goes_on(own, to);
+                between.entry(from).or_default().goes_on(own, to);
                 if own < other {
                     starts.push((own, from, to));
                 }
             }
         })?;
+        let inside = |vertex: u32| {
+            between.get(&vertex).filter(|own| vertex as usize >= net.corners && own.is_inside())
+        };
         let mut is_dropped = vec![false; net.positions.len()];
         watch.each(starts, |(region, from, to)| {
-            if between[from as usize].is_inside() || !between[to as usize].is_inside() {
+            if inside(from).is_some() {
                 return;
             }
             let mut line = vec![from, to];
             let mut last = to;
-            while let Some(next) = between[last as usize].after(region) {
+            while let Some(next) = inside(last).and_then(|own| own.after(region)) {
                 line.push(next);
                 last = next;
             }
@@ -398,24 +398,18 @@ struct Between {
     stays: bool,
 }
 
-impl Between {
-    const NOBODY: Self = Self { regions: [NONE; 2], next: [NONE; 2], stays: false };
-
-    fn is_beside(&mut self, region: Option<u32>) {
-        let Some(region) = region else {
-            self.stays = true;
-            return;
-        };
-        match self.regions.iter_mut().find(|own| **own == region || **own == NONE) {
-            Some(own) => *own = region,
-            None => self.stays = true,
-        }
+impl Default for Between {
+    fn default() -> Self {
+        Self { regions: [NONE; 2], next: [NONE; 2], stays: false }
     }
+}
 
+impl Between {
+    /// A region's rim goes on from here.
     fn goes_on(&mut self, region: u32, to: u32) {
-        match self.regions.iter().position(|&own| own == region) {
-            Some(at) if self.next[at] == NONE => self.next[at] = to,
-            // A rim that comes twice.
+        match self.regions.iter().position(|&own| own == NONE) {
+            Some(at) if !self.regions.contains(&region) => (self.regions[at], self.next[at]) = (region, to),
+            // A third region, or a rim that comes twice.
             _ => self.stays = true,
         }
     }
@@ -427,7 +421,7 @@ impl Between {
 
     /// The next vertex along a region's rim, from one inside of a common rim.
     fn after(&self, region: u32) -> Option<u32> {
-        let at = self.regions.iter().position(|&own| own == region).filter(|_| self.is_inside())?;
+        let at = self.regions.iter().position(|&own| own == region)?;
         Some(self.next[at])
     }
 }
