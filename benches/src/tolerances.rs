@@ -5,9 +5,10 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use limitmesh::Mesh;
-use limitmesh::refine::{ExactOptions, exact};
+use limitmesh::refine::{Exact, ExactOptions, RefineError, exact};
 use limitmesh::scheme::Loop;
 
+use crate::best_of;
 use crate::clock::one_thread;
 
 /// Runs of each goal where no number is given; the fastest counts.
@@ -47,7 +48,7 @@ pub(crate) fn tolerances(mut arguments: impl Iterator<Item = String>) -> Result<
         };
         let run = || exact(&control, &Loop, &options);
         if let Some(threads) = threads {
-            let (least, triangles) = in_turn([1, threads], runs, || Ok(run()?.mesh.face_count()))?;
+            let (least, triangles) = in_turn(threads, runs, run)?;
             let [one, more] = least.map(|seconds| 1e3 * seconds);
             println!("{job:50} {triangles:11} {one:13.1} {more:14.1} {:5.2}", one / more);
             continue;
@@ -62,23 +63,21 @@ pub(crate) fn tolerances(mut arguments: impl Iterator<Item = String>) -> Result<
     Ok(())
 }
 
-/// The least seconds by the clock on the wall that so many threads each take, in turn, and what comes of it.
-fn in_turn<T: Send>(
-    threads: [usize; 2],
+/// The least seconds by the clock on the wall that one thread and so many take, and the triangles; in turns, so that a busy machine slows
+/// both.
+fn in_turn(
+    threads: usize,
     runs: usize,
-    run: impl Fn() -> Result<T> + Sync,
-) -> Result<([f64; 2], T)> {
-    let pools = threads.map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build());
-    let (mut least, mut last) = ([f64::INFINITY; 2], None);
+    run: impl Fn() -> Result<Exact, RefineError> + Sync,
+) -> Result<([f64; 2], usize)> {
+    let (mut least, mut triangles) = ([f64::INFINITY; 2], 0);
     for _ in 0..runs {
-        for (pool, least) in pools.iter().zip(&mut least) {
-            let Ok(pool) = pool else { bail!("no pool of threads") };
-            let clock = std::time::Instant::now();
-            last = Some(pool.install(&run)?);
-            *least = least.min(clock.elapsed().as_secs_f64());
+        for (threads, least) in [1, threads].into_iter().zip(&mut least) {
+            let (seconds, result) = best_of(1, threads, &run)?;
+            (*least, triangles) = (least.min(seconds), result?.mesh.face_count());
         }
     }
-    Ok((least, last.context("no runs")?))
+    Ok((least, triangles))
 }
 
 /// A model that is built in, or a file's.

@@ -127,9 +127,10 @@ fn what_is_sorted_in_parts_is_sorted() {
 /// What several threads touch is as long, as roomy and as empty as what one does.
 #[test]
 fn defaults_are_the_same_for_any_number_of_threads() {
-    let many = 1 << 16;
+    // So many are touched by several, one less is not.
+    let many = (1usize << 18).div_ceil(size_of::<[u32; 3]>());
     for threads in [1, 3] {
-        for (length, room) in [(0, 5), (many - 1, 0), (3 * many + 7, 4 * many), (many, many)] {
+        for (length, room) in [(0, 5), (many - 1, 0), (many, many), (9 * many + 7, 12 * many)] {
             let array: Vec<[u32; 3]> = with_threads(threads, || defaults_with_room(length, room));
             assert_eq!(array, vec![[0; 3]; length], "{threads}");
             assert!(array.capacity() >= room.max(length), "{threads}: {}", array.capacity());

@@ -265,8 +265,8 @@ fn lower(
         if !probed.leaves.insert((place.face, leaf)) {
             continue;
         }
-        for (point, squared) in farthest(engine, plan, emission, place.face, leaf)? {
-            let distance = mesh.distance((point, squared), place.face)?;
+        for point in farthest(engine, plan, emission, place.face, leaf)? {
+            let distance = mesh.distance(point, place.face)?;
             if distance > best.lower {
                 (best.lower, best.at) = (distance, point.to_array());
             }
@@ -316,7 +316,7 @@ fn estimated(
         let mut points = Vec::new();
         sample(control.piece(face).surface(control.rules), levels.min(MOST_SAMPLED_LEVELS), &mut points);
         for point in points {
-            let distance = mesh.distance((point, f64::INFINITY), face)?;
+            let distance = mesh.distance(point, face)?;
             if distance > best.lower {
                 (best.lower, best.at) = (distance, point.to_array());
             }

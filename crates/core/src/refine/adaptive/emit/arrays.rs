@@ -124,14 +124,14 @@ impl Arrays {
         let twins = triangles.times(3);
         let Self { positions, normals, origins, triangles: corners, twins: beyond, parents, moves } = self;
         type Task<'a> = Box<dyn FnOnce(&IsStopped<'_>) + Send + 'a>;
-        // The longest first, so that threads end together.
-        let mut tasks: Vec<Task<'_>> = Vec::new();
-        if !origins.is_empty() {
-            tasks.push(Box::new(|is_stopped| {
-                rearrange(origins, (NOWHERE, length.vertices), vertices, is_stopped);
-            }));
-        }
-        let others: [Task<'_>; 5] = [
+        // Origins, which take longest, first, so that threads end together.
+        let mut tasks: Vec<Task<'_>> = vec![
+            Box::new(|is_stopped| {
+                // Nobody may have asked for them.
+                if !origins.is_empty() {
+                    rearrange(origins, (NOWHERE, length.vertices), vertices, is_stopped);
+                }
+            }),
             Box::new(|is_stopped| rearrange(positions, ([0.0; 3], length.vertices), vertices, is_stopped)),
             Box::new(|is_stopped| rearrange(normals, ([0.0; 3], length.vertices), vertices, is_stopped)),
             Box::new(|is_stopped| rearrange(corners, ([0; 3], length.triangles), triangles, is_stopped)),
@@ -139,7 +139,6 @@ impl Arrays {
             // These are written anew.
             Box::new(|is_stopped| rearrange(parents, (0, length.triangles), &Shifts::default(), is_stopped)),
         ];
-        tasks.extend(others);
         if !moves.offsets.is_empty() {
             let Moves { offsets, positions } = moves;
             tasks.push(Box::new(|is_stopped| {

@@ -92,7 +92,8 @@ impl Merged<'_> {
             mut triangles, mut parents, mut tags, mut positions, mut normals, mut origins, ..
         } = whole;
         let fresh = &exchange.fresh;
-        // The longest first, so that threads end together.
+        type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
+        // Origins, which take longest, first, so that threads end together.
         let tasks: Vec<Task<'_>> = vec![
             Box::new(|| keep(&mut origins, &renamed)),
             Box::new(|| keep(&mut positions, &renamed)),
@@ -101,7 +102,7 @@ impl Merged<'_> {
             Box::new(|| exchange.carry_out(&mut triangles, 1, fresh.iter().map(|fresh| fresh.triangle))),
             Box::new(|| exchange.carry_out(&mut parents, 1, fresh.iter().map(|fresh| fresh.face))),
         ];
-        at_once(tasks, watch)?;
+        parallel::each_long_polled(tasks, &mut |_| watch.poll(), |task, _| task())?;
         watch.each(rims, |(h, beyond)| twins[h as usize] = beyond)?;
         watch.each(exchange.half_edges(), |([from, to], h)| {
             if let Some(&twin) = new.get(&[to, from]) {
@@ -436,15 +437,6 @@ pub(super) fn edges(triangle: [u32; 3]) -> [[u32; 2]; 3] {
 fn keep<T>(of_vertices: &mut Vec<T>, renamed: &[u32]) {
     let mut is_kept = renamed.iter().map(|&name| name != NONE);
     of_vertices.retain(|_| is_kept.next().unwrap_or(true));
-}
-
-/// Something done to an array.
-type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
-
-/// Does something to some arrays, by as many threads as there are.
-fn at_once(tasks: Vec<Task<'_>>, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
-    parallel::each_long_polled(tasks, &mut |_| watch.poll(), |task, _| task())?;
-    Ok(())
 }
 
 #[cfg(test)]

@@ -26,15 +26,14 @@ pub(super) const SAMPLED_LEVELS: usize = 3;
 const LOOKED_AT: usize = 1 << 14;
 
 /// The point of the surface over a leaf that is farthest from its triangles; over the one that bends most of a control face's where
-/// none is given. Where vertices were moved, those that stand highest and lowest, and the corners. With the square of what its distance
-/// to the mesh is at most.
+/// none is given. Where vertices were moved, those that stand highest and lowest, and the corners.
 pub(super) fn farthest(
     engine: &Engine<'_>,
     plan: &Plan,
     emission: &Emission,
     face: u32,
     leaf: Option<Place>,
-) -> Result<Vec<(DVec3, f64)>, Cancelled> {
+) -> Result<Vec<DVec3>, Cancelled> {
     let is_moved = !emission.offsets.is_empty();
     let (place, triangles) = match leaf {
         Some(place) if is_moved => (place, Vec::new()),
@@ -74,8 +73,7 @@ pub(super) fn farthest(
         let by_height = |a: &&DVec3, b: &&DVec3| frame.height(**a).total_cmp(&frame.height(**b));
         let ends = [points.iter().max_by(by_height), points.iter().min_by(by_height)];
         let corners = corners.map(|corner| corner.position);
-        let points = ends.into_iter().flatten().copied().chain(corners);
-        return Ok(points.map(|point| (point, f64::INFINITY)).collect());
+        return Ok(ends.into_iter().flatten().copied().chain(corners).collect());
     }
     let corners = |triangle: [u32; 3]| triangle.map(|vertex| vector(emission.positions[vertex as usize]));
     let triangles: Vec<[DVec3; 3]> = triangles.into_iter().map(corners).collect();
@@ -94,7 +92,7 @@ pub(super) fn farthest(
             farthest = Some((least, point));
         }
     }
-    Ok(farthest.map(|(squared, point)| (point, squared)).into_iter().collect())
+    Ok(farthest.map(|(_, point)| point).into_iter().collect())
 }
 
 /// Points of a surface.

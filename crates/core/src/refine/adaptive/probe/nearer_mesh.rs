@@ -94,7 +94,7 @@ pub(super) fn anew(
     let backward = distance(measured(nearer), nearer, over_wanted, emission)?;
     let mut found = ErrorBounds { upper: (forward.upper.max(backward.upper) + off).next_up(), ..*known };
     // The point is that far from the surface, at most.
-    let from_surface = mesh.distance((vector(backward.at), f64::INFINITY), first)? - off;
+    let from_surface = mesh.distance(vector(backward.at), first)? - off;
     if from_surface > found.lower {
         (found.lower, found.at) = (from_surface, backward.at);
     }

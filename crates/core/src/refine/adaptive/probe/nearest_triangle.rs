@@ -46,8 +46,9 @@ impl<'a, 'w> Nearest<'a, 'w> {
         Ok(Self { watch, sources, groups, boxes })
     }
 
-    /// The distance of a point to the mesh, whose square is at most `least`; `face` is likely to be nearest.
-    pub(super) fn distance(&self, (point, mut least): (DVec3, f64), face: u32) -> Result<f64, Cancelled> {
+    /// The distance of a point to the mesh; `face` is likely to be nearest.
+    pub(super) fn distance(&self, point: DVec3, face: u32) -> Result<f64, Cancelled> {
+        let mut least = f64::INFINITY;
         self.within(face, point, &mut least)?;
         for (group, bounds) in self.groups.iter().enumerate() {
             if group.is_multiple_of(GROUPS_LOOKED_AT) {
