@@ -19,6 +19,7 @@ mod input;
 mod interrupt;
 mod mesh_info;
 mod output;
+mod pieces;
 mod points;
 mod progress;
 mod reference;

@@ -150,11 +150,17 @@ extremes!(f64, f32);
 
 /// The unit normal of a triangle of any size; zero where it has no area.
 #[inline]
-pub(crate) fn unit_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+pub(crate) fn unit_normal(corners: [DVec3; 3]) -> DVec3 {
+    unit_or_zero(normal(corners))
+}
+
+/// A normal of a triangle of any size, of any length; zero where it has no area.
+#[inline]
+pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     let (ab, ac) = (b - a, c - a);
     // Scaled first: areas of very large or small triangles overflow or vanish.
     let size = ab.abs().max(ac.abs()).max_element();
-    if size > 0.0 { unit_or_zero((ab / size).cross(ac / size)) } else { DVec3::ZERO }
+    if size > 0.0 { (ab / size).cross(ac / size) } else { DVec3::ZERO }
 }
 
 /// The length of a box's diagonal, for any size whose length is finite.

@@ -37,7 +37,7 @@ pub use topology::{RingNeighbours, Topology};
 
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::ring::{EdgeShape, RingShape};
-use crate::vector::{DVec3, diagonal, unit_normal, vector};
+use crate::vector::{DVec3, diagonal, normal, unit_or_zero, vector};
 
 /// What can be wrong with the data a mesh is made of.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -351,7 +351,13 @@ impl Mesh {
     /// The unit normal of a face of any size; zero where it has no area.
     #[inline]
     pub(crate) fn unit_face_normal(&self, face: usize) -> DVec3 {
-        unit_normal(self.topology.triangles()[face].map(|v| vector(self.positions[v as usize])))
+        unit_or_zero(self.scaled_face_normal(face))
+    }
+
+    /// A normal of a face of any size, of any length; zero where it has no area.
+    #[inline]
+    pub(crate) fn scaled_face_normal(&self, face: usize) -> DVec3 {
+        normal(self.topology.triangles()[face].map(|v| vector(self.positions[v as usize])))
     }
 
     /// Checks every invariant of the mesh: topology, finite positions, tags and junctions.

@@ -146,7 +146,7 @@ impl Exact {
     /// own side of sharp edges. There the surface folds, or is not regular.
     pub fn inverted_triangles(&self) -> usize {
         let is_inverted = |face: usize| {
-            let normal = self.mesh.unit_face_normal(face);
+            let normal = self.mesh.scaled_face_normal(face);
             (0..3).any(|corner| {
                 let h = HalfEdgeId::of(FaceId(face as u32), corner);
                 normal.dot(vector(self.corner_normal(h))) < 0.0

@@ -13,6 +13,8 @@
 //! normals: along the surface, vertices drift where triangles are of different sizes, and the interval is wide there. Of a mesh that is not
 //! too large the two are measured then, by the certified search.
 
+use std::borrow::Cow;
+
 use limitmesh::measure::{Bvh, CertifiedOptions, MeasureError, certified_hausdorff_between_observed};
 use limitmesh::mesh::FaceParts;
 use limitmesh::progress::Observer;
@@ -25,9 +27,10 @@ use super::goals::{Goals, unit_in_words};
 use crate::arguments::{MOST_EXACT, RefineArguments};
 use crate::dihedral::Dihedrals;
 use crate::format::{counted, number};
+use crate::pieces::pieces;
 use crate::progress::Progress;
 use crate::report::{ErrorReport, InputDistanceReport};
-use crate::vector::{distance, dot, minus};
+use crate::vector::{distance, dot, length, minus};
 
 /// Points whose distance is measured.
 const MEASURED: usize = 4;
@@ -71,12 +74,11 @@ impl InputDistance {
         if !is_known || found.is_optimized {
             return Ok(None);
         }
-        let moved = moves(input, found, origins);
-        let upper = moved.iter().copied().fold(0.0, f64::max);
+        let moved = Moves::of(input, found, origins);
         let rounding = ROUNDING * greatest(input);
         let lower = lower(input, (found, origins), &moved)? - rounding;
         let off_planes = if found.off_planes > 0.0 { 2.0 * found.off_planes + residual } else { 0.0 };
-        Ok(Some(Self { lower: lower.max(0.0), upper: upper + off_planes + rounding }))
+        Ok(Some(Self { lower: lower.max(0.0), upper: moved.greatest + off_planes + rounding }))
     }
 
     /// Of another mesh that stands for the same limit surface, where these are within `apart` of each other.
@@ -89,7 +91,7 @@ impl InputDistance {
         (found, origins): (&Exact, &[Origin]),
         apart: f64,
     ) -> Result<Self, MeasureError> {
-        let lower = lower(input, (found, origins), &moves(input, found, origins))?;
+        let lower = lower(input, (found, origins), &Moves::of(input, found, origins))?;
         Ok(Self {
             lower: (lower - ROUNDING * greatest(input)).max(0.0),
             upper: (self.upper + apart).next_up(),
@@ -136,11 +138,7 @@ pub(super) fn measured(
     let Some(BeforeSurface { positions, triangles }) = &before.surface else { return Ok(None) };
     let input = Triangles { positions, triangles };
     let residual = before.residual.unwrap_or(0.0);
-    let on_whole = |found: &Exact| -> Vec<Origin> {
-        let origins = found.origins.iter().map(|origin| parts.on_whole(origin.face, origin.barycentric));
-        origins.map(|(face, barycentric)| Origin { face, barycentric }).collect()
-    };
-    let origins = on_whole(found);
+    let origins = on_whole(parts, found);
     let narrowed = |moved: InputDistance| {
         let expected = goals.expected(Some(found.error.upper));
         moved.narrowed([input, found.mesh.as_triangles()], expected, &mut progress.observer())
@@ -156,8 +154,17 @@ pub(super) fn measured(
         ExactOptions::default().tolerance(STAND_IN * goals.diagonal).max_triangles(Some(MOST_EXACT));
     let between = exact_observed(control, arguments.scheme()?, &options, &mut progress.observer())?;
     let apart = between.error.upper + found.error.upper;
-    let moved = InputDistance::new(input, (&between, &on_whole(&between)), residual)?;
+    let moved = InputDistance::new(input, (&between, &on_whole(parts, &between)), residual)?;
     Ok(moved.map(|moved| narrowed(moved.of_other(input, (found, &origins), apart)?)).transpose()?)
+}
+
+/// Where vertices came from, on faces that were divided where they are whole.
+fn on_whole<'a>(parts: &FaceParts, found: &'a Exact) -> Cow<'a, [Origin]> {
+    if parts.is_empty() {
+        return Cow::Borrowed(&found.origins);
+    }
+    let origins = found.origins.iter().map(|origin| parts.on_whole(origin.face, origin.barycentric));
+    origins.map(|(face, barycentric)| Origin { face, barycentric }).collect()
 }
 
 /// How far the result is from the mesh that was read, if that is farther than it is from the limit surface, and what would
@@ -200,10 +207,45 @@ fn place(input: Triangles<'_>, origin: &Origin) -> [f64; 3] {
     [0, 1, 2].map(|axis| (0..3).map(|corner| weights[corner] * corners[corner][axis]).sum())
 }
 
-/// How far each vertex is from where it came from.
-fn moves(input: Triangles<'_>, found: &Exact, origins: &[Origin]) -> Vec<f64> {
-    let pairs = found.mesh.positions().iter().zip(origins);
-    pairs.map(|(&vertex, origin)| distance(vertex, place(input, origin))).collect()
+/// How far vertices are from where they came from.
+struct Moves {
+    /// The greatest.
+    greatest: f64,
+    /// Those that were moved most along normals, in their order.
+    most: Vec<usize>,
+}
+
+impl Moves {
+    fn of(input: Triangles<'_>, found: &Exact, origins: &[Origin]) -> Self {
+        let positions = found.mesh.positions();
+        let parts = pieces(origins.len(), |vertices| {
+            let (mut greatest, mut most) = (0.0f64, Vec::with_capacity(MEASURED + 1));
+            for vertex in vertices {
+                let step = minus(positions[vertex], place(input, &origins[vertex]));
+                greatest = greatest.max(length(step));
+                insert(&mut most, (dot(step, found.normals[vertex]).abs(), vertex));
+            }
+            (greatest, most)
+        });
+        let mut all = Self { greatest: 0.0, most: Vec::new() };
+        let mut most = Vec::new();
+        for (greatest, of_part) in parts {
+            all.greatest = all.greatest.max(greatest);
+            of_part.into_iter().for_each(|one| insert(&mut most, one));
+        }
+        all.most.extend(most.into_iter().map(|(_, vertex)| vertex));
+        all.most.sort_unstable();
+        all
+    }
+}
+
+/// Puts a number and its vertex into a short list of the greatest, of equal ones behind those that are there.
+fn insert(most: &mut Vec<(f64, usize)>, one: (f64, usize)) {
+    let at = most.partition_point(|known| known.0 >= one.0);
+    if at < MEASURED {
+        most.insert(at, one);
+        most.truncate(MEASURED);
+    }
 }
 
 /// The greatest true distance among the vertices that were moved most along normals, to the input, and of where they came from,
@@ -211,47 +253,54 @@ fn moves(input: Triangles<'_>, found: &Exact, origins: &[Origin]) -> Vec<f64> {
 fn lower(
     input: Triangles<'_>,
     (found, origins): (&Exact, &[Origin]),
-    moved: &[f64],
+    moved: &Moves,
 ) -> Result<f64, MeasureError> {
-    let places = origins.iter().map(|origin| place(input, origin));
-    let along = places.zip(found.mesh.positions()).zip(&found.normals);
-    let along: Vec<f64> =
-        along.map(|((there, &here), &normal)| dot(minus(here, there), normal).abs()).collect();
-    let mut order: Vec<usize> = (0..moved.len()).collect();
-    let count = MEASURED.min(order.len());
-    if count < order.len() {
-        order.select_nth_unstable_by(count, |&a, &b| along[b].total_cmp(&along[a]).then(a.cmp(&b)));
-    }
-    order.truncate(count);
-    order.sort_unstable();
-    let mut lower = 0.0f64;
-    for vertex in order {
-        let (there, here) = (place(input, &origins[vertex]), found.mesh.positions()[vertex]);
-        let far = moved[vertex];
-        for (point, surface) in [(here, input), (there, found.mesh.as_triangles())] {
-            lower = lower.max(closest(point, surface, far)?);
-        }
-    }
-    Ok(lower)
+    let result = found.mesh.as_triangles();
+    let (here, there): (Vec<_>, Vec<_>) = moved
+        .most
+        .iter()
+        .map(|&vertex| {
+            let (here, there) = (found.mesh.positions()[vertex], place(input, &origins[vertex]));
+            let far = distance(here, there);
+            ((here, far), (there, far))
+        })
+        .unzip();
+    Ok(greatest_distance(&here, input)?.max(greatest_distance(&there, result)?))
 }
 
-/// The distance of a point from a surface that comes within `reach` of it.
-fn closest(point: [f64; 3], surface: Triangles<'_>, reach: f64) -> Result<f64, MeasureError> {
+/// The greatest distance of some points from a surface that comes within a reach of each.
+fn greatest_distance(points: &[([f64; 3], f64)], surface: Triangles<'_>) -> Result<f64, MeasureError> {
     // Only triangles that come so near can be the closest.
-    let reach = reach * (1.0 + ROUNDING) + f64::MIN_POSITIVE;
-    let is_near = |corners: &[[f64; 3]; 3]| {
+    let reached = points.iter().map(|&(point, reach)| {
+        let reach = reach * (1.0 + ROUNDING) + f64::MIN_POSITIVE;
+        (point.map(|x| x - reach), point.map(|x| x + reach))
+    });
+    let reached: Vec<([f64; 3], [f64; 3])> = reached.collect();
+    let is_near = |corners: &[[f64; 3]; 3], (from, to): &([f64; 3], [f64; 3])| {
         (0..3).all(|axis| {
-            let low = corners.iter().fold(f64::INFINITY, |low, p| low.min(p[axis]));
-            let high = corners.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[axis]));
-            low - reach <= point[axis] && point[axis] <= high + reach
+            corners.iter().any(|p| p[axis] <= to[axis]) && corners.iter().any(|p| from[axis] <= p[axis])
         })
     };
-    let faces = 0..surface.triangles.len();
-    let near: Vec<[[f64; 3]; 3]> = faces.map(|face| surface.corners(face)).filter(is_near).collect();
-    if near.is_empty() {
-        return Ok(0.0);
+    let near = pieces(surface.triangles.len(), |faces| {
+        let mut near = vec![Vec::new(); points.len()];
+        for corners in faces.map(|face| surface.corners(face)) {
+            for (near, reached) in near.iter_mut().zip(&reached) {
+                if is_near(&corners, reached) {
+                    near.push(corners);
+                }
+            }
+        }
+        near
+    });
+    let mut greatest = 0.0f64;
+    for (at, &(point, _)) in points.iter().enumerate() {
+        let near: Vec<[f64; 3]> = near.iter().flat_map(|near| near[at].as_flattened()).copied().collect();
+        if near.is_empty() {
+            continue;
+        }
+        let triangles: Vec<_> = (0..near.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let near = Bvh::new(Triangles { positions: &near, triangles: &triangles })?;
+        greatest = greatest.max(near.closest(point).distance);
     }
-    let triangles: Vec<[u32; 3]> = (0..near.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    let near = Bvh::new(Triangles { positions: near.as_flattened(), triangles: &triangles })?;
-    Ok(near.closest(point).distance)
+    Ok(greatest)
 }
