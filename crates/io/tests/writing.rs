@@ -604,3 +604,48 @@ fn what_rounding_leaves_no_triangle_of_is_an_error() {
         write_to(&mut Vec::new(), Format::Stl, &output, &WriteOptions::default()).unwrap();
     }
 }
+
+/// Lists of many pieces stand in their order, whoever wrote which.
+#[test]
+fn long_lists_are_the_same_for_any_number_of_threads() {
+    let side = 120u32;
+    let place = |i: u32, j: u32| [f64::from(i), f64::from(j), f64::from(i * j % 97) / 97.0];
+    let positions: Vec<_> = (0..=side).flat_map(|j| (0..=side).map(move |i| place(i, j))).collect();
+    let triangles: Vec<[u32; 3]> = (0..side * side)
+        .flat_map(|square| {
+            let corner = square / side * (side + 1) + square % side;
+            let [right, up] = [corner + 1, corner + side + 1];
+            [[corner, right, up + 1], [corner, up + 1, up]]
+        })
+        .collect();
+    let normals: Vec<[f64; 3]> = positions.iter().map(|p| [p[2], 0.25, 1.0 - p[2]]).collect();
+    let output = Output::new(Triangles { positions: &positions, triangles: &triangles }).normals(&normals);
+    let kinds = [
+        (Format::Obj, false),
+        (Format::Ply, false),
+        (Format::Ply, true),
+        (Format::Stl, false),
+        (Format::Stl, true),
+        (Format::Off, false),
+        (Format::Glb, false),
+        (Format::ThreeMf, false),
+    ];
+    for (format, ascii) in kinds {
+        let by = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| written(format, &output, ascii))
+        };
+        let one = by(1);
+        assert!([2, 3, 8].into_iter().all(|threads| by(threads) == one), "{format}");
+        let soup = read_bytes(&one, format).unwrap();
+        assert_eq!(soup.faces.len(), triangles.len(), "{format}");
+        let is_single = format == Format::Glb || format == Format::Stl && !ascii;
+        for (face, triangle) in soup.faces.iter().zip(&triangles) {
+            for (&read, &wrote) in face.iter().zip(triangle) {
+                let wrote =
+                    positions[wrote as usize].map(|x| if is_single { f64::from(x as f32) } else { x });
+                assert_eq!(soup.positions[read as usize], wrote, "{format}");
+            }
+        }
+    }
+}

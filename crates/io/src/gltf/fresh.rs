@@ -45,8 +45,9 @@ pub(super) fn fill(
     coarser: Option<[&[[f64; 3]]; 2]>,
 ) -> Result<(), GltfFlaw> {
     let channels = attributes(output);
+    let mut known = vec![NOWHERE; output.surface.positions.len()];
     for (primitive, triangles) in groups.triangles.iter().enumerate() {
-        let own = Part::of(output, &channels, triangles);
+        let own = Part::of(output, &channels, triangles, &mut known);
         let at = |points: &[[f64; 3]]| own.vertices.iter().map(|&v| points[v as usize]).collect::<Vec<_>>();
         // Where vertices have several normals, the writer is given a vertex for each.
         let (positions, normals) = (at(output.surface.positions), output.vertex_normals().map(at));
@@ -183,27 +184,58 @@ pub(super) struct Part {
     pub(super) attributes: Vec<VertexAttribute>,
 }
 
+/// No vertex of the file.
+const NOWHERE: u32 = u32::MAX;
+
+/// Vertices of the file at one of the surface that are looked at one after the other.
+const CROWD: usize = 16;
+
 impl Part {
-    pub(super) fn of(output: &Output<'_>, channels: &[(String, &Channel)], triangles: &[usize]) -> Self {
+    /// `known` has a place for each vertex of the surface, and nothing there before and after.
+    pub(super) fn of(
+        output: &Output<'_>,
+        channels: &[(String, &Channel)],
+        triangles: &[usize],
+        known: &mut [u32],
+    ) -> Self {
         let Triangles { triangles: corners, .. } = output.surface;
-        let mut known: HashMap<(u32, Vec<u32>), u32> = HashMap::new();
-        let mut vertices = Vec::new();
+        let mut vertices: Vec<u32> = Vec::new();
         let mut values: Vec<Vec<u32>> = vec![Vec::new(); channels.len()];
+        // By vertex of the file, another one at the same vertex of the surface; and those beside which there are too many to look at.
+        let mut others: Vec<u32> = Vec::new();
+        let mut crowded: HashMap<(u32, Vec<u32>), u32> = HashMap::new();
         let mut number = |triangle: usize, corner: usize| {
             let vertex = corners[triangle][corner];
-            let index = |(_, channel): &(String, &Channel)| match channel.domain {
+            let index = |channel: &Channel| match channel.domain {
                 Domain::Vertex => channel.indices[vertex as usize],
                 _ => channel.indices[3 * triangle + corner],
             };
-            let own: Vec<u32> = channels.iter().map(index).collect();
-            *known.entry((vertex, own)).or_insert_with_key(|(vertex, own)| {
-                vertices.push(*vertex);
-                values.iter_mut().zip(own).for_each(|(list, &value)| list.push(value));
-                vertices.len() as u32 - 1
-            })
+            let (mut at, mut count) = (known[vertex as usize], 0);
+            while at != NOWHERE {
+                let mut own = channels.iter().zip(&values);
+                if own.all(|((_, channel), values)| values[at as usize] == index(channel)) {
+                    return at;
+                }
+                (at, count) = (others[at as usize], count + 1);
+            }
+            let new = vertices.len() as u32;
+            if count < CROWD {
+                others.push(std::mem::replace(&mut known[vertex as usize], new));
+            } else {
+                let own = channels.iter().map(|(_, channel)| index(channel)).collect();
+                let at = *crowded.entry((vertex, own)).or_insert(new);
+                if at != new {
+                    return at;
+                }
+                others.push(NOWHERE);
+            }
+            vertices.push(vertex);
+            channels.iter().zip(&mut values).for_each(|((_, channel), values)| values.push(index(channel)));
+            new
         };
         let triangles = triangles.iter().map(|&triangle| [0, 1, 2].map(|corner| number(triangle, corner)));
         let triangles = triangles.collect();
+        vertices.iter().for_each(|&vertex| known[vertex as usize] = NOWHERE);
         let attributes =
             channels.iter().zip(&values).map(|((name, channel), values)| attribute(name, channel, values));
         Self { vertices, triangles, attributes: attributes.collect() }

@@ -10,6 +10,7 @@ mod split;
 mod stl;
 mod whole;
 
+pub(crate) use numbers::Pieces;
 pub use property::{Property, PropertyValues};
 pub use split::splits_vertices;
 pub(crate) use whole::{WholeFile, write_together};

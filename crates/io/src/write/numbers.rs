@@ -2,36 +2,107 @@
 
 use std::io::{self, Write};
 
-/// Bytes after which a piece goes out: large enough that the writer's own cost does not show.
-const PIECE: usize = 1 << 16;
+/// Elements that are put into one piece: enough for the writer's own cost not to show.
+const ELEMENTS: usize = 1 << 11;
 
-/// Gathers what is written and hands it on in pieces; call [`Pieces::finish`] at the end.
-pub(super) struct Pieces<'w> {
+/// Bytes of what stands between lists after which they go out.
+const BYTES: usize = 1 << 16;
+
+/// What is written, gathered into pieces: those of long lists by all threads, in their order. Call [`Pieces::finish`] at the end.
+pub(crate) struct Pieces<'w> {
     writer: &'w mut dyn Write,
-    buffer: Vec<u8>,
+    own: Piece,
 }
 
+/// Some of it, in memory.
+#[derive(Default)]
+pub(crate) struct Piece(Vec<u8>);
+
 impl<'w> Pieces<'w> {
-    pub(super) fn new(writer: &'w mut dyn Write) -> Self {
-        Self { writer, buffer: Vec::with_capacity(PIECE + 1024) }
+    pub(crate) fn new(writer: &'w mut dyn Write) -> Self {
+        Self { writer, own: Piece::default() }
     }
 
+    /// Adds `count` elements, each by what `element` writes of it.
+    pub(crate) fn each(
+        &mut self,
+        count: usize,
+        element: impl Fn(&mut Piece, usize) + Sync,
+    ) -> io::Result<()> {
+        self.hand_on()?;
+        let mut pieces: Vec<Piece> = Vec::new();
+        pieces.resize_with(at_once().min(count.div_ceil(ELEMENTS)), Piece::default);
+        for first in (0..count).step_by(ELEMENTS * pieces.len().max(1)) {
+            let fill = |(number, piece): (usize, &mut Piece)| {
+                piece.0.clear();
+                let start = first + number * ELEMENTS;
+                (start..count.min(start + ELEMENTS)).for_each(|at| element(piece, at));
+            };
+            fill_each(&mut pieces, fill);
+            pieces.iter().try_for_each(|piece| self.writer.write_all(&piece.0))?;
+        }
+        Ok(())
+    }
+
+    /// Adds bytes as they are.
+    pub(crate) fn bytes(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.element(|own| own.bytes(bytes))
+    }
+
+    /// Adds what `element` writes.
+    pub(super) fn element(&mut self, element: impl FnOnce(&mut Piece)) -> io::Result<()> {
+        element(&mut self.own);
+        if self.own.0.len() >= BYTES { self.hand_on() } else { Ok(()) }
+    }
+
+    fn hand_on(&mut self) -> io::Result<()> {
+        self.writer.write_all(&self.own.0)?;
+        self.own.0.clear();
+        Ok(())
+    }
+
+    /// Hands on what is left.
+    pub(crate) fn finish(mut self) -> io::Result<()> {
+        self.hand_on()
+    }
+}
+
+/// Pieces that are there at one time.
+fn at_once() -> usize {
+    #[cfg(feature = "parallel")]
+    if rayon::current_num_threads() > 1 {
+        return 4 * rayon::current_num_threads();
+    }
+    1
+}
+
+fn fill_each(pieces: &mut [Piece], fill: impl Fn((usize, &mut Piece)) + Sync + Send) {
+    #[cfg(feature = "parallel")]
+    if pieces.len() > 1 {
+        use rayon::prelude::*;
+        pieces.par_iter_mut().enumerate().for_each(fill);
+        return;
+    }
+    pieces.iter_mut().enumerate().for_each(fill);
+}
+
+impl Piece {
     /// Adds text or bytes as they are.
     #[inline]
-    pub(super) fn bytes(&mut self, bytes: &[u8]) {
-        self.buffer.extend_from_slice(bytes);
+    pub(crate) fn bytes(&mut self, bytes: &[u8]) {
+        self.0.extend_from_slice(bytes);
     }
 
     /// Adds a blank and the fewest digits that read back as exactly this number.
     #[inline]
     pub(super) fn number(&mut self, value: f64) {
-        self.buffer.push(b' ');
+        self.0.push(b' ');
         self.bare_number(value);
     }
 
     /// Adds the fewest digits that read back as exactly this number.
     #[inline]
-    pub(super) fn bare_number(&mut self, value: f64) {
+    pub(crate) fn bare_number(&mut self, value: f64) {
         let mut digits = zmij::Buffer::new();
         let text = digits.format(value);
         // A whole number needs no ".0".
@@ -40,14 +111,14 @@ impl<'w> Pieces<'w> {
 
     /// Adds a blank and this number as an `f32` with a point or an exponent, also where it is whole.
     pub(super) fn pointed(&mut self, value: f64) {
-        self.buffer.push(b' ');
+        self.0.push(b' ');
         self.bytes(zmij::Buffer::new().format(value as f32).as_bytes());
     }
 
     /// Adds a blank and the fewest digits that read back as exactly this `f32`.
     #[inline]
     pub(super) fn single(&mut self, value: f32) {
-        self.buffer.push(b' ');
+        self.0.push(b' ');
         let mut digits = zmij::Buffer::new();
         let text = digits.format(value);
         self.bytes(text.strip_suffix(".0").unwrap_or(text).as_bytes());
@@ -56,35 +127,19 @@ impl<'w> Pieces<'w> {
     /// Adds a blank and a whole number.
     #[inline]
     pub(super) fn integer(&mut self, value: u32) {
-        self.buffer.push(b' ');
+        self.0.push(b' ');
         self.bare_integer(value);
     }
 
     /// Adds a whole number.
     #[inline]
-    pub(super) fn bare_integer(&mut self, value: u32) {
+    pub(crate) fn bare_integer(&mut self, value: u32) {
         self.bytes(itoa::Buffer::new().format(value).as_bytes());
-    }
-
-    /// Ends an element: hands the piece on if it is large enough.
-    #[inline]
-    pub(super) fn end(&mut self) -> io::Result<()> {
-        if self.buffer.len() >= PIECE {
-            self.writer.write_all(&self.buffer)?;
-            self.buffer.clear();
-        }
-        Ok(())
     }
 
     /// Ends a line of text.
     #[inline]
-    pub(super) fn end_line(&mut self) -> io::Result<()> {
-        self.buffer.push(b'\n');
-        self.end()
-    }
-
-    /// Hands on what is left.
-    pub(super) fn finish(self) -> io::Result<()> {
-        self.writer.write_all(&self.buffer)
+    pub(crate) fn end_line(&mut self) {
+        self.0.push(b'\n');
     }
 }

@@ -1,7 +1,7 @@
 //! Geomview OFF in text, with columns of normals and colours where there are any, and colours of faces after their corners.
 
 use super::Output;
-use super::numbers::Pieces;
+use super::numbers::{Piece, Pieces};
 use crate::channels::by_vertex;
 use limitmesh::mesh::{Channel, Domain, Semantic, Storage};
 use std::io::{self, Write};
@@ -26,9 +26,10 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
         (false, true) => b"NOFF",
         (true, true) => b"CNOFF",
     };
-    out.bytes(keyword);
-    out.bytes(format!("\n{} {} 0\n", positions.len(), triangles.len()).as_bytes());
-    for (vertex, &[x, y, z]) in positions.iter().enumerate() {
+    out.bytes(keyword)?;
+    out.bytes(format!("\n{} {} 0\n", positions.len(), triangles.len()).as_bytes())?;
+    out.each(positions.len(), |out, vertex| {
+        let [x, y, z] = positions[vertex];
         out.bare_number(x);
         out.number(y);
         out.number(z);
@@ -40,23 +41,23 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
             // Colours have a fourth column, the opacity.
             out.integer(255);
         } else if let Some((channel, numbers)) = &of_vertices {
-            colour(&mut out, channel, numbers[vertex]);
+            colour(out, channel, numbers[vertex]);
         }
-        out.end_line()?;
-    }
-    for (face, triangle) in triangles.iter().enumerate() {
+        out.end_line();
+    })?;
+    out.each(triangles.len(), |out, face| {
         out.bytes(b"3");
-        triangle.iter().for_each(|&v| out.integer(v));
+        triangles[face].iter().for_each(|&v| out.integer(v));
         if let Some(channel) = of_faces {
-            colour(&mut out, channel, channel.indices[face]);
+            colour(out, channel, channel.indices[face]);
         }
-        out.end_line()?;
-    }
+        out.end_line();
+    })?;
     out.finish()
 }
 
 /// A colour with its opacity: bytes where the channel's file had them, else numbers with a point, which tells them apart.
-fn colour(out: &mut Pieces<'_>, channel: &Channel, number: u32) {
+fn colour(out: &mut Piece, channel: &Channel, number: u32) {
     let start = number as usize * channel.arity;
     let own = &channel.values[start..start + channel.arity];
     for i in 0..4 {

@@ -2,7 +2,7 @@
 //! are any.
 
 use super::Output;
-use super::numbers::Pieces;
+use super::numbers::{Piece, Pieces};
 use super::ply_columns::{Columns, textures};
 use crate::names;
 use std::io::{self, Write};
@@ -10,30 +10,16 @@ use std::io::{self, Write};
 pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) -> io::Result<()> {
     let mut out = Pieces::new(writer);
     let columns = Columns::of(output);
-    out.bytes(&header((output, &columns), ascii));
-    for vertex in 0..output.surface.positions.len() {
-        match ascii {
-            true => vertex_text(&mut out, (output, &columns), vertex)?,
-            false => vertex_bytes(&mut out, (output, &columns), vertex)?,
-        }
-    }
-    for (face, triangle) in output.surface.triangles.iter().enumerate() {
-        if ascii {
-            out.bytes(b"3");
-            triangle.iter().for_each(|&v| out.integer(v));
-            output.face_properties.iter().for_each(|property| property.text(&mut out, face));
-            columns.faces.iter().for_each(|column| column.text(&mut out, face));
-            columns.textures.iter().for_each(|channel| textures(&mut out, channel, face, true));
-            out.end_line()?;
-        } else {
-            out.bytes(&[3]);
-            triangle.iter().for_each(|v| out.bytes(&v.to_le_bytes()));
-            output.face_properties.iter().for_each(|property| property.bytes(&mut out, face));
-            columns.faces.iter().for_each(|column| column.bytes(&mut out, face));
-            columns.textures.iter().for_each(|channel| textures(&mut out, channel, face, false));
-            out.end()?;
-        }
-    }
+    let told = (output, &columns);
+    out.bytes(&header(told, ascii))?;
+    out.each(output.surface.positions.len(), |out, vertex| match ascii {
+        true => vertex_text(out, told, vertex),
+        false => vertex_bytes(out, told, vertex),
+    })?;
+    out.each(output.surface.triangles.len(), |out, face| match ascii {
+        true => face_text(out, told, face),
+        false => face_bytes(out, told, face),
+    })?;
     out.finish()
 }
 
@@ -77,11 +63,7 @@ fn header((output, columns): (&Output<'_>, &Columns<'_>), ascii: bool) -> Vec<u8
 }
 
 #[inline]
-fn vertex_bytes(
-    out: &mut Pieces<'_>,
-    (output, columns): (&Output<'_>, &Columns<'_>),
-    vertex: usize,
-) -> io::Result<()> {
+fn vertex_bytes(out: &mut Piece, (output, columns): (&Output<'_>, &Columns<'_>), vertex: usize) {
     output.surface.positions[vertex].iter().for_each(|x| out.bytes(&x.to_le_bytes()));
     if let Some(normals) = output.vertex_normals() {
         normals[vertex].iter().for_each(|&x| out.bytes(&(x as f32).to_le_bytes()));
@@ -94,14 +76,9 @@ fn vertex_bytes(
     }
     output.vertex_properties.iter().for_each(|property| property.bytes(out, vertex));
     columns.vertices.iter().for_each(|column| column.bytes(out, vertex));
-    out.end()
 }
 
-fn vertex_text(
-    out: &mut Pieces<'_>,
-    (output, columns): (&Output<'_>, &Columns<'_>),
-    vertex: usize,
-) -> io::Result<()> {
+fn vertex_text(out: &mut Piece, (output, columns): (&Output<'_>, &Columns<'_>), vertex: usize) {
     let [x, y, z] = output.surface.positions[vertex];
     out.bare_number(x);
     out.number(y);
@@ -117,5 +94,23 @@ fn vertex_text(
     }
     output.vertex_properties.iter().for_each(|property| property.text(out, vertex));
     columns.vertices.iter().for_each(|column| column.text(out, vertex));
-    out.end_line()
+    out.end_line();
+}
+
+#[inline]
+fn face_bytes(out: &mut Piece, (output, columns): (&Output<'_>, &Columns<'_>), face: usize) {
+    out.bytes(&[3]);
+    output.surface.triangles[face].iter().for_each(|v| out.bytes(&v.to_le_bytes()));
+    output.face_properties.iter().for_each(|property| property.bytes(out, face));
+    columns.faces.iter().for_each(|column| column.bytes(out, face));
+    columns.textures.iter().for_each(|channel| textures(out, channel, face, false));
+}
+
+fn face_text(out: &mut Piece, (output, columns): (&Output<'_>, &Columns<'_>), face: usize) {
+    out.bytes(b"3");
+    output.surface.triangles[face].iter().for_each(|&v| out.integer(v));
+    output.face_properties.iter().for_each(|property| property.text(out, face));
+    columns.faces.iter().for_each(|column| column.text(out, face));
+    columns.textures.iter().for_each(|channel| textures(out, channel, face, true));
+    out.end_line();
 }

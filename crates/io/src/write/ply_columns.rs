@@ -1,11 +1,11 @@
 //! Channels as numbers of a PLY file's vertices and faces: what `read::ply` makes channels of.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use limitmesh::mesh::{Channel, Domain, Semantic, Storage};
 
 use super::Output;
-use super::numbers::Pieces;
+use super::numbers::Piece;
 use super::split::is_of_vertices;
 use crate::channels::{TEXTURE_LISTS, by_vertex};
 use crate::format::Format;
@@ -18,7 +18,7 @@ pub(super) struct Column<'a> {
     /// Which number of a value.
     part: usize,
     /// By element, its value.
-    values: Rc<Vec<u32>>,
+    values: Arc<Vec<u32>>,
 }
 
 /// What an output's channels become.
@@ -39,7 +39,7 @@ impl<'a> Columns<'a> {
             output.channels.iter().filter(|channel| crate::holds(Format::Ply, &Default::default(), channel))
         {
             if channel.domain == Domain::Face {
-                let values = Rc::new(channel.indices.clone());
+                let values = Arc::new(channel.indices.clone());
                 let is_taken = |name: &str| {
                     output.face_properties.iter().any(|p| p.name == name) || name == "vertex_indices"
                 };
@@ -62,7 +62,7 @@ impl<'a> Columns<'a> {
                     || has_quality
                     || output.vertex_properties.iter().any(|p| p.name == name)
             };
-            add(&mut found.vertices, channel, Rc::new(values), is_taken);
+            add(&mut found.vertices, channel, Arc::new(values), is_taken);
         }
         found
     }
@@ -71,7 +71,7 @@ impl<'a> Columns<'a> {
 fn add<'a>(
     columns: &mut Vec<Column<'a>>,
     channel: &'a Channel,
-    values: Rc<Vec<u32>>,
+    values: Arc<Vec<u32>>,
     is_taken: impl Fn(&str) -> bool,
 ) {
     for (part, name) in names(channel).into_iter().enumerate() {
@@ -160,7 +160,7 @@ impl Column<'_> {
 
     /// Writes the little-endian bytes of an element's number.
     #[inline]
-    pub(super) fn bytes(&self, out: &mut Pieces<'_>, element: usize) {
+    pub(super) fn bytes(&self, out: &mut Piece, element: usize) {
         let number = self.number(element);
         match self.storage {
             Storage::Single => out.bytes(&(number as f32).to_le_bytes()),
@@ -175,7 +175,7 @@ impl Column<'_> {
     }
 
     /// Writes an element's number as text, a blank before it.
-    pub(super) fn text(&self, out: &mut Pieces<'_>, element: usize) {
+    pub(super) fn text(&self, out: &mut Piece, element: usize) {
         let number = self.number(element);
         match self.storage {
             Storage::Single => out.single(number as f32),
@@ -186,7 +186,7 @@ impl Column<'_> {
 }
 
 /// Writes the texture coordinates of a face's corners.
-pub(super) fn textures(out: &mut Pieces<'_>, channel: &Channel, face: usize, ascii: bool) {
+pub(super) fn textures(out: &mut Piece, channel: &Channel, face: usize, ascii: bool) {
     if ascii {
         out.integer(6);
     } else {

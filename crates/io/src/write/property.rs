@@ -1,7 +1,7 @@
 //! Named numbers for each vertex or each triangle, which PLY files hold as scalar properties.
 
 use super::Output;
-use super::numbers::Pieces;
+use super::numbers::Piece;
 use crate::error::WriteError;
 use crate::format::Format;
 
@@ -55,7 +55,7 @@ impl<'a> Property<'a> {
 
     /// Writes the little-endian bytes of an element's number.
     #[inline]
-    pub(super) fn bytes(&self, out: &mut Pieces<'_>, element: usize) {
+    pub(super) fn bytes(&self, out: &mut Piece, element: usize) {
         match self.values {
             // Up to 2³¹ − 1, the bytes of `int` and of `uint` are the same.
             PropertyValues::Integers(values) => out.bytes(&values[element].to_le_bytes()),
@@ -64,7 +64,7 @@ impl<'a> Property<'a> {
     }
 
     /// Writes an element's number as text, a blank before it.
-    pub(super) fn text(&self, out: &mut Pieces<'_>, element: usize) {
+    pub(super) fn text(&self, out: &mut Piece, element: usize) {
         match self.values {
             PropertyValues::Integers(values) => out.integer(values[element]),
             PropertyValues::Numbers(values) => out.number(values[element]),

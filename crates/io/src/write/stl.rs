@@ -2,7 +2,7 @@
 
 use super::Output;
 use super::WriteOptions;
-use super::numbers::Pieces;
+use super::numbers::{Piece, Pieces};
 use crate::channels::UNNAMED_SOLID;
 use crate::format::Format;
 use crate::names;
@@ -27,12 +27,12 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) ->
 }
 
 fn write_binary(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
-    out.bytes(&HEADER);
+    out.bytes(&HEADER)?;
     let triangles = output.surface.triangles.len();
     let attributes = find(output, false);
     // Checked before: no more than u32::MAX.
-    out.bytes(&(triangles as u32).to_le_bytes());
-    for face in 0..triangles {
+    out.bytes(&(triangles as u32).to_le_bytes())?;
+    out.each(triangles, |out, face| {
         let corners = output.surface.corners(face);
         for value in facet_normal(corners).into_iter().chain(corners.into_iter().flatten().map(|x| x as f32))
         {
@@ -40,26 +40,25 @@ fn write_binary(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
         }
         let attribute = attributes.map_or(0.0, |channel| channel.value(face)[0]);
         out.bytes(&(attribute as u16).to_le_bytes());
-        out.end()?;
-    }
+    })?;
     out.finish()
 }
 
 fn write_ascii(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
     let solids = find(output, true);
+    let number = |face: usize| solids.map_or(0, |channel| channel.indices[face]);
     let name = |face: usize| {
         let name = solids.and_then(|channel| channel.labels.get(channel.indices[face] as usize));
         name.map_or_else(|| UNNAMED_SOLID.as_bytes().to_vec(), |name| names::write(name))
     };
-    let mut solid = None;
-    for face in 0..output.surface.triangles.len() {
-        let number = solids.map_or(0, |channel| channel.indices[face]);
-        if solid.is_none_or(|(own, _)| own != number) {
-            if let Some((_, before)) = solid {
-                named(&mut out, b"endsolid", &name(before))?;
-            }
-            named(&mut out, b"solid", &name(face))?;
-            solid = Some((number, face));
+    let triangles = output.surface.triangles.len();
+    out.each(triangles, |out, face| {
+        let before = face.checked_sub(1).filter(|&before| number(before) != number(face));
+        if let Some(before) = before {
+            named(out, b"endsolid", &name(before));
+        }
+        if face == 0 || before.is_some() {
+            named(out, b"solid", &name(face));
         }
         let corners = output.surface.corners(face);
         out.bytes(b"facet normal");
@@ -71,26 +70,26 @@ fn write_ascii(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
             out.bytes(b"\n");
         }
         out.bytes(b"endloop\nendfacet");
-        out.end_line()?;
-    }
-    match solid {
-        Some((_, face)) => named(&mut out, b"endsolid", &name(face))?,
+        out.end_line();
+    })?;
+    out.element(|out| match triangles.checked_sub(1) {
+        Some(last) => named(out, b"endsolid", &name(last)),
         None => {
-            named(&mut out, b"solid", UNNAMED_SOLID.as_bytes())?;
-            named(&mut out, b"endsolid", UNNAMED_SOLID.as_bytes())?;
+            named(out, b"solid", UNNAMED_SOLID.as_bytes());
+            named(out, b"endsolid", UNNAMED_SOLID.as_bytes());
         }
-    }
+    })?;
     out.finish()
 }
 
 /// A keyword with the name of a solid.
-fn named(out: &mut Pieces<'_>, keyword: &[u8], name: &[u8]) -> io::Result<()> {
+fn named(out: &mut Piece, keyword: &[u8], name: &[u8]) {
     out.bytes(keyword);
     if !name.is_empty() {
         out.bytes(b" ");
         out.bytes(name);
     }
-    out.end_line()
+    out.end_line();
 }
 
 /// The channel that a file holds: in text the names of solids, else attributes.

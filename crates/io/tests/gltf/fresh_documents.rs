@@ -79,6 +79,34 @@ fn textures_colours_and_materials_of_other_formats_are_in_new_documents() {
     assert_eq!(document["materials"], serde_json::json!([{"name": "red paint"}, {"name": "blue"}]));
 }
 
+/// A vertex of the file for each combination of values at a vertex of the surface, however many there are at one.
+#[test]
+fn a_vertex_with_many_values_stands_once_for_each() {
+    let (rim, values) = (90, 60);
+    let mut obj = String::from("v 0 0 1 1 1 1\n");
+    for i in 0..rim {
+        obj += &format!("v {i} {} 0 0 0 1\n", i * i);
+    }
+    (0..values).for_each(|i| obj += &format!("vt {} 0.5\n", f64::from(i) / 64.0));
+    let mut met = std::collections::HashSet::new();
+    for i in 0..rim {
+        // Each third triangle has a value at the tip that one before it has.
+        let corners = [(1, 1 + (i - i / 3) % values), (2 + i, 1 + i % 2), (2 + (i + 1) % rim, 3)];
+        met.extend(corners);
+        obj += &corners.map(|(v, t)| format!(" {v}/{t}")).iter().fold("f".to_owned(), |line, own| line + own);
+        obj += "\n";
+    }
+    let soup = read_bytes(obj.as_bytes(), Format::Obj).expect("an OBJ file");
+    let again = read_bytes(&written(&soup, Format::Glb), Format::Glb).expect("a document");
+    assert!(corners(&again) == corners(&soup));
+    let text = String::from_utf8(written(&soup, Format::Gltf)).expect("text");
+    let document: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let position =
+        document["meshes"][0]["primitives"][0]["attributes"]["POSITION"].as_u64().expect("a number");
+    assert_eq!(document["accessors"][position as usize]["count"].as_u64(), Some(met.len() as u64));
+    assert!(met.iter().filter(|(vertex, _)| *vertex == 1).count() > 32);
+}
+
 /// Numbers with names of their own get names that the specification leaves free.
 #[test]
 fn other_numbers_are_attributes_of_their_own() {
