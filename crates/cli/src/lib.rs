@@ -78,7 +78,11 @@ fn prepare(arguments: &Arguments) -> anyhow::Result<()> {
     if matches!(arguments.command, Command::Batch(_)) {
         return Ok(());
     }
-    rayon::ThreadPoolBuilder::new().num_threads(arguments.global.threads).build_global()?;
+    // This thread is one of them: idle ones look for work for a while before they sleep, and would take its time.
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.global.threads)
+        .use_current_thread()
+        .build_global()?;
     Ok(())
 }
 

@@ -6,10 +6,12 @@
 //! outgoing half-edge stored for a boundary vertex is the one without a twin, so that turning counter-clockwise
 //! from it meets every face.
 
+use core::ops::Range;
+
 use super::MeshError;
 use crate::geometry::{EdgeSide, NONE, every_edge};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
-use crate::parallel::Poll;
+use crate::parallel::{self, Poll};
 use crate::progress::{Cancelled, uncancelled};
 
 /// Faces that half-edge indices can number: 3·faces − 1 must stay below [`NONE`].
@@ -188,7 +190,10 @@ impl Topology {
 
     /// Number of half-edges without a twin.
     pub fn boundary_edge_count(&self) -> usize {
-        self.twins.iter().filter(|&&twin| twin == NONE).count()
+        let open = |half_edges: Range<usize>| {
+            self.twins[half_edges].iter().map(|&twin| usize::from(twin == NONE)).sum::<usize>()
+        };
+        parallel::pieces(self.twins.len(), open).into_iter().sum()
     }
 
     /// Checks every invariant.

@@ -183,7 +183,11 @@ pub fn rounding(format: Format, options: &WriteOptions, positions: &[[f64; 3]]) 
         Format::Gltf | Format::Glb => x.abs() * f64::from(f32::EPSILON) * 0.5,
         _ => (x - f64::from(x as f32)).abs(),
     };
-    positions.iter().map(|&[x, y, z]| off(x).hypot(off(y)).hypot(off(z))).fold(0.0, f64::max)
+    positions.iter().fold(0.0, |greatest: f64, position| {
+        let [x, y, z] = position.map(off);
+        // Hardly any is greater than all before.
+        if x + y + z > greatest { greatest.max(x.hypot(y).hypot(z)) } else { greatest }
+    })
 }
 
 /// Whether coordinates are rounded to `f32`.
@@ -280,7 +284,7 @@ pub(crate) fn check(output: &Output<'_>, format: Format, options: &WriteOptions)
         }
     }
     let named = [
-        ("triangle", first_beyond(triangles.iter().map(<[u32; 3]>::as_slice), vertices)),
+        ("triangle", first_triangle_beyond(triangles, vertices)),
         ("crease tag", first_beyond(output.creases.iter().map(|tag| tag.vertices.as_slice()), vertices)),
         (
             "corner tag",
@@ -300,7 +304,7 @@ pub(crate) fn check(output: &Output<'_>, format: Format, options: &WriteOptions)
         if normals > u32::MAX as usize {
             return Err(WriteError::TooMany { what: "normals", count: normals, limit: u32::MAX, format });
         }
-        if let Some((triangle, normal)) = first_beyond(corners.iter().map(<[u32; 3]>::as_slice), normals) {
+        if let Some((triangle, normal)) = first_triangle_beyond(corners, normals) {
             return Err(WriteError::NormalOutOfRange { triangle, normal, normals });
         }
     }
@@ -338,11 +342,35 @@ pub(crate) fn check(output: &Output<'_>, format: Format, options: &WriteOptions)
     if format == Format::Ply { property::check(output) } else { Ok(()) }
 }
 
+/// Items that are checked together.
+const CHECKED: usize = 1 << 12;
+
 /// The first of `groups` that names a vertex that does not exist, and that vertex.
 fn first_beyond<'g>(groups: impl Iterator<Item = &'g [u32]>, vertices: usize) -> Option<(usize, u32)> {
     groups
         .enumerate()
         .find_map(|(index, group)| Some((index, *group.iter().find(|&&v| v as usize >= vertices)?)))
+}
+
+/// The same of triangles.
+fn first_triangle_beyond(triangles: &[[u32; 3]], vertices: usize) -> Option<(usize, u32)> {
+    let index = first_failing(triangles, |triangle| triangle.iter().all(|&v| (v as usize) < vertices))?;
+    triangles[index].iter().find(|&&v| v as usize >= vertices).map(|&v| (index, v))
+}
+
+/// The number of the first item that fails.
+fn first_failing<T: Sync>(items: &[T], passes: impl Fn(&T) -> bool + Sync + Send) -> Option<usize> {
+    // No early end within some: then many are looked at in one step.
+    let fails = |some: &[T]| !some.iter().fold(true, |all, item| all & passes(item));
+    #[cfg(feature = "parallel")]
+    let some = {
+        use rayon::prelude::*;
+        items.par_chunks(CHECKED).position_first(fails)
+    };
+    #[cfg(not(feature = "parallel"))]
+    let some = items.chunks(CHECKED).position(fails);
+    let start = CHECKED * some?;
+    items[start..].iter().position(|item| !passes(item)).map(|at| start + at)
 }
 
 /// Refuses what the readers of files refuse: NaN and infinity, also where they come of rounding to `f32`.
@@ -354,7 +382,7 @@ fn check_finite(
     single: bool,
 ) -> Result<(), WriteError> {
     let fits = |v: f64| if single { (v as f32).is_finite() } else { v.is_finite() };
-    match values.iter().position(|&v| !fits(v)) {
+    match first_failing(values, |&v| fits(v)) {
         Some(i) => Err(WriteError::NotFinite { what, vertex: i / width, value: values[i], format }),
         None => Ok(()),
     }
