@@ -13,6 +13,7 @@
 //! * `channels`: what texture coordinates add to a refinement;
 //! * `gaps`: how long observers of long functions wait at most;
 //! * `front`: updates of a front against fresh ones, and a camera's way around a model;
+//! * `files`: writing and reading each format; needs no models;
 //! * `scaling`: exact refinement of ever larger meshes, larger in one way each; needs no models;
 //! * `tolerances GOALS`: triangles and time of exact refinement, each of the GOALS a model, built in or a file, and what is
 //!   asked of it: `cup@0.01` is within 0.01 % of the diagonal, `cup@n:5000` has 5,000 triangles; options `--balance`, `--runs K`;
@@ -25,6 +26,7 @@ mod channels;
 mod clock;
 mod distance;
 mod figures;
+mod files;
 mod front;
 mod gaps;
 mod load;
@@ -55,6 +57,9 @@ fn main() -> Result<()> {
     let work = arguments.next().unwrap_or_else(|| "all".into());
     if work == "scaling" {
         return scaling::scaling();
+    }
+    if work == "files" {
+        return files::files();
     }
     if work == "tolerances" {
         return tolerances::tolerances(arguments);
@@ -104,7 +109,7 @@ fn measure(work: &str, folder: &Path) -> Result<()> {
         "gaps" => gaps::gaps(folder),
         "front" => front::front(folder),
         other => bail!(
-            "no benchmark is called {other}: {}, speed, {}, quality, throughput, through, replay, points, channels, gaps, front, scaling, tolerances, figures, all",
+            "no benchmark is called {other}: {}, speed, {}, quality, throughput, through, replay, points, channels, gaps, front, files, scaling, tolerances, figures, all",
             SPEED.join(", "),
             QUALITY.join(", ")
         ),

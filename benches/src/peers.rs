@@ -161,3 +161,38 @@ pub(crate) fn simplified(
     let line = text.lines().last().context("the script printed nothing")?;
     Ok(Some(Simplified { mesh: crate::mesh(&coarse)?, seconds: line.trim().parse()? }))
 }
+
+/// Seconds of writing a file and of reading it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exported {
+    pub(crate) written: f64,
+    pub(crate) read: f64,
+}
+
+/// Least seconds of trimesh for the triangles in a file, by ending; `None` where Python has no `trimesh`.
+pub(crate) fn exported(
+    file: &Path,
+    to: &Path,
+    repeats: usize,
+    endings: &[&str],
+) -> Result<Option<Vec<Exported>>> {
+    // 3MF needs the other two.
+    let found = Command::new("python3").args(["-c", "import trimesh, lxml, networkx"]).output();
+    if !found.is_ok_and(|output| output.status.success()) {
+        return Ok(None);
+    }
+    let output = Command::new("python3")
+        .arg(folder().join("export.py"))
+        .args([file, to])
+        .arg(repeats.to_string())
+        .args(endings)
+        .output()?;
+    ensure!(output.status.success(), "trimesh: {}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout)?;
+    let seconds = text.lines().map(|line| {
+        let numbers = line.split_whitespace().map(str::parse).collect::<Result<Vec<f64>, _>>()?;
+        let [written, read] = numbers[..] else { anyhow::bail!("trimesh's script printed {line}") };
+        Ok(Exported { written, read })
+    });
+    Ok(Some(seconds.collect::<Result<_>>()?))
+}

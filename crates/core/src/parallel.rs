@@ -17,6 +17,14 @@ pub(crate) fn share(elements: usize) -> usize {
     (elements / SHARES).clamp(1, MOST_IN_SHARE)
 }
 
+/// How many threads there are for such calls.
+pub(crate) fn threads() -> usize {
+    #[cfg(feature = "parallel")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "parallel"))]
+    return 1;
+}
+
 /// Below this many elements a loop stays on the calling thread: starting workers would cost more than the work.
 const SEQUENTIAL_BELOW: usize = 4096;
 

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail, ensure};
 use serde::Deserialize;
@@ -139,6 +140,11 @@ struct KnownError {
     limit: Option<f64>,
 }
 
+/// A batch that was killed while it started a process holds its file until that is another program: for some milliseconds, longer on a machine
+/// that is busy.
+const RELEASED: Duration = Duration::from_secs(2);
+const TRIED_AGAIN: Duration = Duration::from_millis(20);
+
 /// How each line begins, before the number.
 const START: &str = "{\"line\":";
 
@@ -149,11 +155,11 @@ impl ResultFile {
         let mut options = OpenOptions::new();
         let file = options.read(true).append(true).create(true).open(path);
         let file = file.with_context(|| format!("{name} cannot be written"))?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => bail!("{name} is in use by another batch"),
-            // Some file systems have no locks.
-            Err(TryLockError::Error(_)) => {}
+        let end = Instant::now() + RELEASED;
+        // Some file systems have no locks.
+        while let Err(TryLockError::WouldBlock) = file.try_lock() {
+            ensure!(Instant::now() < end, "{name} is in use by another batch");
+            std::thread::sleep(TRIED_AGAIN);
         }
         let length = file.metadata().with_context(|| format!("{name} cannot be read"))?.len();
         ensure!(resumes || length == 0, "{name} is there already; --resume goes on with it");

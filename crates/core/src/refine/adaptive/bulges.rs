@@ -127,6 +127,11 @@ impl Bulges {
             })
     }
 
+    /// Whether no triangle has been measured, and all will be.
+    pub(super) fn are_new(&self) -> bool {
+        self.0.iter().all(|face| face.found.is_empty() && face.failing.is_empty())
+    }
+
     /// The leaves that fail wherever their corners are moved, and what they come to at best.
     pub(super) fn failing(&self) -> Vec<(Place, f64)> {
         self.0.iter().flat_map(|face| &face.failing).copied().collect()

@@ -22,7 +22,7 @@ enum Change {
 
 /// What has changed.
 pub(super) struct Changes {
-    /// By triangle.
+    /// By triangle; empty where every one is new.
     changes: Vec<Change>,
     /// By control face, whether any triangle has.
     have_changed: Vec<bool>,
@@ -37,6 +37,9 @@ impl Changes {
         emission: &Emission,
         watch: &SharedWatch<'_>,
     ) -> Result<Self, Cancelled> {
+        if bulges.is_some_and(Bulges::are_new) {
+            return Ok(Self { changes: Vec::new(), have_changed: vec![true; is_touched.len()] });
+        }
         let found = watch.pieces(is_touched.len(), parallel::share(is_touched.len()), |faces| {
             let (mut changes, mut have_changed) = (Vec::new(), Vec::new());
             for face in faces {
@@ -70,7 +73,12 @@ impl Changes {
     }
 
     /// Whether a triangle may come to something else.
+    #[inline]
     pub(super) fn concern(&self, emission: &Emission, triangle: u32) -> bool {
+        self.changes.is_empty() || self.concern_one(emission, triangle)
+    }
+
+    fn concern_one(&self, emission: &Emission, triangle: u32) -> bool {
         let twins = &emission.twins[3 * triangle as usize..3 * triangle as usize + 3];
         let beside = twins.iter().filter(|&&twin| twin != NONE).map(|twin| self.changes[*twin as usize / 3]);
         let mut change = self.changes[triangle as usize];

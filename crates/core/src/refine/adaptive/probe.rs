@@ -18,9 +18,11 @@ use super::{Engine, Plan};
 use crate::certificate::TriangleFrame;
 use crate::index::VertexId;
 use crate::mesh::Mesh;
+use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
 use crate::refine::exact_result::ErrorBounds;
+use crate::vector::DVec3;
 use farthest::{SAMPLED_LEVELS, farthest, sample};
 use nearest_triangle::Nearest;
 
@@ -30,6 +32,9 @@ const PROBED: usize = 64;
 /// Leaves that are looked at however many control faces there are, and the boxes of control faces that may be looked at for others.
 const FEWEST_PROBED: usize = 8;
 const MOST_BOXES: usize = 2_000_000;
+
+/// Leaves that each of several threads looks at before it is known which are of use.
+const AT_ONCE: usize = 4;
 
 /// Levels below which edges have no length left.
 const MOST_LEVELS: usize = 64;
@@ -251,35 +256,56 @@ fn greatest_unsorted(
 fn lower(
     engine: &Engine<'_>,
     (plan, emission): (&Plan, &Emission),
-    mesh: &Nearest<'_, '_>,
+    mesh: &Nearest<'_>,
     (order, is_leaf, probed): (&[(f64, Place)], impl Fn(Place) -> bool, &mut Probed),
     best: &mut ErrorBounds,
 ) -> Result<(), Cancelled> {
     let most = order.first().map_or(0.0, |&(promise, _)| promise);
     let most_probed = PROBED.min(FEWEST_PROBED + MOST_BOXES / plan.closed.len().max(1));
-    for &(promise, place) in order.iter().take(most_probed) {
-        if promise <= best.lower || best.lower > probed.enough * most {
-            break;
-        }
-        let leaf = is_leaf(place).then_some(place);
-        if !probed.leaves.insert((place.face, leaf)) {
-            continue;
-        }
-        for point in farthest(engine, plan, emission, place.face, leaf)? {
-            let distance = mesh.distance(point, place.face)?;
-            if distance > best.lower {
-                (best.lower, best.at) = (distance, point.to_array());
+    let leaf = |place: Place| (place.face, is_leaf(place).then_some(place));
+    let sources = engine.sources(plan, emission);
+    let mut left = order.iter().take(most_probed).map(|&(promise, place)| (promise, leaf(place))).peekable();
+    let enough = probed.enough * most;
+    let is_enough = |best: &ErrorBounds| best.lower > enough;
+    // Some are looked at together, by all threads, so many that these need not be woken for each; what is not needed any more is forgotten.
+    let most_at_once = if parallel::threads() > 1 { AT_ONCE * parallel::threads() } else { 1 };
+    let mut at_once = 1;
+    loop {
+        let mut some = Vec::with_capacity(at_once);
+        while some.len() < at_once
+            && let Some((promise, leaf)) = left.next_if(|&(promise, _)| promise > best.lower)
+        {
+            if !probed.leaves.contains(&leaf) {
+                some.push((promise, leaf));
             }
         }
+        if some.is_empty() || is_enough(best) {
+            return Ok(());
+        }
+        let poll = &mut |_| engine.watch.poll();
+        let found = parallel::each_long_polled(some, poll, |(promise, leaf), is_stopped| {
+            let points = farthest(&sources, leaf, is_stopped).into_iter();
+            let distances = points.map(|point| (mesh.distance(point, leaf.0, is_stopped), point));
+            (promise, leaf, distances.collect::<Vec<_>>())
+        })?;
+        for (promise, leaf, distances) in found {
+            if promise <= best.lower || is_enough(best) {
+                return Ok(());
+            }
+            if !probed.leaves.insert(leaf) {
+                continue;
+            }
+            distances.into_iter().for_each(|(distance, point)| best.raise(distance, point));
+        }
+        at_once = most_at_once.min(2 * at_once);
     }
-    Ok(())
 }
 
 /// The same interval, made narrower where few control faces have bounds that are far above what was found; `greatest` are the greatest
 /// bounds, and all that may be.
 fn loose_anew(
     engine: &Engine<'_>,
-    sources: (&Plan, &Emission, &Nearest<'_, '_>),
+    sources: (&Plan, &Emission, &Nearest<'_>),
     greatest: &[(f64, Place)],
     known: ErrorBounds,
 ) -> Result<ErrorBounds, RefineError> {
@@ -301,7 +327,7 @@ fn loose_anew(
 fn estimated(
     engine: &Engine<'_>,
     worst: &Worst<'_>,
-    mesh: &Nearest<'_, '_>,
+    mesh: &Nearest<'_>,
     best: &mut ErrorBounds,
 ) -> Result<f64, Cancelled> {
     let control = engine.control;
@@ -315,14 +341,23 @@ fn estimated(
         let levels = trees.depth(trees.root(face)) as usize + SAMPLED_LEVELS;
         let mut points = Vec::new();
         sample(control.piece(face).surface(control.rules), levels.min(MOST_SAMPLED_LEVELS), &mut points);
-        for point in points {
-            let distance = mesh.distance(point, face)?;
-            if distance > best.lower {
-                (best.lower, best.at) = (distance, point.to_array());
-            }
-        }
+        let share = parallel::share(points.len());
+        let found = engine.watch.long_pieces(points.len(), share, |some, is_stopped| {
+            let distance = |&point: &DVec3| (mesh.distance(point, face, is_stopped), point);
+            points[some].iter().map(distance).collect::<Vec<_>>()
+        })?;
+        found.into_iter().flatten().for_each(|(distance, point)| best.raise(distance, point));
     }
     Ok(best.lower)
+}
+
+impl ErrorBounds {
+    /// Takes a distance that a point has.
+    fn raise(&mut self, distance: f64, at: DVec3) {
+        if distance > self.lower {
+            (self.lower, self.at) = (distance, at.to_array());
+        }
+    }
 }
 
 impl Plan {

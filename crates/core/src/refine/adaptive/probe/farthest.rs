@@ -7,16 +7,14 @@ use core::ops::Range;
 
 use super::super::decide::child_open;
 use super::super::emit::Emission;
-use super::super::emitted::{Beholder, Emitted, Over};
+use super::super::emitted::{Beholder, Emitted, Over, Sources};
 use super::super::quadtree::Place;
 use super::super::surface::Surface;
-use super::super::{Engine, Plan};
 use crate::certificate::TriangleFrame;
 use crate::geometry::nearer;
 use crate::parallel::IsStopped;
 use crate::patch::Rules;
 use crate::patch::child_corners;
-use crate::progress::Cancelled;
 use crate::vector::{DVec3, Extremes, vector};
 
 /// Levels below a leaf whose vertices are sampled: the greatest distance is met within some per cent.
@@ -28,31 +26,25 @@ const LOOKED_AT: usize = 1 << 14;
 /// The point of the surface over a leaf that is farthest from its triangles; over the one that bends most of a control face's where
 /// none is given. Where vertices were moved, those that stand highest and lowest, and the corners.
 pub(super) fn farthest(
-    engine: &Engine<'_>,
-    plan: &Plan,
-    emission: &Emission,
-    face: u32,
-    leaf: Option<Place>,
-) -> Result<Vec<DVec3>, Cancelled> {
+    sources: &Sources<'_>,
+    (face, leaf): (u32, Option<Place>),
+    is_stopped: &IsStopped<'_>,
+) -> Vec<DVec3> {
+    let Sources { control, emission, .. } = *sources;
     let is_moved = !emission.offsets.is_empty();
     let (place, triangles) = match leaf {
         Some(place) if is_moved => (place, Vec::new()),
         _ => {
-            let sources = engine.sources(plan, emission);
-            let found = engine.watch.long_pieces(1, 1, |_, is_stopped| {
-                let wanted = match leaf {
-                    Some(place) => Wanted::Leaf(place),
-                    None => Wanted::LeafOf(most_bent(emission, face, is_stopped)),
-                };
-                let place = Place::root(face);
-                let mut found = Finder { wanted, is_found: false, place, triangles: Vec::new() };
-                sources.show(face, is_stopped, &mut found);
-                found.is_found.then_some((found.place, found.triangles))
-            })?;
-            found.into_iter().flatten().next().unwrap_or((Place::root(face), Vec::new()))
+            let wanted = match leaf {
+                Some(place) => Wanted::Leaf(place),
+                None => Wanted::LeafOf(most_bent(emission, face, is_stopped)),
+            };
+            let place = Place::root(face);
+            let mut found = Finder { wanted, is_found: false, place, triangles: Vec::new() };
+            sources.show(face, is_stopped, &mut found);
+            if found.is_found { (found.place, found.triangles) } else { (place, Vec::new()) }
         }
     };
-    let control = engine.control;
     let piece = control.piece(face);
     let (mut surface, mut corners) = (piece.surface(control.rules), control.corners(face));
     for level in 0..place.level {
@@ -73,7 +65,7 @@ pub(super) fn farthest(
         let by_height = |a: &&DVec3, b: &&DVec3| frame.height(**a).total_cmp(&frame.height(**b));
         let ends = [points.iter().max_by(by_height), points.iter().min_by(by_height)];
         let corners = corners.map(|corner| corner.position);
-        return Ok(ends.into_iter().flatten().copied().chain(corners).collect());
+        return ends.into_iter().flatten().copied().chain(corners).collect();
     }
     let corners = |triangle: [u32; 3]| triangle.map(|vertex| vector(emission.positions[vertex as usize]));
     let triangles: Vec<[DVec3; 3]> = triangles.into_iter().map(corners).collect();
@@ -92,7 +84,7 @@ pub(super) fn farthest(
             farthest = Some((least, point));
         }
     }
-    Ok(farthest.map(|(_, point)| point).into_iter().collect())
+    farthest.map(|(_, point)| point).into_iter().collect()
 }
 
 /// Points of a surface.

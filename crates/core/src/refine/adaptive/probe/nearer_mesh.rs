@@ -49,7 +49,7 @@ const NEARER_FOR_EACH: usize = 100;
 /// where more counts than the distances of triangles. `known` bounds the distance of the whole mesh, `lower` is what counts as found.
 pub(super) fn anew(
     engine: &Engine<'_>,
-    (plan, emission, mesh): (&Plan, &Emission, &Nearest<'_, '_>),
+    (plan, emission, mesh): (&Plan, &Emission, &Nearest<'_>),
     faces: &[u32],
     (known, lower): (&ErrorBounds, f64),
 ) -> Result<Option<ErrorBounds>, RefineError> {
@@ -94,7 +94,9 @@ pub(super) fn anew(
     let backward = distance(measured(nearer), nearer, over_wanted, emission)?;
     let mut found = ErrorBounds { upper: (forward.upper.max(backward.upper) + off).next_up(), ..*known };
     // The point is that far from the surface, at most.
-    let from_surface = mesh.distance(vector(backward.at), first)? - off;
+    let point = vector(backward.at);
+    let distance = engine.watch.long_pieces(1, 1, |_, is_stopped| mesh.distance(point, first, is_stopped))?;
+    let from_surface = distance[0] - off;
     if from_surface > found.lower {
         (found.lower, found.at) = (from_surface, backward.at);
     }

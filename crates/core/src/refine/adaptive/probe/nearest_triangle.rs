@@ -1,10 +1,11 @@
 //! How far a point is from the emitted mesh: from the nearest of its triangles, which are looked for by boxes.
 
-use core::cell::OnceCell;
+use std::sync::OnceLock;
 
 use super::super::emitted::Sources;
 use crate::geometry::box_tree::{Bounds, NO_BOUNDS, distance_squared_to, grown};
 use crate::geometry::nearer;
+use crate::parallel::IsStopped;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
 
@@ -15,22 +16,21 @@ const GROUP: usize = 64;
 /// come near.
 const MANY_TRIANGLES: usize = 16;
 
-/// Groups of boxes, and triangles, that are looked at between two calls of the observer.
+/// Groups of boxes, and triangles, that are looked at between two questions whether that is still of use.
 const GROUPS_LOOKED_AT: usize = 1 << 8;
 const LOOKED_AT: u32 = 1 << 14;
 
 /// The nearest points of the emitted triangles.
-pub(super) struct Nearest<'a, 'w> {
-    watch: &'a SharedWatch<'w>,
+pub(super) struct Nearest<'a> {
     sources: Sources<'a>,
     /// Boxes that hold the surface over [`GROUP`] control faces, and so the corners of their triangles.
     groups: Vec<Bounds>,
     /// Those over each of them.
-    boxes: Vec<OnceCell<Box<[Bounds]>>>,
+    boxes: Vec<OnceLock<Box<[Bounds]>>>,
 }
 
-impl<'a, 'w> Nearest<'a, 'w> {
-    pub(super) fn of(sources: Sources<'a>, watch: &'a SharedWatch<'w>) -> Result<Self, Cancelled> {
+impl<'a> Nearest<'a> {
+    pub(super) fn of(sources: Sources<'a>, watch: &SharedWatch<'_>) -> Result<Self, Cancelled> {
         let faces = sources.closed.len();
         let joined = |a: Bounds, [low, high]: Bounds| grown(grown(a, low), high);
         let is_kept = sources.emission.triangles.len() >= MANY_TRIANGLES * faces;
@@ -38,31 +38,31 @@ impl<'a, 'w> Nearest<'a, 'w> {
             let boxes = group.map(|face| bounds(&sources, face as u32));
             if is_kept {
                 let boxes: Box<[Bounds]> = boxes.collect();
-                return (boxes.iter().copied().fold(NO_BOUNDS, joined), OnceCell::from(boxes));
+                return (boxes.iter().copied().fold(NO_BOUNDS, joined), OnceLock::from(boxes));
             }
-            (boxes.fold(NO_BOUNDS, joined), OnceCell::new())
+            (boxes.fold(NO_BOUNDS, joined), OnceLock::new())
         })?;
         let (groups, boxes) = found.into_iter().unzip();
-        Ok(Self { watch, sources, groups, boxes })
+        Ok(Self { sources, groups, boxes })
     }
 
-    /// The distance of a point to the mesh; `face` is likely to be nearest.
-    pub(super) fn distance(&self, point: DVec3, face: u32) -> Result<f64, Cancelled> {
+    /// The distance of a point to the mesh, or more where nobody needs it any more; `face` is likely to be nearest.
+    pub(super) fn distance(&self, point: DVec3, face: u32, is_stopped: &IsStopped<'_>) -> f64 {
         let mut least = f64::INFINITY;
-        self.within(face, point, &mut least)?;
+        self.within(face, point, &mut least, is_stopped);
         for (group, bounds) in self.groups.iter().enumerate() {
-            if group.is_multiple_of(GROUPS_LOOKED_AT) {
-                self.watch.poll()?;
+            if group.is_multiple_of(GROUPS_LOOKED_AT) && is_stopped() {
+                break;
             }
             if distance_squared_to(bounds, point) < least {
                 for (other, bounds) in (GROUP as u32 * group as u32..).zip(self.boxes_of(group)) {
                     if distance_squared_to(bounds, point) < least && other != face {
-                        self.within(other, point, &mut least)?;
+                        self.within(other, point, &mut least, is_stopped);
                     }
                 }
             }
         }
-        Ok(least.sqrt())
+        least.sqrt()
     }
 
     /// The boxes over the control faces of a group.
@@ -74,16 +74,15 @@ impl<'a, 'w> Nearest<'a, 'w> {
     }
 
     /// Lowers the square of a distance to that to the triangles of a control face.
-    fn within(&self, face: u32, point: DVec3, least: &mut f64) -> Result<(), Cancelled> {
+    fn within(&self, face: u32, point: DVec3, least: &mut f64, is_stopped: &IsStopped<'_>) {
         let emission = self.sources.emission;
         for (i, triangle) in (1u32..).zip(&emission.triangles[emission.triangles_of(face)]) {
-            if i.is_multiple_of(LOOKED_AT) {
-                self.watch.poll()?;
+            if i.is_multiple_of(LOOKED_AT) && is_stopped() {
+                return;
             }
             let corners = triangle.map(|vertex| vector(emission.positions[vertex as usize]) - point);
             *least = nearer(*least, corners);
         }
-        Ok(())
     }
 }
 

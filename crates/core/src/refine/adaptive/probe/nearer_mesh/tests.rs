@@ -71,7 +71,7 @@ fn holds(
             let mut points = Vec::new();
             sample(engine.control.piece(face).surface(engine.control.rules), 6, &mut points);
             for point in points {
-                let distance = nearest.distance(point, face)?;
+                let distance = nearest.distance(point, face, &|| false);
                 assert!(distance <= found.upper, "{name}: {distance} from the surface, {}", found.upper);
                 most = most.max(distance);
             }
@@ -91,7 +91,7 @@ fn holds(
         );
         if found.lower > 0.0 {
             let at = vector(found.at);
-            let distance = nearest.distance(at, faces[0])?.max(greatest(&[found.at], reference));
+            let distance = nearest.distance(at, faces[0], &|| false).max(greatest(&[found.at], reference));
             assert!(distance + off >= found.lower, "{name}: {distance} at {at:?}, {}", found.lower);
         }
         Ok(true)
