@@ -17,6 +17,8 @@ for ending in sys.argv[4:]:
     to = os.path.join(folder, f"peer.{ending}")
     least = [float("inf")] * 2
     for _ in range(repeats):
+        if os.path.exists(to):
+            os.remove(to)
         start = time.perf_counter()
         mesh.export(to)
         written = time.perf_counter()

@@ -40,10 +40,18 @@ pub(crate) fn files() -> Result<()> {
     for (number, ending) in FORMATS.into_iter().enumerate() {
         let path = place(ending);
         let write = |threads: usize| -> Result<f64> {
-            let (seconds, done) =
-                best_of(REPEATS, threads, || limitmesh_io::write(&path, &output, &Default::default()))?;
-            done?;
-            Ok(1e3 * seconds)
+            let mut least = f64::INFINITY;
+            for _ in 0..REPEATS {
+                // A file that takes the name of another is brought to the disk at once by some systems.
+                if path.exists() {
+                    std::fs::remove_file(&path)?;
+                }
+                let (seconds, done) =
+                    best_of(1, threads, || limitmesh_io::write(&path, &output, &Default::default()))?;
+                done?;
+                least = least.min(seconds);
+            }
+            Ok(1e3 * least)
         };
         let (one, two) = (write(1)?, write(2)?);
         let (read, again) = best_of(REPEATS, 1, || limitmesh_io::read(&path))?;
