@@ -6,7 +6,14 @@ use super::*;
 
 /// The distance to a triangle by another way than the library's: to its plane, if the foot is inside by the signs
 /// of three areas, else to its three sides.
-fn distance_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+fn distance_to_triangle(p: DVec3, corners: [DVec3; 3]) -> f64 {
+    // Seen from the corner with the angle nearest 90°: from the tip of a needle rounding decides the plane.
+    let sine = |first: usize| {
+        let [a, b, c] = [0, 1, 2].map(|i| corners[(first + i) % 3]);
+        (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()).length()
+    };
+    let first = (1..3).fold(0, |known, first| if sine(first) > sine(known) { first } else { known });
+    let [a, b, c] = [0, 1, 2].map(|i| corners[(first + i) % 3]);
     let to_segment = |a: DVec3, b: DVec3| {
         let along = b - a;
         let t = (p - a).dot(along) / along.length_squared();
