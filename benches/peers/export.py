@@ -11,6 +11,7 @@ import trimesh
 
 path, folder, repeats = sys.argv[1], sys.argv[2], int(sys.argv[3])
 mesh = trimesh.load(path, process=False)
+# Found when it is asked for first: not while a file is written.
 mesh.vertex_normals
 
 for ending in sys.argv[4:]:

@@ -296,6 +296,25 @@ fn killed_twice_and_resumed_it_gives_the_same_bytes() {
     assert!(meshes(&outputs) == whole);
 }
 
+/// A process that a killed batch had begun holds its file for a moment; another batch does for as long as it runs.
+#[test]
+fn a_file_that_another_batch_holds_is_waited_for_a_little() {
+    let folder = folder();
+    let job = json!({"input": "builtin:cube", "output": below(&folder, "out.ply"), "tolerance": "1%"});
+    let (list, found) = (jobs(&folder, &[job]), folder.path().join("found.jsonl"));
+    let held = std::fs::File::create(&found).expect("a file");
+    held.lock().expect("a lock");
+    let refused = run("batch {} -o {} --resume", &[&list, &found]).expect(1);
+    assert!(refused.stderr.contains("is in use by another batch"), "{}", refused.stderr);
+    let holder = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(300));
+        drop(held);
+    });
+    run("batch {} -o {} --resume", &[&list, &found]).expect(0);
+    holder.join().expect("let go");
+    assert_eq!(results(&found).len(), 1);
+}
+
 /// Whether a process has this word on its command line.
 #[cfg(target_os = "linux")]
 fn is_running(word: &str) -> bool {

@@ -22,7 +22,8 @@ const TRIANGLE: usize = 64;
 /// Triangles as a package whose numbers are measured in this.
 pub(crate) fn write_fresh(surface: Triangles<'_>, unit: LengthUnit) -> Result<Vec<u8>, WriteError> {
     let Triangles { positions, triangles } = surface;
-    let length = VERTEX * positions.len() + TRIANGLE * triangles.len();
+    let of = |bytes: usize, count: usize| bytes.saturating_mul(count);
+    let length = of(VERTEX, positions.len()).saturating_add(of(TRIANGLE, triangles.len()));
     let mut package = Fresh::new();
     let written = package
         .part("[Content_Types].xml", TYPES.len(), |out| out.write_all(TYPES))

@@ -96,7 +96,7 @@ pub(super) fn anew(
     // The point is that far from the surface, at most.
     let point = vector(backward.at);
     let distance = engine.watch.long_pieces(1, 1, |_, is_stopped| mesh.distance(point, first, is_stopped))?;
-    let from_surface = distance[0] - off;
+    let from_surface = distance.into_iter().fold(0.0, f64::max) - off;
     if from_surface > found.lower {
         (found.lower, found.at) = (from_surface, backward.at);
     }
