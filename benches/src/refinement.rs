@@ -39,42 +39,54 @@ pub(crate) fn uniform(model: &Path) -> Result<()> {
     limits(model, &control)
 }
 
-/// The same with all vertices on the limit surface and with their normals, by processor time on one thread; the gain of two
-/// threads by the clock.
+/// The same with all vertices on the limit surface and with their normals, by processor time on one thread, as triangles alone and as
+/// a mesh with its connections; the gain of two threads by the clock.
 fn limits(model: &Path, control: &Mesh) -> Result<()> {
     println!(
-        "\nthe same with limit positions and normals: million triangles per processor second, best of {REPEATS}"
+        "\nthe same with limit positions: million triangles per processor second, best of {REPEATS}; triangles alone, as of the peer, \
+         but for the mesh with connections"
     );
     println!(
-        "level  triangles  positions  and normals  gain of 2 threads  OpenSubdiv Bfr, positions and normals"
+        "level  triangles  positions  and normals  gain of 2 threads  with connections  OpenSubdiv Bfr, positions and normals"
     );
     for level in [4, 5] {
-        let work = |normals| {
-            let options = UniformOptions::default().levels(level).limit(true).normals(normals);
-            limitmesh::refine::uniform(control, &Loop, &options).map(|r| r.mesh.face_count())
+        let options = UniformOptions::default().levels(level).limit(true);
+        let alone = |normals| {
+            limitmesh::refine::uniform_triangles(control, &Loop, &options.normals(normals))
+                .map(|found| found.triangles.len())
         };
-        let (mut positions, mut normals, mut triangles, mut peer) = (f64::MAX, f64::MAX, 0, None::<f64>);
+        let connected = || {
+            limitmesh::refine::uniform(control, &Loop, &options.normals(true)).map(|r| r.mesh.face_count())
+        };
+        let (mut least, mut triangles, mut peer) = ([f64::MAX; 3], 0, None::<f64>);
         // In turns, so that a busy machine slows all of them.
         for _ in 0..REPEATS {
-            let (seconds, count) = one_thread(|| work(false))?;
-            (positions, triangles) = (positions.min(seconds.all), count?);
-            let (seconds, _) = one_thread(|| work(true))?;
-            normals = normals.min(seconds.all);
+            let runs = [one_thread(|| alone(false))?, one_thread(|| alone(true))?, one_thread(connected)?];
+            for (least, (seconds, count)) in least.iter_mut().zip(runs) {
+                (*least, triangles) = (least.min(seconds.all), count?);
+            }
             let of_peer = opensubdiv(OpenSubdiv::Bfr, model, level, 1)?;
             peer = of_peer.map(|seconds| peer.unwrap_or(seconds).min(seconds));
         }
-        let (one, _) = best_of(REPEATS, 1, || work(true))?;
-        let (two, _) = best_of(REPEATS, 2, || work(true))?;
+        let (one, _) = best_of(REPEATS, 1, || alone(true))?;
+        let (two, _) = best_of(REPEATS, 2, || alone(true))?;
         let rate = |seconds: f64| triangles as f64 / seconds / 1e6;
+        let [positions, normals, connected] = least;
         let peer = match peer {
-            Some(seconds) => format!("{:.2} (ours is {:.2} times that)", rate(seconds), seconds / normals),
+            Some(seconds) => format!(
+                "{:.2} (ours is {:.2} times that, {:.2} with connections)",
+                rate(seconds),
+                seconds / normals,
+                seconds / connected
+            ),
             None => "not installed".into(),
         };
         println!(
-            "{level:5}  {triangles:9}  {:9.1}  {:11.1}  {:17.2}  {peer}",
+            "{level:5}  {triangles:9}  {:9.1}  {:11.1}  {:17.2}  {:16.1}  {peer}",
             rate(positions),
             rate(normals),
-            one / two
+            one / two,
+            rate(connected)
         );
     }
     Ok(())

@@ -56,6 +56,21 @@ pub fn defaults<T: Clone + Default>(length: usize) -> Vec<T> {
     defaults_with_room(length, length)
 }
 
+/// Like [`defaults`], but that also fewer zeros are not touched where the allocator has them: for arrays that are written once, and by
+/// whoever comes first.
+///
+/// ```
+/// assert_eq!(limitmesh_pages::untouched_defaults::<u8>(3), [0, 0, 0]);
+/// ```
+///
+/// # Panics
+/// Like [`Vec::with_capacity`], if that would take more than `isize::MAX` bytes.
+pub fn untouched_defaults<T: Clone + Default>(length: usize) -> Vec<T> {
+    let mut array = vec![T::default(); length];
+    ask(&mut array);
+    array
+}
+
 /// Like [`defaults`], with room for at least `capacity` elements if that is more than `length`.
 ///
 /// ```
@@ -68,8 +83,7 @@ pub fn defaults<T: Clone + Default>(length: usize) -> Vec<T> {
 pub fn defaults_with_room<T: Clone + Default>(length: usize, capacity: usize) -> Vec<T> {
     let room = capacity.max(length);
     if size_of::<T>().saturating_mul(room) >= ALONE {
-        let mut array = vec![T::default(); room];
-        ask(&mut array);
+        let mut array = untouched_defaults(room);
         array.truncate(length);
         return array;
     }

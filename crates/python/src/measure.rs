@@ -6,7 +6,7 @@ use limitmesh::measure::{
 };
 use limitmesh::progress::Observer;
 use limitmesh::refine::{LimitDistanceOptions, is_certified, limit_distance_observed};
-use limitmesh::refine::{UniformOptions, uniform_observed};
+use limitmesh::refine::{UniformOptions, uniform_triangles_observed};
 use limitmesh::{Mesh, Triangles};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -91,7 +91,7 @@ pub(crate) fn measure_limit<'py>(
         }
         let levels = levels.unwrap_or_else(|| affordable_levels(control.mesh.face_count()));
         let limit = UniformOptions::default().levels(levels).limit(true);
-        let limit = uniform_observed(&control.mesh, recipe.scheme, &limit, observer)?.mesh;
+        let limit = uniform_triangles_observed(&control.mesh, recipe.scheme, &limit, observer)?;
         drop(control);
         between(a, limit.as_triangles(), &how, observer)
     })?;

@@ -30,7 +30,7 @@ pub(crate) use support::Support;
 use std::borrow::Cow;
 
 use crate::vector::{DVec3, unit_or_zero};
-pub(crate) use box_spline::{Points, Refined};
+pub(crate) use box_spline::{Points, Refined, assemble};
 use extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use mesh_patch::{MeshPatch, RefinedMeshPatch};
 use pole::{LARGEST_RING, PolePatch, RefinedPole};

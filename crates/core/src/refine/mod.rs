@@ -37,7 +37,10 @@ pub use limit_reference::limit_reference;
 pub use lineage::Traced;
 pub use replay::{Frame, Replay, ReplayError};
 pub use stepwise::{SeamRule, StepwiseOptions, stepwise, stepwise_observed};
-pub use uniform::{UniformOptions, uniform, uniform_observed};
+pub use uniform::{
+    UniformOptions, UniformTriangles, uniform, uniform_observed, uniform_triangles,
+    uniform_triangles_observed,
+};
 
 use core::time::Duration;
 

@@ -12,9 +12,13 @@ mod tests;
 
 use std::time::Instant;
 
+use self::limits::{AtLimit, Wanted};
 use super::driver::Driver;
 use super::{RefineError, Refinement, StepReport, Stop};
-use crate::mesh::{MAX_FACES, Mesh, MeshError, Sharpness, check_finite};
+use crate::limit::SidedNormals;
+use crate::mesh::{
+    Junctions, MAX_FACES, Mesh, MeshError, Sharpness, Tags, Topology, Triangles, check_finite,
+};
 use crate::patch::Rules;
 use crate::progress::{Observer, Stage, Watch, unobserved};
 use crate::scheme::Scheme;
@@ -101,34 +105,115 @@ pub fn uniform_observed(
     options: &UniformOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Refinement, RefineError> {
-    let all = |mesh: &Mesh| Ok(vec![true; mesh.face_count()]);
-    let UniformOptions { levels, limit, normals, origins, max_triangles } = *options;
-    let steps =
-        |driver: Driver<'_>, observer: &mut Observer<'_>| driver.run(mesh, observer, all, |_, _| None);
-    // Levels that are done together leave no trace.
-    if limit && !origins {
-        let rules = Rules::of(scheme);
-        let end = End::of(mesh.face_count(), options);
-        let together = levels_together(mesh, &rules, end.levels);
-        if together > 0 {
-            if end.too_many > 0 {
-                let (what, count) = ("faces", end.too_many);
-                return Err(MeshError::TooMany { what, count, limit: MAX_FACES }.into());
-            }
-            let first = end.levels - together;
-            let driver = Driver {
-                scheme: rules.scheme(),
-                levels: first,
-                limit: false,
-                normals: false,
-                origins: false,
-                max_triangles: None,
-            };
-            let refined = steps(driver, observer)?;
-            return finish(refined, &rules, &end, together, normals, observer);
-        }
+    let Some(last) = LastLevels::of(mesh, scheme, options)? else {
+        return by_steps(mesh, scheme, options, observer);
+    };
+    let wanted = Wanted { normals: options.normals, connections: true };
+    let (AtLimit { triangles, twins, outgoing, positions, normals }, tags, steps) =
+        last.refined(mesh, wanted, observer)?;
+    let topology = Topology::from_parts(triangles, twins, outgoing);
+    let mesh = Mesh::from_parts(topology, positions, tags, Junctions::default());
+    Ok(Refinement { mesh, normals, origins: Vec::new(), parents: Vec::new(), steps, stop: last.end.stop })
+}
+
+/// What uniform refinement gives whoever needs no connections, as to draw, to measure or to write it.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct UniformTriangles {
+    /// Where the vertices are.
+    pub positions: Vec<[f64; 3]>,
+    /// The vertices of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// Unit limit normals of the vertices, an average of the sides at sharp edges; empty where nobody asked for them.
+    pub normals: Vec<[f64; 3]>,
+    /// The limit normals of triangles' corners at sharp edges, each of its own side, by 3 · triangle + corner, ascending. Empty
+    /// without sharp edges.
+    pub sides: Vec<(u32, [f64; 3])>,
+    /// Levels that were done.
+    pub levels: usize,
+    /// Why there were no more.
+    pub stop: Stop,
+}
+
+impl UniformTriangles {
+    fn new(
+        (positions, triangles): (Vec<[f64; 3]>, Vec<[u32; 3]>),
+        normals: Option<SidedNormals>,
+        levels: usize,
+        stop: Stop,
+    ) -> Self {
+        let (normals, sides) = normals.map(SidedNormals::into_parts).unwrap_or_default();
+        let sides = sides.into_iter().map(|(corner, normal)| (corner.0, normal)).collect();
+        Self { positions, triangles, normals, sides, levels, stop }
     }
-    steps(Driver { scheme, levels, limit, normals, origins, max_triangles }, observer)
+
+    /// The surface.
+    pub fn as_triangles(&self) -> Triangles<'_> {
+        Triangles { positions: &self.positions, triangles: &self.triangles }
+    }
+}
+
+/// [`uniform`] without the mesh's connections, which are a quarter of its bytes: the same vertices, triangles and normals in the same
+/// order. [`UniformOptions::origins`] has no effect.
+///
+/// ```
+/// use limitmesh::Mesh;
+/// use limitmesh::refine::{UniformOptions, uniform_triangles};
+/// use limitmesh::scheme::Loop;
+///
+/// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let tetrahedron = Mesh::from_triangles(corners, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+/// let options = UniformOptions::default().levels(3).limit(true).normals(true);
+/// let smooth = uniform_triangles(&tetrahedron, &Loop, &options)?;
+/// assert_eq!((smooth.triangles.len(), smooth.normals.len()), (4 * 64, smooth.positions.len()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// See [`RefineError`].
+pub fn uniform_triangles(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    options: &UniformOptions,
+) -> Result<UniformTriangles, RefineError> {
+    uniform_triangles_observed(mesh, scheme, options, &mut unobserved)
+}
+
+/// [`uniform_triangles`], telling an observer how it goes on.
+///
+/// # Errors
+/// See [`RefineError`].
+pub fn uniform_triangles_observed(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    options: &UniformOptions,
+    observer: &mut Observer<'_>,
+) -> Result<UniformTriangles, RefineError> {
+    let options = options.origins(false);
+    let Some(last) = LastLevels::of(mesh, scheme, &options)? else {
+        let Refinement { mesh, normals, steps, stop, .. } = by_steps(mesh, scheme, &options, observer)?;
+        return Ok(UniformTriangles::new(mesh.into_positions_and_triangles(), normals, steps.len(), stop));
+    };
+    let wanted = Wanted { normals: options.normals, connections: false };
+    let (found, _, _) = last.refined(mesh, wanted, observer)?;
+    Ok(UniformTriangles::new(
+        (found.positions, found.triangles),
+        found.normals,
+        last.end.levels,
+        last.end.stop,
+    ))
+}
+
+/// Level by level.
+fn by_steps(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    options: &UniformOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Refinement, RefineError> {
+    let UniformOptions { levels, limit, normals, origins, max_triangles } = *options;
+    let all = |mesh: &Mesh| Ok(vec![true; mesh.face_count()]);
+    Driver { scheme, levels, limit, normals, origins, max_triangles }.run(mesh, observer, all, |_, _| None)
 }
 
 /// How uniform refinement will end.
@@ -165,33 +250,75 @@ fn levels_together(mesh: &Mesh, rules: &Rules<'_>, levels: usize) -> usize {
     levels.saturating_sub(first)
 }
 
-/// The last levels after the first ones.
-fn finish(
-    refined: Refinement,
-    rules: &Rules<'_>,
-    end: &End,
+/// Refinement whose last levels are done together.
+struct LastLevels<'a> {
+    rules: Rules<'a>,
+    end: End,
+    /// How many.
     together: usize,
-    normals: bool,
-    observer: &mut Observer<'_>,
-) -> Result<Refinement, RefineError> {
-    let start = Instant::now();
-    let Refinement { mesh, mut steps, .. } = refined;
-    let mut watch = Watch::new(observer, Stage::Refining);
-    watch.triangles(mesh.face_count());
-    watch.stage(Stage::Refining, Some(end.levels))?;
-    watch.done(end.levels - together)?;
-    let mut faces = mesh.face_count();
-    let (mesh, normals) = limits::refined_at_limit(&mesh, rules, together, normals, &mut watch)?;
-    for step in end.levels - together + 1..=end.levels {
-        let (faces_before, faces_after) = (faces, 4 * faces);
-        // The time of levels that are done together stands at the last.
-        let duration = if step == end.levels { start.elapsed() } else { Default::default() };
-        let divisible = faces_before;
-        steps.push(StepReport { step, faces_before, divisible, closure: [0; 4], faces_after, duration });
-        faces = faces_after;
+}
+
+impl<'a> LastLevels<'a> {
+    /// `None` where steps are to do all levels.
+    ///
+    /// # Errors
+    /// More faces than can be numbered.
+    fn of(
+        mesh: &Mesh,
+        scheme: &'a dyn Scheme,
+        options: &UniformOptions,
+    ) -> Result<Option<Self>, RefineError> {
+        // Levels that are done together leave no trace.
+        if !options.limit || options.origins {
+            return Ok(None);
+        }
+        let rules = Rules::of(scheme);
+        let end = End::of(mesh.face_count(), options);
+        let together = levels_together(mesh, &rules, end.levels);
+        if together > 0 && end.too_many > 0 {
+            let (what, count) = ("faces", end.too_many);
+            return Err(MeshError::TooMany { what, count, limit: MAX_FACES }.into());
+        }
+        Ok((together > 0).then_some(Self { rules, end, together }))
     }
-    watch.triangles(faces);
-    watch.done(end.levels)?;
-    check_finite(mesh.positions())?;
-    Ok(Refinement { mesh, normals, origins: Vec::new(), parents: Vec::new(), steps, stop: end.stop })
+
+    /// The first levels by steps, then the last ones; with the tags of the result, and what each level did.
+    fn refined(
+        &self,
+        mesh: &Mesh,
+        wanted: Wanted,
+        observer: &mut Observer<'_>,
+    ) -> Result<(AtLimit, Tags, Vec<StepReport>), RefineError> {
+        let &Self { ref rules, ref end, together } = self;
+        let first = UniformOptions::default().levels(end.levels - together);
+        let Refinement { mesh, mut steps, .. } = by_steps(mesh, rules.scheme(), &first, observer)?;
+        let start = Instant::now();
+        let mut watch = Watch::new(observer, Stage::Refining);
+        watch.triangles(mesh.face_count());
+        watch.stage(Stage::Refining, Some(end.levels))?;
+        watch.done(end.levels - together)?;
+        let (found, tags) = limits::refined_at_limit(&mesh, rules, together, wanted, &mut watch)?;
+        let mut faces = mesh.face_count();
+        for step in end.levels - together + 1..=end.levels {
+            let (faces_before, faces_after) = (faces, 4 * faces);
+            // The time of levels that are done together stands at the last.
+            let duration = if step == end.levels { start.elapsed() } else { Default::default() };
+            let divisible = faces_before;
+            steps.push(StepReport { step, faces_before, divisible, closure: [0; 4], faces_after, duration });
+            faces = faces_after;
+        }
+        watch.triangles(faces);
+        watch.done(end.levels)?;
+        if !stays_finite(&mesh) {
+            check_finite(&found.positions)?;
+        }
+        Ok((found, tags, steps))
+    }
+}
+
+/// Whether no point of the limit surface can overflow. Points are combinations of control points by weights whose sizes come to 1, and
+/// what they are computed from, differences and coefficients of quartics, is within some thousand times these.
+fn stays_finite(control: &Mesh) -> bool {
+    const FAR: f64 = 1e300;
+    control.positions().as_flattened().iter().all(|x| x.abs() <= FAR)
 }

@@ -1,19 +1,19 @@
 //! Several levels at once, with all vertices on the limit surface: the mesh that the steps give, by arithmetic.
 //!
 //! Takes a mesh whose tags no longer fade and a number of levels; gives the refined mesh with its vertices at their limits
-//! and, if asked for, their limit normals. Numbers of vertices and triangles follow from prefix sums over the faces
+//! and, if asked for, their limit normals and what connects the triangles. Numbers of vertices and triangles follow from prefix sums over the faces
 //! (`grid.rs`), positions and normals from the exact surface over each face (`pieces.rs`), and each face fills
 //! slots of its own, so that the result does not depend on threads.
 
 use core::ops::Range;
 
-use limitmesh_pages::defaults;
+use limitmesh_pages::untouched_defaults;
 
 use super::grid::{Grid, Numbering};
 use super::pieces::{Pieces, Values};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::limit::SidedNormals;
-use crate::mesh::{CreaseTag, Junctions, Mesh, Sharpness, Tags, Topology};
+use crate::mesh::{CreaseTag, Mesh, Sharpness, Tags};
 use crate::parallel;
 use crate::patch::Rules;
 use crate::patch::submesh::submesh;
@@ -32,10 +32,30 @@ struct Work<'a> {
     grid: &'a Grid,
     numbering: Numbering<'a>,
     pieces: Pieces<'a>,
-    normals: bool,
+    /// By the set of owned sides and the corner that comes first: where the values of the vertices that a face counts as its own stand.
+    orders: Vec<[Vec<u16>; 3]>,
+    wanted: Wanted,
 }
 
-/// The slots that a run of faces fills.
+/// What somebody asked for, beside positions and triangles.
+#[derive(Clone, Copy)]
+pub(super) struct Wanted {
+    pub(super) normals: bool,
+    pub(super) connections: bool,
+}
+
+/// A mesh with its vertices on the limit surface.
+pub(super) struct AtLimit {
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Of half-edges; empty where nobody asked for connections.
+    pub(super) twins: Vec<u32>,
+    /// The half-edge that each vertex keeps; empty likewise.
+    pub(super) outgoing: Vec<u32>,
+    pub(super) positions: Vec<[f64; 3]>,
+    pub(super) normals: Option<SidedNormals>,
+}
+
+/// The slots that a run of faces fills. What nobody asked for is empty, here and in [`LevelSlots`].
 struct Slots<'s> {
     faces: Range<usize>,
     triangles: &'s mut [[u32; 3]],
@@ -47,40 +67,42 @@ struct Slots<'s> {
 struct LevelSlots<'s> {
     outgoing: &'s mut [u32],
     points: &'s mut [[f64; 3]],
-    /// Empty where nobody asked for normals.
     normals: &'s mut [[f64; 3]],
 }
 
 /// Refines a mesh of Loop's family without junctions, whose tags do not fade, by `levels` levels, and takes its vertices to
-/// the limit surface; with their normals if `normals`.
+/// the limit surface. With the tags of the result.
 pub(super) fn refined_at_limit(
     mesh: &Mesh,
     rules: &Rules<'_>,
     levels: usize,
-    normals: bool,
+    wanted: Wanted,
     watch: &mut Watch<'_>,
-) -> Result<(Mesh, Option<SidedNormals>), RefineError> {
+) -> Result<(AtLimit, Tags), RefineError> {
     let grid = Grid::new(levels)?;
     let sharpness = Sharpness::of(mesh);
     let numbering = Numbering::new(&grid, mesh.topology());
     let pieces = Pieces::new(mesh, &sharpness, rules, &grid);
-    let work = Work { mesh, sharpness: &sharpness, grid: &grid, numbering, pieces, normals };
+    let orders = pieces.slots.orders(&grid);
+    let work = Work { mesh, sharpness: &sharpness, grid: &grid, numbering, pieces, orders, wanted };
 
     let vertices = work.numbering.vertex_count();
     let faces = mesh.face_count() << (2 * levels);
-    let (mut triangles, mut twins) = (defaults::<[u32; 3]>(faces), defaults::<u32>(3 * faces));
-    let mut outgoing = defaults::<u32>(vertices);
-    let mut points = defaults::<[f64; 3]>(vertices);
-    let mut by_vertex = defaults::<[f64; 3]>(if normals { vertices } else { 0 });
-    let blocks = work.blocks(&mut triangles, &mut twins, &mut outgoing, &mut points, &mut by_vertex);
+    let if_wanted = |is_wanted: bool, count: usize| if is_wanted { count } else { 0 };
+    let mut triangles = untouched_defaults::<[u32; 3]>(faces);
+    let mut twins = untouched_defaults::<u32>(if_wanted(wanted.connections, 3 * faces));
+    let mut outgoing = untouched_defaults::<u32>(if_wanted(wanted.connections, vertices));
+    let mut positions = untouched_defaults::<[f64; 3]>(vertices);
+    let mut by_vertex = untouched_defaults::<[f64; 3]>(if_wanted(wanted.normals, vertices));
+    let blocks = work.blocks(&mut triangles, &mut twins, &mut outgoing, &mut positions, &mut by_vertex);
     let flat = parallel::each_polled(blocks, &mut |_| watch.poll(), |slots| work.fill(slots))?;
     for (outgoing, v) in outgoing.iter_mut().zip(mesh.topology().vertices()) {
         *outgoing = work.at_corner(mesh.topology().outgoing(v));
     }
     let corners = rules.table().positions_polled(mesh, &mut |_| watch.poll())??;
-    points[..mesh.vertex_count()].copy_from_slice(&corners);
+    positions[..mesh.vertex_count()].copy_from_slice(&corners);
     watch.poll()?;
-    let normals = match normals {
+    let normals = match wanted.normals {
         true => Some(work.finished_normals(by_vertex, flat.concat(), rules, watch)?),
         false => None,
     };
@@ -88,8 +110,7 @@ pub(super) fn refined_at_limit(
     if let Some(why) = rules.failure() {
         return Err(why.clone().into());
     }
-    let topology = Topology::from_parts(triangles, twins, outgoing);
-    Ok((Mesh::from_parts(topology, points, work.tags(), Junctions::default()), normals))
+    Ok((AtLimit { triangles, twins, outgoing, positions, normals }, work.tags()))
 }
 
 impl<'a> Work<'a> {
@@ -97,26 +118,28 @@ impl<'a> Work<'a> {
     fn blocks<'s>(
         &self,
         triangles: &'s mut [[u32; 3]],
-        twins: &'s mut [u32],
+        mut twins: &'s mut [u32],
         outgoing: &'s mut [u32],
         points: &'s mut [[f64; 3]],
         normals: &'s mut [[f64; 3]],
     ) -> Vec<Slots<'s>> {
         let (faces, each) = (self.mesh.face_count(), self.grid.triangles.len());
         let run = (BLOCK / each).max(1);
-        let chunks = triangles.chunks_mut(run * each).zip(twins.chunks_mut(3 * run * each));
-        let mut blocks: Vec<Slots<'s>> = chunks
+        let mut blocks: Vec<Slots<'s>> = triangles
+            .chunks_mut(run * each)
             .enumerate()
-            .map(|(i, (triangles, twins))| Slots {
+            .map(|(i, triangles)| Slots {
                 faces: i * run..((i + 1) * run).min(faces),
+                twins: split_off(&mut twins, 3 * triangles.len()),
                 triangles,
-                twins,
                 levels: Vec::with_capacity(self.grid.levels),
             })
             .collect();
         let old = self.mesh.vertex_count();
-        let (mut outgoing, mut points) = (&mut outgoing[old..], &mut points[old..]);
-        let mut normals = if self.normals { &mut normals[old..] } else { normals };
+        let (mut outgoing, mut points, mut normals) = (outgoing, points, normals);
+        split_off(&mut outgoing, old);
+        split_off(&mut points, old);
+        split_off(&mut normals, old);
         for level in 1..=self.grid.levels {
             for block in &mut blocks {
                 let Range { start, end } = block.faces;
@@ -124,7 +147,7 @@ impl<'a> Work<'a> {
                 block.levels.push(LevelSlots {
                     outgoing: split_off(&mut outgoing, count),
                     points: split_off(&mut points, count),
-                    normals: split_off(&mut normals, if self.normals { count } else { 0 }),
+                    normals: split_off(&mut normals, count),
                 });
             }
         }
@@ -135,35 +158,35 @@ impl<'a> Work<'a> {
     fn fill(&self, slots: Slots<'_>) -> Vec<u32> {
         let grid = self.grid;
         let mut numbers = vec![0u32; grid.places.len()];
-        let mut values = self.pieces.room(self.normals);
-        let mut levels = slots.levels;
+        let mut values = self.pieces.room(self.wanted.normals);
+        let (mut twins, mut levels) = (slots.twins, slots.levels);
         let mut flat = Vec::new();
         let each = grid.triangles.len();
-        let runs = slots.triangles.chunks_exact_mut(each).zip(slots.twins.chunks_exact_mut(3 * each));
-        for (face, (triangles, twins)) in slots.faces.zip(runs) {
+        for (face, triangles) in slots.faces.zip(slots.triangles.chunks_exact_mut(each)) {
             self.numbering.numbers(face, &mut numbers);
             for (triangle, local) in triangles.iter_mut().zip(&grid.triangles) {
                 *triangle = local.map(|v| numbers[v as usize]);
             }
-            self.numbering.twins(face, twins);
+            if self.wanted.connections {
+                self.numbering.twins(face, split_off(&mut twins, 3 * each));
+            }
             let turn = self.pieces.evaluate(face, self.numbering.sides(face), &mut values);
-            let places = &self.pieces.slots.turned[turn];
             let first = self.numbering.first(face);
             let owned = self.numbering.of(face);
+            let order = &self.orders[usize::from(self.numbering.sides(face))][turn];
             let mut is_flat = false;
             for (level, slots) in (1..).zip(&mut levels) {
-                let vertices = &owned.vertices[owned.level(level)];
+                let own = owned.level(level);
+                let (vertices, order) = (&owned.vertices[own.clone()], &order[own]);
                 for (slot, &v) in split_off(&mut slots.outgoing, vertices.len()).iter_mut().zip(vertices) {
                     *slot = first + grid.outgoing[v as usize];
                 }
-                for (slot, &v) in split_off(&mut slots.points, vertices.len()).iter_mut().zip(vertices) {
-                    *slot = values.points[places[v as usize] as usize];
+                for (slot, &at) in split_off(&mut slots.points, order.len()).iter_mut().zip(order) {
+                    *slot = values.points[at as usize];
                 }
-                if self.normals {
-                    for (slot, &v) in split_off(&mut slots.normals, vertices.len()).iter_mut().zip(vertices) {
-                        *slot = values.normals[places[v as usize] as usize];
-                        is_flat |= *slot == [0.0; 3];
-                    }
+                for (slot, &at) in split_off(&mut slots.normals, order.len()).iter_mut().zip(order) {
+                    *slot = values.normals[at as usize];
+                    is_flat |= *slot == [0.0; 3];
                 }
             }
             if is_flat {
@@ -329,9 +352,10 @@ impl<'a> Work<'a> {
     }
 }
 
-/// Takes the first elements off a slice.
+/// Takes the first elements off a slice; none off an empty one.
 fn split_off<'s, T>(rest: &mut &'s mut [T], count: usize) -> &'s mut [T] {
-    let (first, after) = core::mem::take(rest).split_at_mut(count);
+    let all = core::mem::take(rest);
+    let (first, after) = all.split_at_mut(if all.is_empty() { 0 } else { count });
     *rest = after;
     first
 }

@@ -1,20 +1,22 @@
 //! The limit surface over one face at the places of a [`Grid`].
 //!
 //! A face far from boundaries and creases with one irregular corner at most depends on the corner, its ring and five points
-//! more, and every place on it is a fixed combination of these: the weights are tabulated for each valence. Any other face
-//! is refined towards what is irregular, and its regular parts are evaluated as polynomials.
+//! more, and every place on it is a fixed combination of these: the weights are tabulated for each valence. Where no corner is irregular
+//! rows of the face's polynomial take less. Any other face is refined towards what is irregular, and its regular parts are
+//! evaluated as polynomials.
 
+use core::ops::Range;
 use std::sync::OnceLock;
 
-use super::grid::Grid;
+use super::grid::{Grid, Owned};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::extraordinary::ExtraordinaryPatch;
 use crate::patch::large_rings::LargeRings;
-use crate::patch::quartic::Quartic;
-use crate::patch::{Patch, Rules, root_patch};
+use crate::patch::quartic::{Quartic, coefficients};
+use crate::patch::{Patch, Rules, assemble, root_patch};
 use crate::vector::{DVec3, vector};
 
 /// Valences that have tables; they grow with the valence, and faces at others are few.
@@ -26,8 +28,12 @@ const LANES: usize = 4;
 /// Rounding leaves no more of a cross product of tangents that is zero than this, by the square of the piece's size.
 const CROSS_ROUNDING: f64 = 1e-13;
 
+/// Regular faces of at least so many segments a side are evaluated by rows, which take a third of the products; short ones cost as much
+/// to begin.
+const ROWS_FROM: usize = 16;
+
 /// Sizes of pieces whose fourth powers neither vanish nor overflow.
-const SAFE_SIZES: core::ops::Range<f64> = 1e-60..1e60;
+const SAFE_SIZES: Range<f64> = 1e-60..1e60;
 
 /// The places of a grid in the order in which they are evaluated: those inside, and then those on each side. Each
 /// group starts at a multiple of [`LANES`].
@@ -74,6 +80,14 @@ impl Slots {
 
     pub(super) fn len(&self) -> usize {
         self.starts[4]
+    }
+
+    /// By the set of owned sides and the corner that comes first: the slots of the vertices that a face counts as its own, in their order.
+    pub(super) fn orders(&self, grid: &Grid) -> Vec<[Vec<u16>; 3]> {
+        let order = |owned: &Owned, turn: usize| {
+            owned.vertices.iter().map(|&v| self.turned[turn][usize::from(v)]).collect()
+        };
+        grid.owned.iter().map(|owned| [0, 1, 2].map(|turn| order(owned, turn))).collect()
     }
 }
 
@@ -143,6 +157,10 @@ impl<'a> Pieces<'a> {
     /// face that counts as the first in the slots.
     pub(super) fn evaluate(&self, face: usize, sides: u8, values: &mut Values) -> usize {
         if let Some((turn, valence)) = self.gather(face, &mut values.controls) {
+            if valence == 6 && self.segments >= ROWS_FROM {
+                self.evaluate_regular(sides, values);
+                return turn;
+            }
             let size =
                 values.controls[1..].iter().fold(DVec3::ZERO, |most, p| most.max(p.abs())).max_element();
             if SAFE_SIZES.contains(&size) {
@@ -159,6 +177,40 @@ impl<'a> Pieces<'a> {
         let patch = root_patch(self.mesh, self.sharpness, &self.large, FaceId(face as u32), self.rules);
         self.evaluate_patch(&patch, values);
         0
+    }
+
+    /// Evaluates a face whose corners are regular, whose control points are gathered, by rows of its polynomial.
+    fn evaluate_regular(&self, sides: u8, values: &mut Values) {
+        let Values { points, normals, controls } = values;
+        let first = core::mem::take(&mut controls[0]);
+        // By corner, the ring from the next corner on, as `gather` numbers its points.
+        let rings = [[1, 2, 3, 4, 5, 6], [2, 0, 6, 7, 8, 9], [0, 1, 9, 10, 11, 3]];
+        let net = BezierTriangle::of(&assemble([0, 1, 2], rings.each_ref(), [0; 3]).map(|i| controls[i]));
+        let quartic = |corner: usize| {
+            let mut all = coefficients(&net, corner);
+            all[0] += first;
+            Quartic::with_scale(all)
+        };
+        let step = 1.0 / self.segments as f64;
+        let mut fill_row = |quartic: &Quartic, v: f64, slots: Range<usize>| {
+            if normals.is_empty() {
+                quartic.points_along(v, step, step, &mut points[slots]);
+            } else {
+                let normals = &mut normals[slots.clone()];
+                quartic.points_and_normals_along(v, step, step, &mut points[slots], normals);
+            }
+        };
+        let whole = quartic(0);
+        let mut start = self.slots.starts[0];
+        for row in 1..self.segments - 1 {
+            let end = start + self.segments - 1 - row;
+            fill_row(&whole, row as f64 * step, start..end);
+            start = end;
+        }
+        for side in (0..3).filter(|side| sides >> side & 1 != 0) {
+            let start = self.slots.starts[1 + side];
+            fill_row(&quartic(side), 0.0, start..start + self.segments - 1);
+        }
     }
 
     /// The control points of a face by differences to the first, but for the first itself: the irregular corner, its
@@ -311,7 +363,7 @@ impl Weights {
     }
 
     /// Evaluates the given slots, a multiple of [`LANES`]. `size` is that of the greatest difference.
-    fn apply(&self, slots: core::ops::Range<usize>, size: f64, values: &mut Values) {
+    fn apply(&self, slots: Range<usize>, size: f64, values: &mut Values) {
         let Some((first, differences)) = values.controls.split_first() else { return };
         let count = differences.len();
         let first = first.to_array();

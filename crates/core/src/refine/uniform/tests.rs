@@ -24,6 +24,26 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
 }
 
+/// What is given without connections is what stands in the mesh.
+fn check_triangles(name: &str, control: &Mesh, scheme: &dyn Scheme, options: &UniformOptions) {
+    let found = uniform_triangles(control, scheme, options).unwrap();
+    let Refinement { mesh, normals, steps, stop, .. } = uniform(control, scheme, options).unwrap();
+    assert!(found.as_triangles().triangles == mesh.topology().triangles(), "{name}: the triangles");
+    assert!(found.positions == mesh.positions(), "{name}: the positions");
+    assert_eq!((found.levels, found.stop), (steps.len(), stop), "{name}");
+    let Some(normals) = normals else {
+        assert!(found.normals.is_empty() && found.sides.is_empty(), "{name}");
+        return;
+    };
+    assert!(found.normals == normals.by_vertex(), "{name}: the normals");
+    for h in mesh.topology().half_edges() {
+        let side = found.sides.binary_search_by_key(&h.0, |&(corner, _)| corner);
+        let of_vertex = found.normals[mesh.topology().origin(h).index()];
+        let normal = side.map_or(of_vertex, |i| found.sides[i].1);
+        assert_eq!(normal, normals.at(mesh.topology(), h), "{name}: {h}");
+    }
+}
+
 /// Everything that steps and stencils give, by another way.
 fn check(name: &str, control: &Mesh, scheme: &dyn Scheme, levels: usize) {
     let (mesh, positions, normals) = by_steps(control, scheme, levels);
@@ -31,6 +51,12 @@ fn check(name: &str, control: &Mesh, scheme: &dyn Scheme, levels: usize) {
     assert!(found.mesh.topology() == mesh.topology(), "{name}: the topology");
     assert_eq!(found.mesh.tags(), mesh.tags(), "{name}");
     assert_eq!(found.steps.len(), levels);
+    check_triangles(
+        name,
+        control,
+        scheme,
+        &UniformOptions::default().levels(levels).limit(true).normals(true),
+    );
     let (diagonal, topology) = (control.diagonal(), mesh.topology());
     for (v, (&a, &b)) in found.mesh.positions().iter().zip(&positions).enumerate() {
         assert!(
@@ -157,4 +183,40 @@ fn caps_hold_and_too_much_is_refused() {
     assert_eq!((capped.mesh.face_count(), capped.stop), (512, Stop::TriangleCap { needed: 2048 }));
     let refused = uniform(&control, &Loop, &options.levels(40)).unwrap_err();
     assert!(matches!(refused, RefineError::Mesh(MeshError::TooMany { what: "faces", .. })), "{refused}");
+}
+
+#[test]
+fn whoever_needs_no_connections_gets_the_same_whatever_is_asked_for() {
+    let control = sheet();
+    for limit in [false, true] {
+        for normals in [false, true] {
+            let options = UniformOptions::default().levels(4).limit(limit).normals(normals);
+            check_triangles("sheet", &control, &Loop, &options);
+            check_triangles("sheet, capped", &control, &Loop, &options.max_triangles(Some(60 * 64)));
+        }
+    }
+}
+
+/// Coordinates so large that sums of a few of them overflow are told of, by whichever way.
+#[test]
+fn what_overflows_is_an_error() {
+    let huge = |scale: f64| {
+        let positions = sheet().positions().iter().map(|p| p.map(|x| x * scale)).collect();
+        sheet().with_positions(positions).unwrap()
+    };
+    let options = UniformOptions::default().levels(5).limit(true);
+    for scale in [1e290, 1e299] {
+        let found = uniform_triangles(&huge(scale), &Loop, &options).unwrap();
+        let small = uniform_triangles(&sheet(), &Loop, &options).unwrap();
+        for (a, b) in found.positions.iter().zip(&small.positions) {
+            assert!(distance(a.map(|x| x / scale), *b) < 1e-13);
+        }
+    }
+    let refused = [
+        uniform_triangles(&huge(2e307), &Loop, &options).map(|_| ()),
+        uniform(&huge(2e307), &Loop, &options).map(|_| ()),
+    ];
+    for refused in refused {
+        assert!(matches!(refused, Err(RefineError::Mesh(MeshError::NotFinite { .. }))), "{refused:?}");
+    }
 }
