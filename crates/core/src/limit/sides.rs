@@ -65,11 +65,6 @@ impl SidedNormals {
         &self.by_vertex
     }
 
-    /// [`Self::by_vertex`] and [`Self::sides`].
-    pub(crate) fn into_parts(self) -> (Vec<[f64; 3]>, Vec<(HalfEdgeId, [f64; 3])>) {
-        (self.by_vertex, self.sides)
-    }
-
     /// As [`Self::by_vertex`], without the sides.
     pub fn into_by_vertex(self) -> Vec<[f64; 3]> {
         self.by_vertex

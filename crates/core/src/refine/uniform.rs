@@ -142,8 +142,9 @@ impl UniformTriangles {
         levels: usize,
         stop: Stop,
     ) -> Self {
-        let (normals, sides) = normals.map(SidedNormals::into_parts).unwrap_or_default();
-        let sides = sides.into_iter().map(|(corner, normal)| (corner.0, normal)).collect();
+        let sides = normals.iter().flat_map(|normals| normals.sides());
+        let sides = sides.map(|&(corner, normal)| (corner.0, normal)).collect();
+        let normals = normals.map(SidedNormals::into_by_vertex).unwrap_or_default();
         Self { positions, triangles, normals, sides, levels, stop }
     }
 
