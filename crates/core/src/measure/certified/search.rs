@@ -1,9 +1,9 @@
 //! Branch and bound over the pieces of a surface's triangles.
 //!
 //! Takes the surface that is measured and the one it is measured to; gives the interval of the greatest distance.
-//! First the vertices, and on large surfaces samples and a climb, give a lower bound, from which most triangles can be
-//! dropped at once; the pieces of the others are split, the worst first, until all that is left is within the gap of
-//! the lower bound. Pieces are treated in batches between which alone the lower bound changes, so that threads do not
+//! First the vertices, and on large surfaces beside finer ones samples and a climb, give a lower bound, from which most
+//! triangles can be dropped at once; the pieces of the others are split, the worst first, until all that is left is
+//! within the gap of the lower bound. Pieces are treated in batches between which alone the lower bound changes, so that threads do not
 //! matter.
 
 use std::cmp::Ordering;
@@ -19,13 +19,14 @@ use crate::parallel;
 use crate::progress::{Cancelled, Stage, Watch};
 use crate::vector::{DVec3, vector};
 
-/// Points that the first lower bound is sampled at, beside the vertices, on large surfaces: enough for the climb to start
-/// near the maximum on most of them, few beside the rest of the work.
+/// Points that the first lower bound is sampled at, beside the vertices, where that pays: enough for the climb to start
+/// near the maximum on most surfaces, few beside the rest of the work.
 const SAMPLES: usize = 50_000;
 
-/// Triangles of both surfaces that make them large. Smaller ones are searched whole in about the time that samples and
-/// climb take, which spare less than half of it; of large ones they spare about a tenth.
-const LARGE: usize = 4 * SAMPLES;
+/// It pays on surfaces of so many triangles. Smaller ones are searched whole in about the time that samples and climb take,
+/// which spare a third of the work at most; and nothing where the other surface is coarser, whose triangles need no
+/// splitting then.
+const LARGE: usize = 2 * SAMPLES;
 
 /// Samples measured, and triangles bounded, in one go.
 const RUN: usize = 1024;
@@ -143,9 +144,8 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
     /// Measures vertices and, where that pays, samples, and climbs from the farthest of these; returns the triangle nearest
     /// to each vertex in use.
     fn sample(&mut self, watch: &mut Watch<'_>) -> Result<Vec<u32>, Cancelled> {
-        let triangles: usize =
-            [self.from, self.target.bvh].iter().map(|bvh| bvh.surface().triangles.len()).sum();
-        let is_sampled = self.known.is_none() && triangles >= LARGE;
+        let is_large = self.from.surface().triangles.len() >= LARGE;
+        let is_sampled = self.known.is_none() && is_large && self.is_coarser();
         let samples = Samples::new(self.from, if is_sampled { SAMPLES } else { 0 });
         watch.stage(Stage::Sampling, Some(samples.len()))?;
         let runs = parallel::pieces_polled(samples.len(), RUN, &mut |done| watch.done(done), |range| {
@@ -185,8 +185,12 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
     }
 
     fn worker(&self) -> Worker<'t, 's, 'a> {
-        let count = |bvh: &Bvh<'_>| bvh.surface().triangles.len();
-        Worker::new(self.target, self.limit(), count(self.target.bvh) > count(self.from))
+        Worker::new(self.target, self.limit(), self.is_coarser())
+    }
+
+    /// Whether the surface has fewer triangles than the one it is measured to.
+    fn is_coarser(&self) -> bool {
+        self.from.surface().triangles.len() < self.target.bvh.surface().triangles.len()
     }
 
     /// Bounds every triangle and keeps those that may be farther away than the goal.
