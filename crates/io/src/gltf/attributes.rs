@@ -103,8 +103,13 @@ pub(super) fn tables(
             let primitive = &primitives[part];
             let own = of_primitive(primitive).map(|at| &primitive.attributes[at].1);
             table.is_in.push(own.is_some());
+            // A vertex of the file has the same value at all its corners.
+            let mut of_vertex: Vec<Option<u32>> = vec![None; primitive.positions.len()];
             for triangle in &primitive.triangles {
                 let corners = triangle.map(|v| {
+                    if let Some(index) = of_vertex[v as usize] {
+                        return index;
+                    }
                     let mut value = vec![0.0; width];
                     if let Some(own) = own {
                         value.fill(if own.components < width { missing } else { 0.0 });
@@ -119,6 +124,7 @@ pub(super) fn tables(
                     if index == next {
                         table.values.extend(value);
                     }
+                    of_vertex[v as usize] = Some(index);
                     index
                 });
                 table.corners.push(corners);

@@ -6,6 +6,7 @@
 
 use super::parts::Joining;
 use super::primitive::Primitive;
+use foldhash::fast::RandomState;
 use std::collections::HashMap;
 use std::hash::Hash;
 
@@ -70,7 +71,8 @@ impl Kinds {
 
 /// Kinds of vertices that are of one kind and have something more in common.
 fn told_apart<K: Eq + Hash>(kinds: &Numbers, key: impl Fn(usize, usize) -> K) -> Numbers {
-    let mut known = HashMap::new();
+    let vertices = kinds.iter().map(Vec::len).sum();
+    let mut known = HashMap::with_capacity_and_hasher(vertices, RandomState::default());
     let mut number = |kind: u32, key: K| {
         let next = known.len() as u32;
         *known.entry((kind, key)).or_insert(next)
