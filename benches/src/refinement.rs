@@ -47,7 +47,7 @@ fn limits(model: &Path, control: &Mesh) -> Result<()> {
          but for the mesh with connections"
     );
     println!(
-        "level  triangles  positions  and normals  gain of 2 threads  with connections  OpenSubdiv Bfr, positions and normals"
+        "level  triangles  positions  and normals  gain of 2 threads  normals and connections  OpenSubdiv Bfr, positions and normals"
     );
     for level in [4, 5] {
         let options = UniformOptions::default().levels(level).limit(true);
@@ -82,7 +82,7 @@ fn limits(model: &Path, control: &Mesh) -> Result<()> {
             None => "not installed".into(),
         };
         println!(
-            "{level:5}  {triangles:9}  {:9.1}  {:11.1}  {:17.2}  {:16.1}  {peer}",
+            "{level:5}  {triangles:9}  {:9.1}  {:11.1}  {:17.2}  {:23.1}  {peer}",
             rate(positions),
             rate(normals),
             one / two,

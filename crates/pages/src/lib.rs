@@ -56,8 +56,8 @@ pub fn defaults<T: Clone + Default>(length: usize) -> Vec<T> {
     defaults_with_room(length, length)
 }
 
-/// Like [`defaults`], but that also fewer zeros are not touched where the allocator has them: for arrays that are written once, and by
-/// whoever comes first.
+/// Like [`defaults`], but zeros are left to the allocator whatever their number: fresh memory is not touched, and memory that is used
+/// again is cleared first and stays on the pages that it has.
 ///
 /// ```
 /// assert_eq!(limitmesh_pages::untouched_defaults::<u8>(3), [0, 0, 0]);

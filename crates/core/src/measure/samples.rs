@@ -77,6 +77,17 @@ impl<'s, 'a> Samples<'s, 'a> {
         Self { surface, vertices, sides, insides }
     }
 
+    /// The vertices in use alone.
+    pub(super) fn of_vertices(surface: &'s Bvh<'a>) -> Self {
+        let none = |weight| Spread { count: 0, before: Vec::new(), weight };
+        Self {
+            surface,
+            vertices: vertices_in_order(surface),
+            sides: none(perimeter as fn(_) -> _),
+            insides: none(area),
+        }
+    }
+
     /// The vertices, which are the first samples, in their order.
     pub(super) fn vertices(&self) -> &[u32] {
         &self.vertices

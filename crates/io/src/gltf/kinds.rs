@@ -71,8 +71,8 @@ impl Kinds {
 
 /// Kinds of vertices that are of one kind and have something more in common.
 fn told_apart<K: Eq + Hash>(kinds: &Numbers, key: impl Fn(usize, usize) -> K) -> Numbers {
-    let vertices = kinds.iter().map(Vec::len).sum();
-    let mut known = HashMap::with_capacity_and_hasher(vertices, RandomState::default());
+    // Numbers go by who comes first, so that the hash does not show; its seed differs from run to run, as that of the standard one.
+    let mut known = HashMap::with_hasher(RandomState::default());
     let mut number = |kind: u32, key: K| {
         let next = known.len() as u32;
         *known.entry((kind, key)).or_insert(next)

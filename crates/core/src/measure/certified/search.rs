@@ -24,9 +24,9 @@ use crate::vector::{DVec3, vector};
 const SAMPLES: usize = 50_000;
 
 /// It pays on surfaces of so many triangles. Smaller ones are searched whole in about the time that samples and climb take,
-/// which spare a third of the work at most; and nothing where the other surface is coarser, whose triangles need no
-/// splitting then.
-const LARGE: usize = 2 * SAMPLES;
+/// which spare a third of the work at most. They spare nothing where the surface itself is the finer one, whose triangles
+/// are hardly ever split.
+const LARGE: usize = 100_000;
 
 /// Samples measured, and triangles bounded, in one go.
 const RUN: usize = 1024;
@@ -146,7 +146,10 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
     fn sample(&mut self, watch: &mut Watch<'_>) -> Result<Vec<u32>, Cancelled> {
         let is_large = self.from.surface().triangles.len() >= LARGE;
         let is_sampled = self.known.is_none() && is_large && self.is_coarser();
-        let samples = Samples::new(self.from, if is_sampled { SAMPLES } else { 0 });
+        let samples = match is_sampled {
+            true => Samples::new(self.from, SAMPLES),
+            false => Samples::of_vertices(self.from),
+        };
         watch.stage(Stage::Sampling, Some(samples.len()))?;
         let runs = parallel::pieces_polled(samples.len(), RUN, &mut |done| watch.done(done), |range| {
             let mut points = Vec::with_capacity(range.len());

@@ -345,17 +345,50 @@ fn sampled_distances_lie_within() {
     }
 }
 
+/// A flat sheet under a ridge whose top lies over no vertex of it: the farthest points are on its foot, and c / √(1 + s²) away.
+fn sheet_and_ridge() -> (Shape, Shape, f64) {
+    let (height, slope) = (0.1, 0.25f64);
+    let ridge = square(230, |x, _| height - slope * (x - 0.5).abs());
+    (square(225, |_, _| 0.0), ridge, height / slope.hypot(1.0))
+}
+
+#[test]
+fn large_surfaces_beside_finer_ones_are_sampled_first() {
+    let (sheet, ridge, truth) = sheet_and_ridge();
+    assert!(sheet.triangles.len() > 100_000 && ridge.triangles.len() > sheet.triangles.len());
+    let mut samples = Vec::new();
+    let found = certified_hausdorff_observed(
+        sheet.as_triangles(),
+        ridge.as_triangles(),
+        &CertifiedOptions::default().gap(Some(1e-9)).relative_gap(0.0),
+        &mut |progress| {
+            if progress.stage == Stage::Sampling && samples.last() != Some(&progress.total) {
+                samples.push(progress.total);
+            }
+            core::ops::ControlFlow::Continue(())
+        },
+    );
+    holds(&found.unwrap().forward, truth, 2e-9);
+    let counts: Vec<usize> = samples.into_iter().flatten().collect();
+    assert!(
+        matches!(counts[..], [from, to] if from > sheet.positions.len() + 10_000 && to == ridge.positions.len()),
+        "{counts:?}"
+    );
+}
+
 #[cfg(feature = "parallel")]
 #[test]
 fn the_same_bytes_on_any_number_of_threads() {
-    let (a, b) = (sphere(40, 1.0), sphere(23, 1.003));
-    let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| certify(&a, &b, &narrow()))
-    };
-    let one = on(1);
-    for threads in [2, 4] {
-        assert_eq!(one, on(threads));
+    let (sheet, ridge, _) = sheet_and_ridge();
+    for (a, b) in [(sphere(40, 1.0), sphere(23, 1.003)), (sheet, ridge)] {
+        let on = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| certify(&a, &b, &narrow()))
+        };
+        let one = on(1);
+        for threads in [2, 4] {
+            assert_eq!(one, on(threads));
+        }
     }
 }
 

@@ -151,6 +151,10 @@ impl<'a> Work<'a> {
                 });
             }
         }
+        debug_assert!(
+            outgoing.is_empty() && points.is_empty() && normals.is_empty(),
+            "each slot is some face's"
+        );
         blocks
     }
 
@@ -193,6 +197,7 @@ impl<'a> Work<'a> {
                 flat.push(face as u32);
             }
         }
+        debug_assert!(levels.iter().all(|left| left.points.is_empty()), "each slot is filled");
         flat
     }
 

@@ -2,7 +2,7 @@
 //!
 //! A face far from boundaries and creases with one irregular corner at most depends on the corner, its ring and five points
 //! more, and every place on it is a fixed combination of these: the weights are tabulated for each valence. Where no corner is irregular
-//! rows of the face's polynomial take less. Any other face is refined towards what is irregular, and its regular parts are
+//! and rows are long, those of the face's polynomial take less. Any other face is refined towards what is irregular, and its regular parts are
 //! evaluated as polynomials.
 
 use core::ops::Range;
