@@ -21,9 +21,6 @@ use crate::vector::{DVec3, vector};
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Control faces whose values are found together.
-const BLOCK: usize = 64;
-
 /// What is beyond an edge of a node, on its level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Across {
@@ -125,7 +122,8 @@ impl<'a> Forest<'a> {
         let (topology, faces) = (control.topology(), control.face_count());
         let edges = Edges::of(control);
         let pieces = Pieces::of(surface, measure);
-        let values = parallel::pieces_polled(faces, BLOCK, &mut |_| halt.watch().poll(), |block| {
+        let share = parallel::share(faces);
+        let values = parallel::pieces_polled(faces, share, &mut |_| halt.watch().poll(), |block| {
             block.map(|face| pieces.control_value(face as u32)).collect::<Vec<_>>()
         })?
         .concat();

@@ -22,15 +22,13 @@ use super::surface::Ground;
 use crate::certificate::SubTriangle;
 use crate::criterion::{Backs, Criteria, Region, Viewpoint};
 use crate::facing::{DEEPEST, back_but_for, is_back};
+use crate::parallel;
 use crate::patch::{LimitPoint, Patch, Rules, Spot};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// What rounding may do to the side of a triangle's plane that a place is on, as a part of the product of the lengths.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-
-/// Control faces that one call takes together.
-const BLOCK: usize = 64;
 
 /// Control faces times viewers for which that is kept: where there are more, leaves are looked at one by one.
 const MOST_KEPT: usize = 1 << 23;
@@ -57,7 +55,7 @@ impl BackFaces {
             return Ok(Self::default());
         }
         let nobody = Self::default();
-        let blocks = watch.long_pieces(faces, BLOCK, |block, is_stopped| {
+        let blocks = watch.long_pieces(faces, parallel::share(faces), |block, is_stopped| {
             let mut rests = vec![f64::NAN; block.len() * viewers];
             for (face, rests) in block.zip(rests.chunks_mut(viewers)) {
                 if is_stopped() {
