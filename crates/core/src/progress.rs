@@ -263,4 +263,13 @@ impl<'a> SharedWatch<'a> {
     ) -> Result<Vec<T>, Cancelled> {
         parallel::long_pieces_polled(n, length, &mut |_| self.poll(), f)
     }
+
+    /// [`Self::long_pieces`] of as many elements as [`parallel::share`] says.
+    pub(crate) fn long_shares<T: Send, F: Fn(Range<usize>, &IsStopped<'_>) -> T + Sync>(
+        &self,
+        n: usize,
+        f: F,
+    ) -> Result<Vec<T>, Cancelled> {
+        self.long_pieces(n, parallel::share(n), f)
+    }
 }

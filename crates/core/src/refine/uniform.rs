@@ -16,9 +16,7 @@ use self::limits::{AtLimit, Wanted};
 use super::driver::Driver;
 use super::{RefineError, Refinement, StepReport, Stop};
 use crate::limit::SidedNormals;
-use crate::mesh::{
-    Junctions, MAX_FACES, Mesh, MeshError, Sharpness, Tags, Topology, Triangles, check_finite,
-};
+use crate::mesh::{Junctions, MAX_FACES, Mesh, MeshError, Sharpness, Topology, Triangles, check_finite};
 use crate::patch::Rules;
 use crate::progress::{Observer, Stage, Watch, unobserved};
 use crate::scheme::Scheme;
@@ -109,8 +107,8 @@ pub fn uniform_observed(
         return by_steps(mesh, scheme, options, observer);
     };
     let wanted = Wanted { normals: options.normals, connections: true };
-    let (AtLimit { triangles, twins, outgoing, positions, normals }, tags, steps) =
-        last.refined(mesh, wanted, observer)?;
+    let (found, steps) = last.refined(mesh, wanted, observer)?;
+    let AtLimit { triangles, twins, outgoing, positions, normals, tags } = found;
     let topology = Topology::from_parts(triangles, twins, outgoing);
     let mesh = Mesh::from_parts(topology, positions, tags, Junctions::default());
     Ok(Refinement { mesh, normals, origins: Vec::new(), parents: Vec::new(), steps, stop: last.end.stop })
@@ -199,7 +197,7 @@ pub fn uniform_triangles_observed(
         return Ok(UniformTriangles::new(mesh.into_positions_and_triangles(), normals, steps.len(), stop));
     };
     let wanted = Wanted { normals: options.normals, connections: false };
-    let (found, _, _) = last.refined(mesh, wanted, observer)?;
+    let (found, _) = last.refined(mesh, wanted, observer)?;
     Ok(UniformTriangles::new(
         (found.positions, found.triangles),
         found.normals,
@@ -286,13 +284,13 @@ impl<'a> LastLevels<'a> {
         Ok((together > 0).then_some(Self { rules, end, together }))
     }
 
-    /// The first levels by steps, then the last ones; with the tags of the result, and what each level did.
+    /// The first levels by steps, then the last ones; with what each level did.
     fn refined(
         &self,
         mesh: &Mesh,
         wanted: Wanted,
         observer: &mut Observer<'_>,
-    ) -> Result<(AtLimit, Tags, Vec<StepReport>), RefineError> {
+    ) -> Result<(AtLimit, Vec<StepReport>), RefineError> {
         let &Self { ref rules, ref end, together } = self;
         let first = UniformOptions::default().levels(end.levels - together);
         let Refinement { mesh, mut steps, .. } = by_steps(mesh, rules.scheme(), &first, observer)?;
@@ -301,7 +299,7 @@ impl<'a> LastLevels<'a> {
         watch.triangles(mesh.face_count());
         watch.stage(Stage::Refining, Some(end.levels))?;
         watch.done(end.levels - together)?;
-        let (found, tags) = limits::refined_at_limit(&mesh, rules, together, wanted, &mut watch)?;
+        let found = limits::refined_at_limit(&mesh, rules, together, wanted, &mut watch)?;
         let mut faces = mesh.face_count();
         for step in end.levels - together + 1..=end.levels {
             let (faces_before, faces_after) = (faces, 4 * faces);
@@ -316,7 +314,7 @@ impl<'a> LastLevels<'a> {
         if !stays_finite(&mesh) {
             check_finite(&found.positions)?;
         }
-        Ok((found, tags, steps))
+        Ok((found, steps))
     }
 }
 

@@ -22,7 +22,6 @@ use super::surface::Ground;
 use crate::certificate::SubTriangle;
 use crate::criterion::{Backs, Criteria, Region, Viewpoint};
 use crate::facing::{DEEPEST, back_but_for, is_back};
-use crate::parallel;
 use crate::patch::{LimitPoint, Patch, Rules, Spot};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, unit_or_zero, vector};
@@ -55,7 +54,7 @@ impl BackFaces {
             return Ok(Self::default());
         }
         let nobody = Self::default();
-        let blocks = watch.long_pieces(faces, parallel::share(faces), |block, is_stopped| {
+        let blocks = watch.long_shares(faces, |block, is_stopped| {
             let mut rests = vec![f64::NAN; block.len() * viewers];
             for (face, rests) in block.zip(rests.chunks_mut(viewers)) {
                 if is_stopped() {

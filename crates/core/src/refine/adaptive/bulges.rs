@@ -17,7 +17,6 @@ use super::measure::{Measured, fail};
 use super::quadtree::Place;
 use crate::certificate::{BentFour, FOUR, TriangleFrame};
 use crate::criterion::Region;
-use crate::parallel;
 use crate::patch::{Rules, reciprocal_power};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
@@ -80,7 +79,7 @@ impl Bulges {
         let hopeless = HOPELESS * allowed;
         let emission = sources.emission;
         self.0.resize_with(emission.starts.len() - 1, Bulge::default);
-        let found = watch.long_pieces(faces.len(), parallel::share(faces.len()), |block, is_stopped| {
+        let found = watch.long_shares(faces.len(), |block, is_stopped| {
             let found = faces[block].iter().map(|&face| {
                 let triangles = emission.triangles_of(face);
                 let found = Bulge::unknown(triangles.len(), scale(sources.control, face));

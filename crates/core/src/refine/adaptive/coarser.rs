@@ -7,7 +7,7 @@ use super::leaves::{Covering, Descent, Leaves, child_with, in_child};
 use super::quadtree::Place;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::Mesh;
-use crate::parallel::{self, IsStopped};
+use crate::parallel::IsStopped;
 use crate::progress::SharedWatch;
 use crate::refine::RefineError;
 use crate::refine::exact_result::Exact;
@@ -44,17 +44,13 @@ pub(super) fn on_coarser(
     watch: &SharedWatch<'_>,
 ) -> Result<Geomorph, RefineError> {
     let (below, own) = (Leaves::of(control, coarser), Leaves::of(control, level));
-    let blocks = watch.long_pieces(
-        control.face_count(),
-        parallel::share(control.face_count()),
-        |block, is_stopped| {
-            let mut finding = Finding { coarser, found: Vec::new(), is_stopped };
-            for face in block {
-                below.descend(face as u32, asked(level, &own, face as u32), &mut finding);
-            }
-            finding.found
-        },
-    )?;
+    let blocks = watch.long_shares(control.face_count(), |block, is_stopped| {
+        let mut finding = Finding { coarser, found: Vec::new(), is_stopped };
+        for face in block {
+            below.descend(face as u32, asked(level, &own, face as u32), &mut finding);
+        }
+        finding.found
+    })?;
     let mut morph = Geomorph {
         positions: level.mesh.positions().to_vec(),
         normals: level.normals.clone(),

@@ -96,7 +96,7 @@ pub(super) fn leaves_of(
     faces: &[(u32, usize)],
 ) -> Result<Vec<usize>, Cancelled> {
     let Engine { control, watch, ref edges, max_levels, .. } = *engine;
-    let blocks = watch.long_pieces(faces.len(), parallel::share(faces.len()), |block, is_stopped| {
+    let blocks = watch.long_shares(faces.len(), |block, is_stopped| {
         let leaves = faces[block].iter().map(|&(face, most)| {
             let count = Count { leaves: AtomicUsize::new(0), most };
             let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));

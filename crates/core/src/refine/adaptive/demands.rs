@@ -14,7 +14,7 @@ use crate::certificate::{Effort, Pieces, Sheet, SubTriangle, TriangleFrame, exce
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::mesh::Mesh;
-use crate::parallel::{self, IsStopped};
+use crate::parallel::IsStopped;
 use crate::patch::Rules;
 use crate::progress::SharedWatch;
 use crate::refine::RefineError;
@@ -146,7 +146,7 @@ impl<'a> Functions<'a> {
         watch: &SharedWatch<'_>,
     ) -> Result<Option<Demands>, RefineError> {
         let count = AtomicUsize::new(0);
-        let blocks = watch.long_pieces(faces, parallel::share(faces), |block, is_stopped| {
+        let blocks = watch.long_shares(faces, |block, is_stopped| {
             let mut found = Vec::new();
             let search = Dividing { functions: self, max_levels, most, count: &count, is_stopped };
             for face in block {
@@ -173,20 +173,16 @@ impl<'a> Functions<'a> {
         watch: &SharedWatch<'_>,
     ) -> Result<Held, RefineError> {
         let leaves = Leaves::of(control, found);
-        let blocks = watch.long_pieces(
-            control.face_count(),
-            parallel::share(control.face_count()),
-            |block, is_stopped| {
-                let held = Held { bounds: vec![0.0; self.goals.len()], failing: Vec::new() };
-                let mut looking = Looking { functions: self, held, is_stopped };
-                for face in block {
-                    if !leaves.descend(face as u32, self.sheets(face), &mut looking) {
-                        looking.held.bounds.fill(f64::INFINITY);
-                    }
+        let blocks = watch.long_shares(control.face_count(), |block, is_stopped| {
+            let held = Held { bounds: vec![0.0; self.goals.len()], failing: Vec::new() };
+            let mut looking = Looking { functions: self, held, is_stopped };
+            for face in block {
+                if !leaves.descend(face as u32, self.sheets(face), &mut looking) {
+                    looking.held.bounds.fill(f64::INFINITY);
                 }
-                looking.held
-            },
-        )?;
+            }
+            looking.held
+        })?;
         self.check()?;
         let mut held = Held { bounds: vec![0.0; self.goals.len()], failing: Vec::new() };
         for block in blocks {

@@ -24,7 +24,6 @@ use crate::certificate::{
     BesideEdges, Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
 };
 use crate::criterion::{Apart, Backs, Criteria, Region, Viewpoint};
-use crate::parallel;
 use crate::patch::{LimitPoint, Rules};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
@@ -62,7 +61,7 @@ pub(super) fn measure(
     (faces, changes, bulges): (&[u32], Option<&Changes>, Option<&Bulges>),
 ) -> Result<Vec<Measured>, Cancelled> {
     let sharp = sharp_edges(sources.emission, watch)?;
-    let measured = watch.long_pieces(faces.len(), parallel::share(faces.len()), |block, is_stopped| {
+    let measured = watch.long_shares(faces.len(), |block, is_stopped| {
         let measured = faces[block].iter().map(|&face| {
             let mut measuring = Measuring::of(sources, (face, &sharp), (goal, length), changes);
             let bulge = bulges.filter(|_| measuring.criteria.is_none() && !measuring.rim_alone);

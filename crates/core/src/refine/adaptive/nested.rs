@@ -12,7 +12,7 @@ use crate::certificate::{Sheet, exceeds};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::mesh::Mesh;
-use crate::parallel::{self, IsStopped};
+use crate::parallel::IsStopped;
 use crate::patch::Rules;
 use crate::progress::{Observer, SharedWatch, Stage};
 use crate::refine::RefineError;
@@ -97,14 +97,13 @@ fn divide_as(
     watch: &SharedWatch<'_>,
 ) -> Result<(), RefineError> {
     let leaves = Leaves::of(mesh, level);
-    let blocks =
-        watch.long_pieces(mesh.face_count(), parallel::share(mesh.face_count()), |block, is_stopped| {
-            let mut parents = Parents { found: Vec::new(), is_stopped };
-            block.for_each(|face| {
-                leaves.descend(face as u32, (), &mut parents);
-            });
-            parents.found
-        })?;
+    let blocks = watch.long_shares(mesh.face_count(), |block, is_stopped| {
+        let mut parents = Parents { found: Vec::new(), is_stopped };
+        block.for_each(|face| {
+            leaves.descend(face as u32, (), &mut parents);
+        });
+        parents.found
+    })?;
     watch.each(blocks.into_iter().flatten(), |place| {
         demands.add(place);
     })?;
@@ -160,22 +159,17 @@ impl Apart<'_> {
     fn off(&self, mesh: &Mesh, exact: &Exact, watch: &SharedWatch<'_>) -> Result<Off, RefineError> {
         let leaves = Leaves::of(mesh, exact);
         let triangles = exact.mesh.triangles();
-        let blocks = watch.long_pieces(
-            mesh.face_count(),
-            parallel::share(mesh.face_count()),
-            |block, is_stopped| {
-                let mut off = Off { greatest: [0.0; 2], failing: Vec::new() };
-                for face in block {
-                    let (sheet, rules) = self.surface.sheet(FaceId(face as u32));
-                    let mut looking =
-                        Looking { rules, triangles, ends: &self.ends, off: &mut off, is_stopped };
-                    if !leaves.descend(face as u32, sheet, &mut looking) {
-                        off.greatest = [f64::INFINITY; 2];
-                    }
+        let blocks = watch.long_shares(mesh.face_count(), |block, is_stopped| {
+            let mut off = Off { greatest: [0.0; 2], failing: Vec::new() };
+            for face in block {
+                let (sheet, rules) = self.surface.sheet(FaceId(face as u32));
+                let mut looking = Looking { rules, triangles, ends: &self.ends, off: &mut off, is_stopped };
+                if !leaves.descend(face as u32, sheet, &mut looking) {
+                    off.greatest = [f64::INFINITY; 2];
                 }
-                off
-            },
-        )?;
+            }
+            off
+        })?;
         let mut off = Off { greatest: [0.0; 2], failing: Vec::new() };
         for block in blocks {
             off.greatest = [0, 1].map(|end| off.greatest[end].max(block.greatest[end]));

@@ -53,6 +53,8 @@ pub(super) struct AtLimit {
     pub(super) outgoing: Vec<u32>,
     pub(super) positions: Vec<[f64; 3]>,
     pub(super) normals: Option<SidedNormals>,
+    /// Those of the mesh; none where nobody asked for connections.
+    pub(super) tags: Tags,
 }
 
 /// The slots that a run of faces fills. What nobody asked for is empty, here and in [`LevelSlots`].
@@ -71,14 +73,14 @@ struct LevelSlots<'s> {
 }
 
 /// Refines a mesh of Loop's family without junctions, whose tags do not fade, by `levels` levels, and takes its vertices to
-/// the limit surface. With the tags of the result.
+/// the limit surface.
 pub(super) fn refined_at_limit(
     mesh: &Mesh,
     rules: &Rules<'_>,
     levels: usize,
     wanted: Wanted,
     watch: &mut Watch<'_>,
-) -> Result<(AtLimit, Tags), RefineError> {
+) -> Result<AtLimit, RefineError> {
     let grid = Grid::new(levels)?;
     let sharpness = Sharpness::of(mesh);
     let numbering = Numbering::new(&grid, mesh.topology());
@@ -110,7 +112,8 @@ pub(super) fn refined_at_limit(
     if let Some(why) = rules.failure() {
         return Err(why.clone().into());
     }
-    Ok((AtLimit { triangles, twins, outgoing, positions, normals }, work.tags()))
+    let tags = if wanted.connections { work.tags() } else { Tags::default() };
+    Ok(AtLimit { triangles, twins, outgoing, positions, normals, tags })
 }
 
 impl<'a> Work<'a> {

@@ -209,7 +209,8 @@ impl<'a> Pieces<'a> {
         }
         for side in (0..3).filter(|side| sides >> side & 1 != 0) {
             let start = self.slots.starts[1 + side];
-            fill_row(&quartic(side), 0.0, start..start + self.segments - 1);
+            let seen_from = if side == 0 { whole } else { quartic(side) };
+            fill_row(&seen_from, 0.0, start..start + self.segments - 1);
         }
     }
 

@@ -7,7 +7,6 @@ use super::super::judge::{Allowance, Extent, Goal};
 use super::super::quadtree::Edges;
 use super::again::Before;
 use super::{Count, Decider, Decision};
-use crate::parallel;
 use crate::progress::SharedWatch;
 use crate::refine::RefineError;
 
@@ -68,7 +67,7 @@ impl Decision {
         (faces, coarser): (&[u32], Option<&Goal>),
     ) -> Result<bool, RefineError> {
         let count = Count { leaves: AtomicUsize::new(0), most };
-        let again = watch.long_pieces(faces.len(), parallel::share(faces.len()), |block, is_stopped| {
+        let again = watch.long_shares(faces.len(), |block, is_stopped| {
             let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
             let again = faces[block].iter().map(|&face| {
                 let found = &self.found[face as usize];
