@@ -1,8 +1,7 @@
-//! Ctrl-C, SIGTERM and SIGHUP: end the program at once and say what was cancelled, but never in the middle of writing a
-//! file.
+//! Ctrl-C, SIGTERM and SIGHUP: end the program at once, also while it writes a file, and say what was cancelled.
 //!
-//! Files are written to a temporary neighbour and renamed, so no reader ever sees half of one. The guard here
-//! keeps a signal from leaving such a temporary file behind: it waits for the file in hand.
+//! Files are written to a temporary neighbour and renamed, so no reader ever sees half of one; a signal on the way removes
+//! the neighbour. Only a batch, whose results belong together, comes to the end of what it has in hand.
 
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -11,8 +10,8 @@ use anyhow::Context;
 
 /// What the program does, for the message of an interrupt.
 struct State {
-    /// The file that is being written.
-    writing: Option<String>,
+    /// The file that is being written, and how many had been finished before.
+    writing: Option<(String, usize)>,
     /// What was asked for meanwhile.
     asked: Option<Signal>,
     doing: String,
@@ -76,18 +75,27 @@ pub(crate) fn install() -> anyhow::Result<()> {
     ctrlc::set_handler(|| end(SIGNALS[1])).context("could not arrange for Ctrl-C")
 }
 
-/// Ends the program, or leaves that to the end of the file in hand.
+/// Ends the program, or leaves that to its caller.
 fn end(signal: Signal) {
     // Held while exiting, so that no write can begin meanwhile.
     let mut state = state();
-    match &state.writing {
-        Some(name) => {
+    if state.is_left_to_caller {
+        if let Some((name, _)) = &state.writing {
             say(&format!("{name} is written to its end first"));
-            state.asked = Some(signal);
         }
-        None if state.is_left_to_caller => state.asked = Some(signal),
-        None => exit(&state, signal),
+        state.asked = Some(signal);
+        return;
     }
+    // Held, too, so that no file takes its name any more.
+    let abandoned = limitmesh_io::abandon_unfinished();
+    if let Some((name, before)) = state.writing.take() {
+        if abandoned.finished_files() > before {
+            state.written.push(name);
+        } else {
+            state.doing = format!("writing {name}");
+        }
+    }
+    exit(&state, signal)
 }
 
 /// From now on signals are only noted: the caller has work of its own to end. It asks [`is_asked`], and then calls
@@ -151,13 +159,14 @@ pub(crate) fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Runs `write`, which writes a file of that name, to its end even if a signal comes meanwhile; then ends the program if one
-/// did.
+/// Runs `write`, which writes a file of that name, whole or not at all even if a signal comes meanwhile.
+///
+/// Where signals are left to the caller, one that came meanwhile ends the program afterwards.
 pub(crate) fn uninterrupted<T, E>(name: String, write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
-    state().writing = Some(name);
+    state().writing = Some((name, limitmesh_io::finished_files()));
     let result = write();
     let mut state = state();
-    let name = state.writing.take();
+    let name = state.writing.take().map(|(name, _)| name);
     if result.is_ok() {
         state.written.extend(name);
     }

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 use std::process::Stdio;
+#[cfg(unix)]
+use std::time::Duration;
 
 use crate::common::{command, file, folder, names, run, soup};
 
@@ -85,7 +87,6 @@ fn a_reader_that_goes_away_is_no_error() {
 #[cfg(unix)]
 #[test]
 fn signals_leave_the_whole_file_or_none_and_say_what_was_cancelled() {
-    use std::time::Duration;
     for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
         for delay in [20, 200, 600] {
             let folder = folder();
@@ -119,6 +120,74 @@ fn signals_leave_the_whole_file_or_none_and_say_what_was_cancelled() {
             }
         }
     }
+}
+
+/// Nobody waits for the end of a large file: the temporary one is removed, and an earlier one of that name stays.
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_the_writing_of_a_large_file() {
+    let folder = folder();
+    for (name, how) in [("out.ply", "--ascii"), ("out.obj", "")] {
+        let output = file(&folder, name, "precious");
+        let words = format!("refine builtin:shoe -o {{}} -q --method uniform --levels 6 {how}");
+        let mut child =
+            command(&words, &[&output]).stderr(Stdio::piped()).spawn().expect("the program starts");
+        let is_begun = || names(folder.path()).iter().any(|name| name.ends_with(".tmp"));
+        while !is_begun() {
+            assert_eq!(child.try_wait().expect("a child"), None, "{name}: it ends before it writes");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        signal(&child, "INT");
+        let told = ended(child, name);
+        let said = String::from_utf8_lossy(&told.stderr);
+        assert_eq!(told.status.code(), Some(130), "{name}: {said}");
+        assert!(said.contains("while writing ") && said.contains("nothing was written"), "{name}: {said}");
+        assert_eq!(names(folder.path()), [name]);
+        assert_eq!(std::fs::read_to_string(&output).expect("the earlier file"), "precious");
+        std::fs::remove_file(&output).expect("own file");
+    }
+}
+
+/// A pipe that nobody reads from keeps no program from ending.
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_the_writing_into_a_full_pipe() {
+    let folder = folder();
+    let pipe = folder.path().join("pipe.ply");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
+    let child = command("refine builtin:shoe -o {} -q --method uniform --levels 3", &[&pipe])
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    // Opens when the program does.
+    let reader = std::fs::File::open(&pipe).expect("a pipe");
+    signal(&child, "TERM");
+    let told = ended(child, "pipe");
+    drop(reader);
+    let said = String::from_utf8_lossy(&told.stderr);
+    assert_eq!(told.status.code(), Some(143), "{said}");
+    assert!(said.contains("cancelled by SIGTERM while writing "), "{said}");
+}
+
+#[cfg(unix)]
+fn signal(child: &std::process::Child, name: &str) {
+    let sent =
+        std::process::Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status();
+    assert!(sent.expect("kill").success());
+}
+
+/// What became of a child that ends within a minute.
+#[cfg(unix)]
+fn ended(mut child: std::process::Child, what: &str) -> std::process::Output {
+    let start = std::time::Instant::now();
+    while child.try_wait().expect("a child").is_none() {
+        if start.elapsed() > Duration::from_secs(60) {
+            child.kill().expect("a child can be ended");
+            panic!("{what}: it does not end");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.wait_with_output().expect("it has ended")
 }
 
 /// What whoever starts the program has it ignore stays ignored, as `nohup` needs.

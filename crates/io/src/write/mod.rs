@@ -13,8 +13,10 @@ mod whole;
 pub(crate) use numbers::Pieces;
 pub use property::{Property, PropertyValues};
 pub use split::splits_vertices;
+pub use whole::{
+    Abandoned, abandon_unfinished, check_writable, finished_files, write_whole, write_whole_with,
+};
 pub(crate) use whole::{WholeFile, write_together};
-pub use whole::{check_writable, write_whole, write_whole_with};
 
 use crate::error::WriteError;
 use crate::format::Format;

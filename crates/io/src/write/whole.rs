@@ -1,12 +1,14 @@
 //! Files that are written whole or not at all.
 //!
 //! The bytes go to a temporary file in the same folder, which takes the name at the end. An error, or the end
-//! of the program on the way, leaves an earlier file of that name as it was.
+//! of the program on the way, leaves an earlier file of that name as it was. A program that ends by itself on the way, because of
+//! a signal, removes the temporary files first: [`abandon_unfinished`].
 
 use crate::error::WriteError;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Finds out, without writing anything, whether [`write_whole`] could write a file: to be asked before long work.
 ///
@@ -17,7 +19,7 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     match earlier(path).map_err(failed)? {
         Some(device) if !device.is_file() => Ok(()),
         earlier => {
-            temporary_beside(&target(path, earlier.as_ref()).map_err(failed)?).map(drop).map_err(failed)
+            Unfinished::beside(&target(path, earlier.as_ref()).map_err(failed)?).map(drop).map_err(failed)
         }
     }
 }
@@ -53,7 +55,14 @@ fn target(path: &Path, earlier: Option<&fs::Metadata>) -> io::Result<PathBuf> {
 /// # Errors
 /// The folder does not exist, it or the earlier file may not be written to, or there is no space.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    write_whole_with(path, |writer| Ok(writer.write_all(bytes)?))
+    write_whole_with(path, |writer| Ok(write_in_pieces(writer, bytes)?))
+}
+
+/// Bytes that the system is given at once: some milliseconds of writing, in which a program that is about to end waits for it.
+const PIECE: usize = 1 << 22;
+
+fn write_in_pieces(writer: &mut dyn Write, bytes: &[u8]) -> io::Result<()> {
+    bytes.chunks(PIECE).try_for_each(|piece| writer.write_all(piece))
 }
 
 /// Writes what `fill` gives to a file, whole or not at all, as [`write_whole`] does.
@@ -71,12 +80,13 @@ pub fn write_whole_with(
         return fill(&mut device).map_err(|error| error.in_file(path));
     }
     let target = target(path, earlier.as_ref()).map_err(failed)?;
-    let mut file = temporary_beside(&target).map_err(failed)?;
-    fill(file.as_file_mut()).map_err(|error| error.in_file(path))?;
+    let mut file = Unfinished::beside(&target).map_err(failed)?;
+    fill(&mut file.file).map_err(|error| error.in_file(path))?;
     if let Some(earlier) = earlier {
-        fs::set_permissions(file.path(), earlier.permissions()).map_err(failed)?;
+        file.set_permissions(earlier.permissions()).map_err(failed)?;
     }
-    file.persist(&target).map(drop).map_err(|error| failed(error.error))
+    let finished = file.finish(&target, &mut register());
+    finished.map_err(failed)
 }
 
 /// A file with all its bytes.
@@ -96,37 +106,113 @@ pub(crate) fn write_together(files: &[WholeFile]) -> Result<(), WriteError> {
             continue;
         }
         let target = target(path, earlier.as_ref()).map_err(failed)?;
-        let mut file = temporary_beside(&target).map_err(failed)?;
-        file.as_file_mut().write_all(bytes).map_err(failed)?;
+        let mut file = Unfinished::beside(&target).map_err(failed)?;
+        write_in_pieces(&mut file.file, bytes).map_err(failed)?;
         if let Some(earlier) = earlier {
-            fs::set_permissions(file.path(), earlier.permissions()).map_err(failed)?;
+            file.set_permissions(earlier.permissions()).map_err(failed)?;
         }
         waiting.push((path, Some((file, target))));
     }
-    for ((path, file), WholeFile { bytes, .. }) in waiting.into_iter().zip(files) {
-        match file {
-            Some((file, target)) => {
-                let failed = |error: tempfile::PersistError| WriteError::File {
-                    path: path.clone(),
-                    reason: error.error,
-                };
-                file.persist(&target).map_err(failed)?;
+    {
+        // Held for all of them: a program that ends meanwhile leaves all or none.
+        let mut register = register();
+        for (path, file) in &waiting {
+            if let Some((file, target)) = file {
+                let failed = |reason| WriteError::File { path: (*path).clone(), reason };
+                file.finish(target, &mut register).map_err(failed)?;
             }
-            None => write_whole(path, bytes)?,
         }
     }
-    Ok(())
+    let direct = waiting.iter().zip(files).filter(|((_, file), _)| file.is_none());
+    direct.into_iter().try_for_each(|((path, _), file)| write_whole(path, &file.bytes))
 }
 
-/// A new file in the folder of `target`, which is removed unless it is renamed.
+/// What this process is writing and has written.
+struct Register {
+    /// The temporary files.
+    unfinished: Vec<PathBuf>,
+    /// How many files took their names.
+    finished: usize,
+}
+
+static REGISTER: Mutex<Register> = Mutex::new(Register { unfinished: Vec::new(), finished: 0 });
+
+fn register() -> MutexGuard<'static, Register> {
+    REGISTER.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// How many files this process has finished writing; those that are written to directly are not counted.
+pub fn finished_files() -> usize {
+    register().finished
+}
+
+/// Keeps this process from beginning and from finishing files, since it is about to end: see [`abandon_unfinished`].
+#[must_use = "files are begun and finished again once this is dropped"]
+pub struct Abandoned(MutexGuard<'static, Register>);
+
+impl Abandoned {
+    /// [`finished_files`], which asked now would wait for ever.
+    pub fn finished_files(&self) -> usize {
+        self.0.finished
+    }
+}
+
+/// Removes the temporary files of all files that this process is writing, for a process that is about to end in the midst of it.
 ///
-/// It is opened here and written to as it is, since errors would name the temporary file otherwise, which nobody asked for.
-fn temporary_beside(target: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let folder = match target.parent() {
-        Some(folder) if folder != Path::new("") => folder.to_owned(),
-        _ => PathBuf::from("."),
-    };
-    // With the permissions of any new file.
-    let open = |path: &Path| fs::OpenOptions::new().read(true).write(true).create_new(true).open(path);
-    tempfile::Builder::new().prefix(".limitmesh-").suffix(".tmp").make_in(folder, open)
+/// Nothing is begun or finished until what this gives is dropped; who goes on then finds that the writing fails.
+pub fn abandon_unfinished() -> Abandoned {
+    let mut register = register();
+    for path in register.unfinished.drain(..) {
+        // Nobody is left to whom an error could be told.
+        let _ = fs::remove_file(path);
+    }
+    Abandoned(register)
+}
+
+/// A temporary file in the folder of the one that it will be, removed unless it is finished.
+struct Unfinished {
+    file: fs::File,
+    path: PathBuf,
+}
+
+impl Unfinished {
+    /// A new file in the folder of `target`.
+    ///
+    /// It is opened here and written to as it is, since errors would name the temporary file otherwise, which nobody asked for.
+    fn beside(target: &Path) -> io::Result<Self> {
+        let folder = match target.parent() {
+            Some(folder) if folder != Path::new("") => folder.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        // With the permissions of any new file.
+        let open = |path: &Path| fs::OpenOptions::new().read(true).write(true).create_new(true).open(path);
+        let mut register = register();
+        let file = tempfile::Builder::new().prefix(".limitmesh-").suffix(".tmp").make_in(folder, open)?;
+        let (file, path) = file.keep().map_err(|error| error.error)?;
+        register.unfinished.push(path.clone());
+        Ok(Self { file, path })
+    }
+
+    fn set_permissions(&self, permissions: fs::Permissions) -> io::Result<()> {
+        fs::set_permissions(&self.path, permissions)
+    }
+
+    /// Gives it its name.
+    fn finish(&self, target: &Path, register: &mut Register) -> io::Result<()> {
+        fs::rename(&self.path, target)?;
+        register.unfinished.retain(|path| *path != self.path);
+        register.finished += 1;
+        Ok(())
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        let mut register = register();
+        if let Some(at) = register.unfinished.iter().position(|path| *path == self.path) {
+            register.unfinished.swap_remove(at);
+            // What is to be told is why it was not finished.
+            let _ = fs::remove_file(&self.path);
+        }
+    }
 }
