@@ -69,6 +69,8 @@ mod parallel;
 mod patch;
 pub mod progress;
 mod proximity;
+#[cfg(test)]
+mod random;
 mod rays;
 pub mod refine;
 pub mod ring;

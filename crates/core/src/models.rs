@@ -2,6 +2,7 @@
 //! types are not those of a build for tests.
 
 use crate::mesh::{Mesh, PolygonSoup};
+use crate::random::Random;
 
 /// A model.
 pub(crate) struct Model(limitmesh_models::Model);
@@ -28,13 +29,9 @@ pub(crate) fn stirred(name: &str, seed: u64) -> Mesh {
 /// The same of any mesh.
 #[allow(clippy::unwrap_used)]
 pub(crate) fn stir(mesh: Mesh, seed: u64) -> Mesh {
-    let mut state = seed;
+    let mut random = Random::new(seed);
     let size = [0.0, 0.01, 0.05, 0.2][seed as usize % 4] * mesh.diagonal();
-    let mut next = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        size * ((state >> 11) as f64 / (1u64 << 52) as f64 - 1.0)
-    };
-    let positions = mesh.positions().iter().map(|p| p.map(|x| x + next())).collect();
+    let positions = mesh.positions().iter().map(|p| p.map(|x| x + size * random.signed())).collect();
     mesh.with_positions(positions).unwrap()
 }
 

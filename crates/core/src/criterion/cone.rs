@@ -108,46 +108,28 @@ impl LimitNormal {
 mod tests {
     use super::*;
     use crate::criterion::Viewpoint;
+    use crate::random::Random;
 
-    /// Numbers between −1 and 1, the same on every run.
-    struct Numbers(u64);
+    fn region(random: &mut Random) -> Region {
+        let (centre, axis) = (random.signed() * random.direction(), random.direction());
+        Region { centre, axis, radius: 0.3 * random.signed().abs(), sine: 0.5 * random.signed().abs() }
+    }
 
-    impl Numbers {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
+    fn criterion(random: &mut Random) -> LimitNormal {
+        let viewpoint = if random.signed() > 0.0 {
+            Viewpoint::Direction((3.0 * random.direction()).to_array())
+        } else {
+            Viewpoint::Eye((2.0 * random.direction()).to_array())
+        };
+        LimitNormal::new(0.1).view(View { viewpoint, dilatation: 2.0 + 2.0 * random.signed() })
+    }
 
-        fn unit(&mut self) -> DVec3 {
-            loop {
-                let point = DVec3::new(self.next(), self.next(), self.next());
-                if (0.01..1.0).contains(&point.length_squared()) {
-                    return point.normalize();
-                }
-            }
-        }
-
-        fn region(&mut self) -> Region {
-            let (centre, axis) = (self.next() * self.unit(), self.unit());
-            Region { centre, axis, radius: 0.3 * self.next().abs(), sine: 0.5 * self.next().abs() }
-        }
-
-        fn criterion(&mut self) -> LimitNormal {
-            let viewpoint = if self.next() > 0.0 {
-                Viewpoint::Direction((3.0 * self.unit()).to_array())
-            } else {
-                Viewpoint::Eye((2.0 * self.unit()).to_array())
-            };
-            LimitNormal::new(0.1).view(View { viewpoint, dilatation: 2.0 + 2.0 * self.next() })
-        }
-
-        /// A point of a region and a normal.
-        fn within(&mut self, region: &Region) -> (DVec3, DVec3) {
-            let sine = region.sine * self.next().abs().sqrt().sqrt();
-            let across = region.axis.cross(self.unit()).normalize();
-            let point = region.centre + region.radius * self.next().abs().sqrt().sqrt() * self.unit();
-            (point, (1.0 - sine * sine).sqrt() * region.axis + sine * across)
-        }
+    /// A point of a region and a normal.
+    fn within(random: &mut Random, region: &Region) -> (DVec3, DVec3) {
+        let sine = region.sine * random.signed().abs().sqrt().sqrt();
+        let across = region.axis.cross(random.direction()).normalize();
+        let point = region.centre + region.radius * random.signed().abs().sqrt().sqrt() * random.direction();
+        (point, (1.0 - sine * sine).sqrt() * region.axis + sine * across)
     }
 
     /// Equation (11) by hand, not below the angle.
@@ -163,15 +145,15 @@ mod tests {
 
     #[test]
     fn the_least_angle_of_a_region_is_no_more_than_any_there() {
-        let mut numbers = Numbers(5);
+        let mut random = Random::new(5);
         let (mut unseen, mut wide, mut closest) = (0, 0, f64::INFINITY);
         for _ in 0..3000 {
-            let (criterion, region) = (numbers.criterion(), numbers.region());
+            let (criterion, region) = (criterion(&mut random), region(&mut random));
             let allowed = criterion.allowed_angle(&region);
             unseen += usize::from(allowed == f64::INFINITY);
             wide += usize::from(allowed > 0.1 && allowed < 3.2);
             for _ in 0..60 {
-                let (point, normal) = numbers.within(&region);
+                let (point, normal) = within(&mut random, &region);
                 let found = limit(&criterion, point, normal);
                 assert!(allowed <= found * (1.0 + 1e-12), "{allowed} {found} {criterion:?} {region:?}");
                 if allowed > 0.1 && allowed.is_finite() {
@@ -184,12 +166,12 @@ mod tests {
 
     #[test]
     fn smaller_regions_have_no_smaller_angles() {
-        let mut numbers = Numbers(9);
+        let mut random = Random::new(9);
         for _ in 0..20_000 {
-            let (criterion, region) = (numbers.criterion(), numbers.region());
-            let share = numbers.next().abs();
-            let centre = region.centre + (1.0 - share) * region.radius * numbers.next() * numbers.unit();
-            let (_, axis) = numbers.within(&region);
+            let (criterion, region) = (criterion(&mut random), region(&mut random));
+            let share = random.signed().abs();
+            let centre = region.centre + (1.0 - share) * region.radius * random.signed() * random.direction();
+            let (_, axis) = within(&mut random, &region);
             let turn = region.axis.dot(axis).clamp(-1.0, 1.0).acos();
             let sine = (region.sine.asin() - turn).max(0.0).sin();
             let inner = Region { centre, radius: share * region.radius, axis, sine };

@@ -317,57 +317,40 @@ impl Lens {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
 
-    /// Numbers between −1 and 1, the same on every run.
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    fn camera(random: &mut Random) -> Camera {
+        let eye = 3.0 * random.vector();
+        Camera {
+            eye: eye.to_array(),
+            target: (eye + random.direction()).to_array(),
+            up: random.direction().to_array(),
+            fov_degrees: 85.0 + 84.0 * random.signed(),
+            width: 640,
+            height: 200 + (300.0 * (1.0 + random.signed())) as u32,
         }
+    }
 
-        fn point(&mut self) -> DVec3 {
-            DVec3::new(self.next(), self.next(), self.next())
+    fn region(random: &mut Random, size: f64) -> Region {
+        let sine = if random.signed() > 0.9 { 1.0 } else { 0.4 * (1.0 + random.signed()) };
+        Region {
+            centre: random.vector(),
+            radius: size * (1.0 + random.signed()),
+            axis: random.direction(),
+            sine,
         }
+    }
 
-        fn unit(&mut self) -> DVec3 {
-            loop {
-                let point = self.point();
-                if (0.01..1.0).contains(&point.length_squared()) {
-                    return point.normalize();
-                }
-            }
+    /// A point of a region and a normal, on its rim now and then.
+    fn within(random: &mut Random, region: &Region) -> (DVec3, DVec3) {
+        let reach = if random.signed() > 0.0 { 1.0 } else { random.signed().abs() };
+        let point = region.centre + reach * region.radius * random.direction();
+        if region.sine >= 1.0 {
+            return (point, random.direction());
         }
-
-        fn camera(&mut self) -> Camera {
-            let eye = 3.0 * self.point();
-            Camera {
-                eye: eye.to_array(),
-                target: (eye + self.unit()).to_array(),
-                up: self.unit().to_array(),
-                fov_degrees: 85.0 + 84.0 * self.next(),
-                width: 640,
-                height: 200 + (300.0 * (1.0 + self.next())) as u32,
-            }
-        }
-
-        fn region(&mut self, size: f64) -> Region {
-            let sine = if self.next() > 0.9 { 1.0 } else { 0.4 * (1.0 + self.next()) };
-            Region { centre: self.point(), radius: size * (1.0 + self.next()), axis: self.unit(), sine }
-        }
-
-        /// A point of a region and a normal, on its rim now and then.
-        fn within(&mut self, region: &Region) -> (DVec3, DVec3) {
-            let reach = if self.next() > 0.0 { 1.0 } else { self.next().abs() };
-            let point = region.centre + reach * region.radius * self.unit();
-            if region.sine >= 1.0 {
-                return (point, self.unit());
-            }
-            let sine = region.sine * if self.next() > 0.0 { 1.0 } else { self.next().abs() };
-            let across = region.axis.cross(self.unit()).normalize();
-            (point, (1.0 - sine * sine).sqrt() * region.axis + sine * across)
-        }
+        let sine = region.sine * if random.signed() > 0.0 { 1.0 } else { random.signed().abs() };
+        let across = region.axis.cross(random.direction()).normalize();
+        (point, (1.0 - sine * sine).sqrt() * region.axis + sine * across)
     }
 
     /// The pixel at which a camera sees a point, from its description alone; `None` behind it. And whether that is in the
@@ -397,13 +380,13 @@ mod tests {
     /// No displacement of an allowed length is seen longer than the limit, and some come near it.
     #[test]
     fn what_is_allowed_stays_below_the_limit() {
-        let mut numbers = Numbers(3);
+        let mut random = Random::new(3);
         let (mut closest, mut closest_along) = (0.0f64, 0.0f64);
         let mut seen = 0;
         for round in 0..3000 {
-            let cameras = [numbers.camera(), numbers.camera()];
-            let limit = 2f64.powf(6.0 * numbers.next());
-            let region = numbers.region(if round % 2 == 0 { 0.5 } else { 0.01 });
+            let cameras = [camera(&mut random), camera(&mut random)];
+            let limit = 2f64.powf(6.0 * random.signed());
+            let region = region(&mut random, if round % 2 == 0 { 0.5 } else { 0.01 });
             let pixels = Pixels::new(limit, &cameras, true).unwrap();
             let nobodys = Backs::nobodys();
             let length = pixels.allowed_length(region.centre, region.radius, &nobodys);
@@ -411,14 +394,14 @@ mod tests {
             assert_eq!(pixels.allowed(&region, &nobodys).length, length);
             assert!(length <= height, "{length} {height}");
             for _ in 0..40 {
-                let (point, normal) = numbers.within(&region);
+                let (point, normal) = within(&mut random, &region);
                 for camera in &cameras {
                     if !pixel(camera, point).is_some_and(|(_, is_inside)| is_inside) {
                         continue;
                     }
                     seen += 1;
                     assert!(length.is_finite() && height.is_finite());
-                    let aside = numbers.unit();
+                    let aside = random.direction();
                     let found = pixels_between(camera, point, point + length * aside);
                     assert!(found <= limit * (1.0 + 1e-9), "{found} of {limit}: {camera:?} {region:?}");
                     closest = closest.max(found / limit);
@@ -428,7 +411,7 @@ mod tests {
                         closest_along = closest_along.max(found / limit);
                     }
                     // Both parts together, and the number of pixels that is told.
-                    let (share, total) = (numbers.next().abs(), 3.0 * numbers.next().abs());
+                    let (share, total) = (random.signed().abs(), 3.0 * random.signed().abs());
                     let (part, rest) = (share * total * height, (1.0 - share) * total * length);
                     let told = pixels.seen(&region, (part, rest), &nobodys);
                     let found = pixels_between(camera, point, point + part * normal + rest * aside);
@@ -443,15 +426,15 @@ mod tests {
     /// A smaller region within never allows less.
     #[test]
     fn smaller_regions_allow_no_less() {
-        let mut numbers = Numbers(11);
+        let mut random = Random::new(11);
         for _ in 0..20_000 {
-            let pixels = Pixels::new(1.0, &[numbers.camera(), numbers.camera()], true).unwrap();
-            let region = numbers.region(0.7);
-            let share = numbers.next().abs();
-            let centre = region.centre + (1.0 - share) * region.radius * numbers.next() * numbers.unit();
-            let (_, axis) = numbers.within(&region);
+            let pixels = Pixels::new(1.0, &[camera(&mut random), camera(&mut random)], true).unwrap();
+            let region = region(&mut random, 0.7);
+            let share = random.signed().abs();
+            let centre = region.centre + (1.0 - share) * region.radius * random.signed() * random.direction();
+            let (_, axis) = within(&mut random, &region);
             let sine = if region.sine >= 1.0 {
-                numbers.next().abs()
+                random.signed().abs()
             } else {
                 let turn = region.axis.dot(axis).clamp(-1.0, 1.0).acos();
                 (region.sine.asin() - turn).max(0.0).sin()
@@ -495,14 +478,14 @@ mod tests {
     /// Cameras that see nothing but the back ask for nothing but that what is not certain is within the limit; the others go on asking.
     #[test]
     fn backs_are_not_seen() {
-        let mut numbers = Numbers(17);
+        let mut random = Random::new(17);
         let (mut half, mut rests) = (0, 0.0f64);
         for _ in 0..2000 {
-            let cameras = [numbers.camera(), numbers.camera()];
-            let region = numbers.region(0.3);
+            let cameras = [camera(&mut random), camera(&mut random)];
+            let region = region(&mut random, 0.3);
             let pixels = Pixels::new(2.0, &cameras, true).unwrap();
             let is_second = |viewpoint: &Viewpoint| *viewpoint == Viewpoint::Eye(cameras[1].eye);
-            let share = 1.5 * numbers.next().abs();
+            let share = 1.5 * random.signed().abs();
             let backs =
                 pixels.backs(&region, |_, viewpoint, rest| is_second(viewpoint).then_some(share * rest));
             let first = Pixels::new(2.0, &cameras[..1], true).unwrap();

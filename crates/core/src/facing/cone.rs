@@ -177,8 +177,9 @@ impl NormalCone {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::facing::test_nets::{Numbers, piece};
+    use crate::facing::test_nets::piece;
     use crate::patch::Quartic;
+    use crate::random::Random;
 
     fn angle(a: DVec3, b: DVec3) -> f64 {
         a.cross(b).length().atan2(a.dot(b))
@@ -187,10 +188,10 @@ mod tests {
     /// Half angles beside those of many sampled normals around the same axis.
     #[test]
     fn cones_hold_all_normals_and_are_narrow() {
-        let mut numbers = Numbers::new(11);
+        let mut random = Random::new(11);
         let (mut ratios, mut wide) = (Vec::new(), 0);
         for _ in 0..300 {
-            let net = piece(&mut numbers, 0.15);
+            let net = piece(&mut random, 0.15);
             let Some(cone) = NormalNet::of(&net).and_then(|net| Cone::of(&net)) else {
                 wide += 1;
                 continue;
@@ -214,10 +215,10 @@ mod tests {
 
     #[test]
     fn cones_of_two_hold_both() {
-        let mut numbers = Numbers::new(17);
+        let mut random = Random::new(17);
         let mut found = 0;
         for _ in 0..2000 {
-            let mut cone = || Cone { axis: unit_or_zero(numbers.vector()), sine: 0.5 * numbers.below_one() };
+            let mut cone = || Cone { axis: unit_or_zero(random.vector()), sine: 0.5 * random.signed().abs() };
             let (a, b) = (cone(), cone());
             let Some(both) = a.with(b) else { continue };
             found += 1;

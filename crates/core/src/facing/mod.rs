@@ -218,38 +218,10 @@ pub(crate) fn cone_of_patch(
 #[cfg(test)]
 mod test_nets {
     use crate::patch::bezier_triangle::BezierTriangle;
-    use crate::vector::DVec3;
-
-    /// Numbers that are the same on every run.
-    pub(super) struct Numbers(u64);
-
-    impl Numbers {
-        pub(super) fn new(seed: u64) -> Self {
-            Self(seed)
-        }
-
-        /// From −1 to 1.
-        pub(super) fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-
-        pub(super) fn below_one(&mut self) -> f64 {
-            self.next().abs()
-        }
-
-        pub(super) fn vector(&mut self) -> DVec3 {
-            DVec3::new(self.next(), self.next(), self.next())
-        }
-
-        pub(super) fn in_triangle(&mut self) -> (f64, f64) {
-            let (u, v) = (self.below_one(), self.below_one());
-            if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) }
-        }
-    }
+    use crate::random::Random;
 
     /// The net of a lattice whose points were moved by up to so much, turned somehow.
-    pub(super) fn piece(numbers: &mut Numbers, moved: f64) -> BezierTriangle {
+    pub(super) fn piece(random: &mut Random, moved: f64) -> BezierTriangle {
         // In the order of `Points`.
         const LATTICE: [[f64; 2]; 12] = [
             [0.0, -1.0],
@@ -265,15 +237,15 @@ mod test_nets {
             [-1.0, 2.0],
             [0.0, 2.0],
         ];
-        let [a, b] = [numbers.vector(), numbers.vector()];
-        let points = LATTICE.map(|[x, y]| x * a + y * b + moved * numbers.vector());
+        let [a, b] = [random.vector(), random.vector()];
+        let points = LATTICE.map(|[x, y]| x * a + y * b + moved * random.vector());
         BezierTriangle::of(&points)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::test_nets::{Numbers, piece};
+    use super::test_nets::piece;
     use super::*;
     use crate::index::FaceId;
     use crate::limit_surface::LimitSurface;
@@ -281,6 +253,7 @@ mod tests {
     use crate::models::stirred;
     use crate::patch::large_rings::LargeRings;
     use crate::patch::{Quartic, root_patch};
+    use crate::random::Random;
     use crate::scheme::Loop;
 
     /// Places over a triangle, its corners and edges among them.
@@ -296,18 +269,18 @@ mod tests {
         }
     }
 
-    fn viewpoint(numbers: &mut Numbers, size: f64) -> Viewpoint {
-        let place = (size * numbers.vector()).to_array();
-        if numbers.next() > 0.3 { Viewpoint::Direction(place) } else { Viewpoint::Eye(place) }
+    fn viewpoint(random: &mut Random, size: f64) -> Viewpoint {
+        let place = (size * random.vector()).to_array();
+        if random.signed() > 0.3 { Viewpoint::Direction(place) } else { Viewpoint::Eye(place) }
     }
 
     #[test]
     fn backs_of_regular_pieces_are_backs_and_found_as_often() {
-        let mut numbers = Numbers::new(23);
+        let mut random = Random::new(23);
         let (mut found, mut all) = (0, 0);
         for _ in 0..4000 {
-            let net = piece(&mut numbers, 0.15);
-            let viewpoint = viewpoint(&mut numbers, 6.0);
+            let net = piece(&mut random, 0.15);
+            let viewpoint = viewpoint(&mut random, 6.0);
             let quartic = Quartic::of(&net, 0);
             let at = |(u, v)| before(&viewpoint, quartic.point(u, v), quartic.normal(u, v)) < 0.0;
             let is_known = is_back(&net, &viewpoint);
@@ -322,7 +295,7 @@ mod tests {
     /// All that is seen from the front of what is said to be a back is as near to a corner as is said, beside creases, boundaries and darts.
     #[test]
     fn backs_but_for_corners_are_backs_elsewhere() {
-        let mut numbers = Numbers::new(29);
+        let mut random = Random::new(29);
         let (mut certain, mut but_for) = (0, 0);
         for (name, degrees) in [("cup", 40.0), ("head", 35.0), ("bunny", 50.0), ("torus", 170.0)] {
             let mesh = stirred(name, 3).with_creases_above(f64::to_radians(degrees)).unwrap();
@@ -331,8 +304,8 @@ mod tests {
             let large = LargeRings::of(&mesh);
             for face in 0..mesh.face_count() as u32 {
                 let patch = root_patch(&mesh, &sharpness, &large, FaceId(face), &rules);
-                let viewpoint = viewpoint(&mut numbers, 3.0 * mesh.diagonal());
-                let rest = 1e-3 * mesh.diagonal() * numbers.below_one();
+                let viewpoint = viewpoint(&mut random, 3.0 * mesh.diagonal());
+                let rest = 1e-3 * mesh.diagonal() * random.signed().abs();
                 let at = |u: f64, v: f64| surface.at(FaceId(face), [1.0 - u - v, u, v]);
                 let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(u, v)| vector(at(u, v).position));
                 let left = back_but_for(&patch, &rules, &viewpoint, (&corners, rest), DEEPEST);

@@ -109,9 +109,10 @@ impl NormalNet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::facing::test_nets::{Numbers, piece};
+    use crate::facing::test_nets::piece;
     use crate::patch::Quartic;
     use crate::patch::normal_net::place;
+    use crate::random::Random;
 
     /// A form by de Casteljau's algorithm.
     fn value(n: usize, net: &[DVec3], u: f64, v: f64) -> DVec3 {
@@ -130,14 +131,19 @@ mod tests {
         points[0]
     }
 
+    fn in_triangle(random: &mut Random) -> (f64, f64) {
+        let (u, v) = (random.signed().abs(), random.signed().abs());
+        if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) }
+    }
+
     #[test]
     fn the_net_is_that_of_the_normals() {
-        let mut numbers = Numbers::new(3);
+        let mut random = Random::new(3);
         for _ in 0..50 {
-            let net = piece(&mut numbers, 0.5);
+            let net = piece(&mut random, 0.5);
             let (normals, quartic) = (NormalNet::of(&net).unwrap(), Quartic::of(&net, 0));
             for _ in 0..20 {
-                let (u, v) = numbers.in_triangle();
+                let (u, v) = in_triangle(&mut random);
                 let [by_u, by_v] = quartic.tangents(u, v);
                 let expected = by_u.cross(by_v) / 16.0 * normals.scale * normals.scale;
                 assert!(value(6, &normals.normals, u, v).distance(expected) < 1e-13);
@@ -148,12 +154,12 @@ mod tests {
     /// Signs agree with those of many points, and only nets that are mixed, or nearly, are left undecided.
     #[test]
     fn sides_are_those_of_all_points() {
-        let mut numbers = Numbers::new(5);
+        let mut random = Random::new(5);
         let (mut counts, mut undecided) = ([0; 3], 0);
         for _ in 0..1500 {
-            let net = piece(&mut numbers, 0.25);
+            let net = piece(&mut random, 0.25);
             let (normals, quartic) = (NormalNet::of(&net).unwrap(), Quartic::of(&net, 0));
-            let eye = 3.0 * numbers.vector();
+            let eye = 3.0 * random.vector();
             let (mut fronts, mut all) = (0, 0);
             for i in 0..=12 {
                 for j in 0..=12 - i {

@@ -134,6 +134,7 @@ impl Agenda {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
 
     #[test]
     fn a_ladder_gives_what_is_between() {
@@ -171,23 +172,20 @@ mod tests {
     #[test]
     fn a_ring_gives_what_is_due_and_nothing_else() {
         let mut ring = Agenda::ring(0.25);
-        let mut state = 3u64;
-        let mut random = move || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 40) as f64 / (1u64 << 24) as f64
-        };
+        let mut random = Random::new(3);
+        let mut share = || (random.bits() >> 40) as f64 / (1u64 << 24) as f64;
         let mut waiting: Vec<(f64, u32)> = Vec::new();
         let (mut now, mut next) = (0.0, 0);
         let stamps = vec![0; 100_000];
         for _ in 0..300 {
             for _ in 0..20 {
                 // Some are farther ahead than the ring is long.
-                let key = now + 6000.0 * random().powi(8);
+                let key = now + 6000.0 * share().powi(8);
                 ring.put(key, next, 0);
                 waiting.push((key, next));
                 next += 1;
             }
-            now += 100.0 * random().powi(3);
+            now += 100.0 * share().powi(3);
             let (mut due, mut expected) = (Vec::new(), Vec::new());
             ring.turn_to(now, |node: u32, stamp| stamps[node as usize] == stamp, &mut due);
             waiting.retain(|&(key, node)| {

@@ -48,16 +48,15 @@ impl DisjointSets {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
 
     #[test]
     fn sets_are_those_of_a_flood_over_the_same_pairs() {
-        let mut state = 1u64;
-        let mut random = |below: u32| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 33) as u32 % below
-        };
+        let mut random = Random::new(1);
         for count in [1u32, 5, 60] {
-            let pairs: Vec<[u32; 2]> = (0..count / 2).map(|_| [random(count), random(count)]).collect();
+            let pairs: Vec<[u32; 2]> = (0..count / 2)
+                .map(|_| [random.below(count as usize) as u32, random.below(count as usize) as u32])
+                .collect();
             let mut sets = DisjointSets::new(count as usize);
             let mut labels: Vec<u32> = (0..count).collect();
             for &[a, b] in &pairs {

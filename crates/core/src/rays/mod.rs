@@ -291,6 +291,7 @@ impl LimitSurface<'_> {
 mod tests {
     use super::*;
     use crate::mesh::Mesh;
+    use crate::random::Random;
     use crate::scheme::Loop;
 
     /// How many pieces rays look at; what is printed stands in docs/paper.md.
@@ -300,16 +301,11 @@ mod tests {
         let (mesh, _) = Mesh::from_soup(&soup, &Default::default()).unwrap();
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         let rays = RayCaster::new(&surface).unwrap();
-        let (mut pieces, mut hits, mut state) = (0, 0, 7u64);
-        let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        };
+        let (mut pieces, mut hits, mut random) = (0, 0, Random::new(7));
         let count = 500;
         for _ in 0..count {
-            let origin = [next(), next(), next()].map(|x| rays.frame.size * x);
-            let origin = (vector(origin) + rays.frame.middle).to_array();
-            let ray = Ray { origin, direction: [next(), next(), next()] };
+            let origin = (rays.frame.size * random.vector() + rays.frame.middle).to_array();
+            let ray = Ray { origin, direction: random.vector().to_array() };
             let all = RayOptions::default().between(f64::NEG_INFINITY, f64::INFINITY);
             let (search, _) = rays.searched(&ray, &all, false).unwrap();
             (pieces, hits) = (pieces + search.looked_at, hits + search.found.len());

@@ -294,6 +294,7 @@ fn nearest_points([p, q]: [DVec3; 2], [a, b]: [DVec3; 2]) -> (f64, DVec3, DVec3)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
     use proptest::prelude::*;
 
     /// A fan of triangles around a point, its rim at the given heights.
@@ -345,11 +346,8 @@ mod tests {
     /// Cuts run out over some crumpled fans, not over more than one in a hundred.
     #[test]
     fn what_is_well_within_is_found_to_be_so() {
-        let mut state = 7u64;
-        let mut next = move |low: f64, high: f64| {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            low + (high - low) * (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut random = Random::new(7);
+        let mut next = |low: f64, high: f64| low + (high - low) * random.unit();
         let (mut within, mut missed) = (0, 0);
         for round in 0..4_000 {
             let heights: Vec<f64> = (0..3 + round % 9).map(|_| next(-0.3, 0.3)).collect();

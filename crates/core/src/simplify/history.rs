@@ -160,6 +160,7 @@ mod tests {
     use super::*;
     use crate::mesh::Mesh;
     use crate::models;
+    use crate::random::Random;
     use crate::vector::vector;
 
     /// Whatever was collapsed and flipped, and in whichever order it is taken back, the mesh is what it was in the end.
@@ -172,21 +173,17 @@ mod tests {
             let whole = EditableMesh::new(fine.topology());
             let mut surface = whole.clone();
             let mut history = History::new(fine.face_count());
-            let mut seed = 5u64;
-            let mut number = |below: u32| {
-                seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-                ((seed >> 33) % u64::from(below)) as u32
-            };
+            let mut random = Random::new(5);
             for _ in 0..20 * fine.vertex_count() {
-                let v = number(fine.vertex_count() as u32);
+                let v = random.below(fine.vertex_count()) as u32;
                 if !surface.is_alive(v) {
                     continue;
                 }
                 let spokes: Vec<u32> = surface.outgoing_ring(v).collect();
-                let h = spokes[number(spokes.len() as u32) as usize];
+                let h = spokes[random.below(spokes.len())];
                 let faces: Vec<u32> = spokes.iter().map(|h| h / 3).collect();
                 let twin = surface.twin(h);
-                if number(3) == 0 && twin != NONE {
+                if random.below(3) == 0 && twin != NONE {
                     let ends = [h, twin].map(|h| surface.origin((h / 3) * 3 + (h % 3 + 2) % 3));
                     if surface.are_neighbours(ends[0], ends[1]) {
                         continue;
@@ -206,7 +203,7 @@ mod tests {
                         faces.iter().copied().filter(|&f| surface.corners(f)[0] != NONE).collect();
                     faces.iter().for_each(|&face| samples.clear(face));
                     for sample in below {
-                        samples.give(left[number(left.len() as u32) as usize], sample, 0.5);
+                        samples.give(left[random.below(left.len())], sample, 0.5);
                     }
                 }
             }
@@ -215,7 +212,7 @@ mod tests {
             let mut is_back = vec![false; count as usize];
             while let Some(change) = history.latest(0..fine.face_count() as u32) {
                 // Any that is not back, so that others have to come first.
-                let any = number(count);
+                let any = random.below(count as usize) as u32;
                 let change = if is_back[any as usize] { change } else { any };
                 let before = surface.faces_left();
                 history.take_back(change, &mut surface, &mut samples, |_, _| {});

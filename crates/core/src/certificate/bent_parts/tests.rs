@@ -4,31 +4,18 @@ use super::*;
 use crate::certificate::{Cell, TriangleFrame, around};
 use crate::patch::Quartic;
 use crate::patch::bezier_triangle::BezierTriangle;
+use crate::random::Random;
 
-struct Numbers(u64);
-
-impl Numbers {
-    /// Between −1 and 1.
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+/// A piece whose points are a triangle's, stirred and bent, in a unit of its own.
+fn piece(random: &mut Random, noise: f64, unit: f64) -> Quartic {
+    let mut points = [DVec3::ZERO; 15];
+    let places = (0..5).flat_map(|k| (0..5 - k).map(move |j| (0.25 * j as f64, 0.25 * k as f64)));
+    let bend = random.vector() * 0.3;
+    for (point, (u, v)) in points.iter_mut().zip(places) {
+        let bulge = bend.x * u * u + bend.y * u * v + bend.z * v * v;
+        *point = unit * (DVec3::new(u + 0.3 * v, v, bulge) + noise * random.vector());
     }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-
-    /// A piece whose points are a triangle's, stirred and bent, in a unit of its own.
-    fn piece(&mut self, noise: f64, unit: f64) -> Quartic {
-        let mut points = [DVec3::ZERO; 15];
-        let places = (0..5).flat_map(|k| (0..5 - k).map(move |j| (0.25 * j as f64, 0.25 * k as f64)));
-        let bend = self.vector() * 0.3;
-        for (point, (u, v)) in points.iter_mut().zip(places) {
-            let bulge = bend.x * u * u + bend.y * u * v + bend.z * v * v;
-            *point = unit * (DVec3::new(u + 0.3 * v, v, bulge) + noise * self.vector());
-        }
-        Quartic::of(&BezierTriangle(points), 0)
-    }
+    Quartic::of(&BezierTriangle(points), 0)
 }
 
 /// Four parts of a piece, even ones or any, and triangles over them with their corners moved, among others.
@@ -41,14 +28,14 @@ struct Case {
 }
 
 impl Case {
-    fn random(numbers: &mut Numbers, round: usize) -> Self {
+    fn random(random: &mut Random, round: usize) -> Self {
         let unit = [1.0, 1e-70, 1e50][round % 3];
-        let piece = numbers.piece([0.001, 0.01, 0.1][round / 3 % 3], unit);
+        let piece = piece(random, [0.001, 0.01, 0.1][round / 3 % 3], unit);
         let is_even = round.is_multiple_of(2);
         let spots: [[f64; 3]; FOUR] = from_fn(|_| {
-            let size = 0.5f64.powi(1 + (4.0 * numbers.next().abs()) as i32);
-            let [u, v] = [0.25 + 0.24 * numbers.next(), 0.25 + 0.24 * numbers.next()];
-            if numbers.next() > 0.0 { [u, v, size] } else { [u + size, v + size, -size] }
+            let size = 0.5f64.powi(1 + (4.0 * random.signed().abs()) as i32);
+            let [u, v] = [0.25 + 0.24 * random.signed(), 0.25 + 0.24 * random.signed()];
+            if random.signed() > 0.0 { [u, v, size] } else { [u + size, v + size, -size] }
         });
         let cells = spots.map(|[u, v, size]| {
             let [a, b, c] = [[u, v], [u + size, v], [u, v + size]];
@@ -70,12 +57,12 @@ impl Case {
             let steps: [DVec3; 3] = from_fn(|i| {
                 let [u, v] = cell.0[i];
                 let [by_u, by_v] = piece.tangents(u, v);
-                (1.0 + 0.3 * numbers.next()) * far * (by_u / unit).cross(by_v / unit).normalize()
+                (1.0 + 0.3 * random.signed()) * far * (by_u / unit).cross(by_v / unit).normalize()
             });
             let corners: [DVec3; 3] = from_fn(|i| piece.point(cell.0[i][0], cell.0[i][1]) + steps[i]);
             for i in 0..3 {
                 let [start, end, other] = [0, 1, 2].map(|k| corners[(i + k) % 3]);
-                let opposite = start + end - other + 0.1 * size * numbers.vector();
+                let opposite = start + end - other + 0.1 * size * random.vector();
                 for axis in 0..3 {
                     moved.corners[i][axis][l] = corners[i][axis];
                     moved.steps[i][axis][l] = steps[i][axis];
@@ -98,10 +85,10 @@ impl Case {
 
 #[test]
 fn four_at_once_come_to_what_each_comes_to() {
-    let mut numbers = Numbers(11);
+    let mut random = Random::new(11);
     let (mut bounded, mut tight) = (0, 0);
     for round in 0..2000 {
-        let case = Case::random(&mut numbers, round);
+        let case = Case::random(&mut random, round);
         let jet = QuarticJet::of(&case.piece);
         let found = case.moved.bounds(&case.bent.kept(case.scale), case.scale);
         for l in 0..FOUR {
@@ -138,10 +125,10 @@ fn four_at_once_come_to_what_each_comes_to() {
 #[test]
 fn dense_samples_lie_within_the_bounds_of_moved_triangles() {
     const GRID: usize = 24;
-    let mut numbers = Numbers(5);
+    let mut random = Random::new(5);
     let mut counted = 0;
     for round in 0..300 {
-        let mut case = Case::random(&mut numbers, round);
+        let mut case = Case::random(&mut random, round);
         // Beside triangles that are as slim as this nobody helps.
         for l in 0..FOUR {
             let [corners, ..] = case.triangle(l);
@@ -175,9 +162,9 @@ fn dense_samples_lie_within_the_bounds_of_moved_triangles() {
 /// What is not a number, or beyond single precision, is not known.
 #[test]
 fn what_is_no_number_has_no_bound() {
-    let mut numbers = Numbers(2);
+    let mut random = Random::new(2);
     for bad in [f64::NAN, f64::INFINITY] {
-        let mut case = Case::random(&mut numbers, 0);
+        let mut case = Case::random(&mut random, 0);
         let kept = case.bent.kept(case.scale);
         let known = case.moved.bounds(&kept, case.scale);
         assert!(known.bound[1].is_finite());
@@ -199,7 +186,7 @@ fn what_is_no_number_has_no_bound() {
         assert!(found.bound[1] == f64::INFINITY && !fails, "{found:?}");
         let unknown = case.moved.bounds(&BentFour::UNKNOWN, case.scale);
         assert!(unknown.bound == [f64::INFINITY; FOUR] && unknown.least.iter().all(|&least| least <= 0.0));
-        let overflowing = Case::random(&mut numbers, 0).bent.kept(1e40);
+        let overflowing = Case::random(&mut random, 0).bent.kept(1e40);
         assert_eq!(overflowing.rest, [f32::INFINITY; FOUR]);
     }
 }

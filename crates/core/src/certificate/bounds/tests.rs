@@ -4,33 +4,24 @@ use super::*;
 use crate::certificate::exceeds;
 use crate::patch::characteristic::Characteristic;
 use crate::patch::extraordinary::ExtraordinaryPatch;
+use crate::random::Random;
 use crate::scheme::Loop;
 
-/// Numbers between −1 and 1, the same on every run.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    /// A face with one irregular corner: the characteristic map, sheared, stirred and bent.
-    fn piece(&mut self, valence: usize, noise: f64) -> ExtraordinaryPatch {
-        let bend = [self.next(), self.next(), self.next()];
-        let shear = self.next();
-        let mut moved = |p: DVec3| {
-            let stir = DVec3::new(self.next(), self.next(), self.next()) * noise;
-            let height = bend[0] * p.x * p.x + bend[1] * p.x * p.y + bend[2] * p.y * p.y;
-            DVec3::new(p.x + shear * p.y, p.y, 0.3 * height) + stir
-        };
-        let map = Characteristic::of(valence).control;
-        ExtraordinaryPatch {
-            corner: valence % 3,
-            at: moved(map.at),
-            ring: map.ring.iter().map(|&p| moved(p)).collect(),
-            outer: map.outer.map(moved),
-        }
+/// A face with one irregular corner: the characteristic map, sheared, stirred and bent.
+fn piece(random: &mut Random, valence: usize, noise: f64) -> ExtraordinaryPatch {
+    let bend = random.vector();
+    let shear = random.signed();
+    let mut moved = |p: DVec3| {
+        let stir = random.vector() * noise;
+        let height = bend.x * p.x * p.x + bend.y * p.x * p.y + bend.z * p.y * p.y;
+        DVec3::new(p.x + shear * p.y, p.y, 0.3 * height) + stir
+    };
+    let map = Characteristic::of(valence).control;
+    ExtraordinaryPatch {
+        corner: valence % 3,
+        at: moved(map.at),
+        ring: map.ring.iter().map(|&p| moved(p)).collect(),
+        outer: map.outer.map(moved),
     }
 }
 
@@ -93,7 +84,7 @@ fn corners(part: SubTriangle) -> [DVec3; 3] {
 #[test]
 fn bounds_hold_for_every_part_and_valence() {
     let rules = Rules::of(&Loop);
-    let mut numbers = Numbers(7);
+    let mut random = Random::new(7);
     let parts = (0..3).flat_map(|edge| {
         let half = |second| SubTriangle::Half { edge, second };
         let quarter = |at_end| SubTriangle::Quarter { edge, at_end };
@@ -102,7 +93,7 @@ fn bounds_hold_for_every_part_and_valence() {
     let parts: Vec<SubTriangle> = parts.chain([SubTriangle::Whole, SubTriangle::Child(3)]).collect();
     for valence in 3..=20 {
         for noise in [0.0, 0.01, 0.2] {
-            let patch = match numbers.piece(valence, noise) {
+            let patch = match piece(&mut random, valence, noise) {
                 // A regular one now and then.
                 piece if valence == 6 => piece.refined(rules.beta(6)).part((piece.corner + 1) % 3),
                 piece => Patch::Extraordinary(Box::new(piece)),
@@ -155,7 +146,7 @@ fn bounds_hold_for_every_part_and_valence() {
 #[test]
 fn nothing_is_within_a_distance_of_what_is_not_a_number() {
     let rules = Rules::of(&Loop);
-    let mut numbers = Numbers(3);
+    let mut random = Random::new(3);
     let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
     let effort = Effort {
         target: 1e9,
@@ -176,7 +167,7 @@ fn nothing_is_within_a_distance_of_what_is_not_a_number() {
     for bad in [f64::NAN, f64::INFINITY] {
         for open in [false, true] {
             for valence in [3, 5, 40] {
-                let piece = numbers.piece(valence, 0.1);
+                let piece = piece(&mut random, valence, 0.1);
                 let whole = Patch::Extraordinary(Box::new(piece.clone()));
                 for corner in 0..3 {
                     let mut corners = triangle;
@@ -193,7 +184,7 @@ fn nothing_is_within_a_distance_of_what_is_not_a_number() {
                 fails(&Patch::Extraordinary(Box::new(piece)), triangle, open, "vertex");
             }
             for at in 0..12 {
-                let mut points = [DVec3::ZERO; 12].map(|_| DVec3::new(numbers.next(), numbers.next(), 0.0));
+                let mut points = [DVec3::ZERO; 12].map(|_| DVec3::new(random.signed(), random.signed(), 0.0));
                 points[at].x = bad;
                 fails(&Patch::Regular(points), triangle, open, "regular");
                 fails(&Patch::Regular(points), [DVec3::X; 3], open, "triangle without area");
@@ -207,14 +198,14 @@ fn nothing_is_within_a_distance_of_what_is_not_a_number() {
 #[test]
 fn nothing_is_given_up_that_could_pass() {
     let rules = Rules::of(&Loop);
-    let mut numbers = Numbers(11);
+    let mut random = Random::new(11);
     let (mut given_up, mut kept) = (0, 0);
     for valence in (3..12).cycle().take(200) {
-        let patch = Patch::Extraordinary(Box::new(numbers.piece(valence, 0.02)));
+        let patch = Patch::Extraordinary(Box::new(piece(&mut random, valence, 0.02)));
         let frame = TriangleFrame::new([0, 1, 2].map(|corner| limit(&patch, &rules, corner)));
-        let chord = 0.2 * (1.0 + numbers.next());
+        let chord = 0.2 * (1.0 + random.signed());
         let all = Effort {
-            target: 0.02 + 0.015 * numbers.next(),
+            target: 0.02 + 0.015 * random.signed(),
             halvings: 2,
             open: [false; 3],
             rim_alone: false,

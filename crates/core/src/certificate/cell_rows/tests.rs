@@ -3,23 +3,15 @@
 use super::*;
 use crate::certificate::TriangleFrame;
 use crate::patch::bezier_triangle::BezierTriangle;
-
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
+use crate::random::Random;
 
 /// A bent piece over a sheared triangle.
-fn piece(numbers: &mut Numbers, noise: f64) -> Quartic {
+fn piece(random: &mut Random, noise: f64) -> Quartic {
     let mut points = [DVec3::ZERO; 15];
     let mut at = 0;
     for k in 0..5 {
         for j in 0..5 - k {
-            let stir = DVec3::new(numbers.next(), numbers.next(), numbers.next()) * noise;
+            let stir = random.vector() * noise;
             let (x, y) = (j as f64 / 4.0 + 0.2 * k as f64 / 4.0, k as f64 / 4.0);
             points[at] = DVec3::new(x, y, 0.2 * (x * x + 0.5 * x * y - y * y)) + stir;
             at += 1;
@@ -40,18 +32,18 @@ fn ranges_of_heights_of_parts_that_pass_lie_within_the_target() {
 }
 
 fn samples_lie_within(range_share: f64) {
-    let mut numbers = Numbers(5);
+    let mut random = Random::new(5);
     let mut uneven = 0;
     let (mut passed, mut failed, mut open) = (0, 0, 0);
     for round in 0..60 {
-        let piece = piece(&mut numbers, [0.0, 0.01, 0.03][round % 3]);
+        let piece = piece(&mut random, [0.0, 0.01, 0.03][round % 3]);
         let jet = QuarticJet::of(&piece);
         let (at, size) = if round % 2 == 0 { ([0.0, 0.0], 1.0) } else { ([0.5, 0.5], -0.5) };
         let block = RowBlock::of(&piece, &jet, at, size);
         let divisions = 1 + (round % 4) as u32;
         let n = 1usize << divisions;
         let step = size / n as f64;
-        let distance = 0.03 * (1.0 + range_share) * step * step * (1.0 + 0.5 * numbers.next());
+        let distance = 0.03 * (1.0 + range_share) * step * step * (1.0 + 0.5 * random.signed());
         let target = RowTarget { distance, range_share, tilt: 0.2, slope: f64::INFINITY, drift_share: 0.3 };
         let mut extent = RowExtent::NONE;
         let mut marks = Marks::default();
@@ -123,14 +115,13 @@ fn samples_lie_within(range_share: f64) {
 /// What is told of their rounding holds against the polynomial in double precision, at sizes from 1e-9 to 1e9.
 #[test]
 fn bends_are_off_by_ten_roundings_of_their_size_at_most() {
-    let mut numbers = Numbers(11);
+    let mut random = Random::new(11);
     let (mut greatest, ten) = (0.0f64, 10.0 / f64::from(1u32 << 24));
     for round in 0..400 {
         let size = 10f64.powi(round % 19 - 9);
-        let c: [DVec3; 6] =
-            from_fn(|_| size * DVec3::new(numbers.next(), numbers.next(), numbers.next()).powf(3.0));
-        let (u, v) = (numbers.next(), numbers.next());
-        let (step, count) = (0.1 * numbers.next(), 1 + round as usize % 65);
+        let c: [DVec3; 6] = from_fn(|_| size * random.vector().powf(3.0));
+        let (u, v) = (random.signed(), random.signed());
+        let (step, count) = (0.1 * random.signed(), 1 + round as usize % 65);
         let mut bends = Bends { along: [[0.0; WIDTH]; 3], size: 0.0 };
         bends.fill(&c, [u, v], (step, count), 0.3);
         let most = f64::from(bends.size);

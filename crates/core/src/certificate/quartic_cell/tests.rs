@@ -3,43 +3,35 @@
 use super::heights::halved;
 use super::*;
 use crate::patch::bezier_triangle::BezierTriangle;
+use crate::random::Random;
 
-struct Numbers(u64);
+/// A piece whose points are the unit triangle's, stirred and bent.
+fn piece(random: &mut Random, noise: f64) -> Quartic {
+    Quartic::of(&stirred_triangle(random, noise), 0)
+}
 
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    /// A piece whose points are the unit triangle's, stirred and bent.
-    fn piece(&mut self, noise: f64) -> Quartic {
-        Quartic::of(&self.net(noise), 0)
-    }
-
-    fn net(&mut self, noise: f64) -> BezierTriangle {
-        let mut points = [DVec3::ZERO; 15];
-        let mut at = 0;
-        for k in 0..5 {
-            for j in 0..5 - k {
-                let stir = DVec3::new(self.next(), self.next(), self.next()) * noise;
-                points[at] = DVec3::new(j as f64 / 4.0 + 0.3 * k as f64 / 4.0, k as f64 / 4.0, 0.0) + stir;
-                at += 1;
-            }
+fn stirred_triangle(random: &mut Random, noise: f64) -> BezierTriangle {
+    let mut points = [DVec3::ZERO; 15];
+    let mut at = 0;
+    for k in 0..5 {
+        for j in 0..5 - k {
+            let stir = random.vector() * noise;
+            points[at] = DVec3::new(j as f64 / 4.0 + 0.3 * k as f64 / 4.0, k as f64 / 4.0, 0.0) + stir;
+            at += 1;
         }
-        BezierTriangle(points)
     }
+    BezierTriangle(points)
+}
 
-    fn cell(&mut self) -> Cell {
-        let size = 0.5f64.powi((4.0 * self.next().abs()) as i32);
-        let [u, v] = [0.4 * self.next().abs(), 0.4 * self.next().abs()];
-        let turned = if self.next() > 0.0 { 1.0 } else { -1.0 };
-        let corners = [[u, v], [u + turned * size, v], [u, v + turned * size]];
-        match (4.0 * self.next().abs()) as u32 {
-            0 => Cell([corners[0], corners[1], halfway(corners[1], corners[2])]),
-            1 => Cell([halfway(corners[0], corners[2]), corners[1], halfway(corners[1], corners[2])]),
-            _ => Cell(corners),
-        }
+fn cell(random: &mut Random) -> Cell {
+    let size = 0.5f64.powi((4.0 * random.signed().abs()) as i32);
+    let [u, v] = [0.4 * random.signed().abs(), 0.4 * random.signed().abs()];
+    let turned = if random.signed() > 0.0 { 1.0 } else { -1.0 };
+    let corners = [[u, v], [u + turned * size, v], [u, v + turned * size]];
+    match (4.0 * random.signed().abs()) as u32 {
+        0 => Cell([corners[0], corners[1], halfway(corners[1], corners[2])]),
+        1 => Cell([halfway(corners[0], corners[2]), corners[1], halfway(corners[1], corners[2])]),
+        _ => Cell(corners),
     }
 }
 
@@ -61,11 +53,11 @@ fn place(cell: &Cell, weights: [f64; 3]) -> Domain {
 
 #[test]
 fn dense_samples_lie_within_the_bounds() {
-    let mut numbers = Numbers(3);
+    let mut random = Random::new(3);
     let (mut tight, mut counted, mut closer) = (0, 0, 0);
     for round in 0..3000 {
-        let piece = numbers.piece([0.002, 0.02, 0.1, 0.4][round % 4]);
-        let (jet, cell) = (QuarticJet::of(&piece), numbers.cell());
+        let piece = piece(&mut random, [0.002, 0.02, 0.1, 0.4][round % 4]);
+        let (jet, cell) = (QuarticJet::of(&piece), cell(&mut random));
         let frame = TriangleFrame::new(cell.0.map(|[u, v]| piece.point(u, v)));
         if frame.is_flat() {
             continue;
@@ -115,20 +107,20 @@ fn dense_samples_lie_within_the_bounds() {
 /// and where it does not keep it, the part is said to fold.
 #[test]
 fn parts_that_do_not_fold_keep_their_orientation() {
-    let mut numbers = Numbers(23);
+    let mut random = Random::new(23);
     let (mut plain, mut bent, mut folding) = (0, 0, 0);
     for round in 0..4000 {
-        let BezierTriangle(points) = numbers.net([0.0, 0.002, 0.01, 0.1][round % 4]);
+        let BezierTriangle(points) = stirred_triangle(&mut random, [0.0, 0.002, 0.01, 0.1][round % 4]);
         let slim = [1.0, 0.3, 0.05][round % 3];
         // Bends that keep their size all over the piece, beside what is stirred.
-        let bend: [[f64; 3]; 3] = core::array::from_fn(|_| core::array::from_fn(|_| 0.6 * numbers.next()));
+        let bend: [[f64; 3]; 3] = core::array::from_fn(|_| core::array::from_fn(|_| 0.6 * random.signed()));
         let points = points.map(|point| {
             let squares = [point.x * point.x, point.x * point.y, point.y * point.y];
             let along = |axis: usize| (0..3).map(|i| bend[axis][i] * squares[i]).sum::<f64>();
             DVec3::new(point.x + along(0), slim * (point.y + along(1)), point.z + along(2))
         });
         let piece = Quartic::of(&BezierTriangle(points), 0);
-        let (jet, cell) = (QuarticJet::of(&piece), numbers.cell());
+        let (jet, cell) = (QuarticJet::of(&piece), cell(&mut random));
         let frame = TriangleFrame::new(cell.0.map(|[u, v]| piece.point(u, v)));
         if frame.is_flat() {
             continue;
@@ -168,14 +160,14 @@ fn parts_that_do_not_fold_keep_their_orientation() {
 /// points of the surface.
 #[test]
 fn triangles_off_the_surface_are_bounded() {
-    let mut numbers = Numbers(8);
+    let mut random = Random::new(8);
     let (mut tight, mut counted) = (0, 0);
     for round in 0..2000 {
-        let piece = numbers.piece([0.002, 0.02, 0.1][round % 3]);
-        let (jet, cell) = (QuarticJet::of(&piece), numbers.cell());
+        let piece = piece(&mut random, [0.002, 0.02, 0.1][round % 3]);
+        let (jet, cell) = (QuarticJet::of(&piece), cell(&mut random));
         let feet = cell.0.map(|[u, v]| piece.point(u, v));
         let size = 0.1 * feet[0].distance(feet[1]);
-        let steps = feet.map(|_| DVec3::new(numbers.next(), numbers.next(), numbers.next()) * size);
+        let steps = feet.map(|_| random.vector() * size);
         let frame = TriangleFrame::new([0, 1, 2].map(|i| feet[i] + steps[i]));
         if frame.is_flat() {
             continue;
@@ -205,18 +197,18 @@ fn triangles_off_the_surface_are_bounded() {
 /// The range over a plane off the corners: nothing is farther off it than it says, and some point is as near to it.
 #[test]
 fn ranges_over_planes_off_the_corners_hold() {
-    let mut numbers = Numbers(11);
+    let mut random = Random::new(11);
     let mut tight = 0;
     for round in 0..3000 {
-        let piece = numbers.piece([0.002, 0.02, 0.1, 0.4][round % 4]);
-        let (jet, cell) = (QuarticJet::of(&piece), numbers.cell());
+        let piece = piece(&mut random, [0.002, 0.02, 0.1, 0.4][round % 4]);
+        let (jet, cell) = (QuarticJet::of(&piece), cell(&mut random));
         let frame = TriangleFrame::new(cell.0.map(|[u, v]| piece.point(u, v)));
         if frame.is_flat() {
             continue;
         }
         let heights = jet.heights(&cell, frame.normal());
         let size = [0.0, 1.0, 0.3][round % 3] * heights.range().1;
-        let lifts = [0.0; 3].map(|_: f64| size * numbers.next());
+        let lifts = [0.0; 3].map(|_: f64| size * random.signed());
         let ((most, rest), (low, high, _)) = (heights.lifted_range(lifts), heights.about());
         let sampled = heights.sampled();
         for weights in grid(4) {
@@ -348,9 +340,9 @@ fn the_quartic_constant_holds() {
 /// Coefficients from values are those of the polynomial: cut finer, they close in on its greatest size.
 #[test]
 fn nets_are_of_their_polynomials() {
-    let mut numbers = Numbers(21);
+    let mut random = Random::new(21);
     for _ in 0..50 {
-        let x: [f64; 5] = core::array::from_fn(|_| numbers.next());
+        let x: [f64; 5] = core::array::from_fn(|_| random.signed());
         let value = |[a, b, c]: [f64; 3]| {
             x[0] * a * a * b * c + x[1] * b.powi(4) + x[2] * a * c.powi(3) + x[3] * b * c + x[4] * a
         };
@@ -432,9 +424,9 @@ fn remainder(heights: &Heights, s: f64, r: f64) -> f64 {
 /// The decomposition is one: cubics leave no remainder.
 #[test]
 fn cubics_have_no_rest() {
-    let mut numbers = Numbers(11);
+    let mut random = Random::new(11);
     for _ in 0..100 {
-        let mut x = || numbers.next();
+        let mut x = || random.signed();
         let heights = Heights {
             ss: x(),
             sr: x(),

@@ -4,8 +4,9 @@
 //! `N_ij = d_i × d_j` of random differences are refined by `N ← D N Dᵀ`, which loses no digits where the two
 //! tangents shrink at different rates, and rescaled; the normals of the faces are those of neighbours i, j.
 
-use super::{Numbers, distance, stencil, unit};
+use super::{distance, stencil, unit};
 use crate::limit::{LimitStencil, TangentPlane, difference_matrix, ring_matrix};
+use crate::random::Random;
 use crate::ring::RingShape;
 use crate::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 
@@ -35,8 +36,8 @@ fn every_shape() -> Vec<RingShape> {
 
 /// Random points around the vertex on a bumpy fan: any differences will do, but those of a fan are of one size.
 fn random_points(count: usize, seed: u64) -> Matrix {
-    let mut numbers = Numbers(seed);
-    (0..count).map(|_| numbers.vector().to_vec()).collect()
+    let mut random = Random::new(seed);
+    (0..count).map(|_| random.vector().to_array().to_vec()).collect()
 }
 
 #[test]

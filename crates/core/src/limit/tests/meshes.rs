@@ -1,9 +1,10 @@
 //! Positions and normals on whole meshes: orientation, fallbacks, size, threads, and errors.
 
-use super::{Numbers, distance, unit};
+use super::{distance, unit};
 use crate::index::VertexId;
 use crate::limit::{LimitError, LimitTable};
 use crate::mesh::{CornerTag, INFINITELY_SHARP, Mesh, Tags};
+use crate::random::Random;
 use crate::ring::{EdgeShape, RingShape};
 use crate::scheme::{EdgeMask, Loop, LoopWarren, ModifiedButterfly, Scheme, Support, VertexMask};
 
@@ -36,12 +37,12 @@ fn sphere(around: u32, rings: u32) -> Mesh {
 
 /// A hilly sheet of n × n cells.
 fn sheet(n: u32) -> Mesh {
-    let mut numbers = Numbers(u64::from(n));
+    let mut random = Random::new(u64::from(n));
     let height =
         |i: u32, j: u32, wobble: f64| (f64::from(i) * 0.7).sin() + (f64::from(j) * 0.4).cos() + 0.1 * wobble;
     let positions = (0..=n)
         .flat_map(|j| (0..=n).map(move |i| (i, j)))
-        .map(|(i, j)| [f64::from(i), f64::from(j), height(i, j, numbers.next())])
+        .map(|(i, j)| [f64::from(i), f64::from(j), height(i, j, random.signed())])
         .collect();
     let at = |i: u32, j: u32| j * (n + 1) + i;
     let cells = (0..n).flat_map(|j| (0..n).map(move |i| (i, j)));

@@ -9,21 +9,6 @@ use crate::limit::{LimitStencil, LimitTable};
 use crate::ring::RingShape;
 use crate::scheme::Scheme;
 
-/// Numbers in −1 … 1 that look random and are the same in every run.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        // Knuth's MMIX generator; its upper bits are the good ones.
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> [f64; 3] {
-        [self.next(), self.next(), self.next()]
-    }
-}
-
 fn stencil(scheme: &dyn Scheme, shape: RingShape) -> LimitStencil {
     LimitTable::new(scheme).stencil(shape).unwrap().as_ref().clone()
 }

@@ -6,8 +6,9 @@
 
 use core::f64::consts::TAU;
 
-use super::{Numbers, cross, distance, stencil, unit};
+use super::{cross, distance, stencil, unit};
 use crate::limit::{TangentPlane, difference_matrix, ring_matrix};
+use crate::random::Random;
 use crate::ring::RingShape;
 use crate::scheme::{Loop, LoopWarren};
 
@@ -25,8 +26,8 @@ fn second_compound(matrix: &Matrix) -> Matrix {
 
 /// The dominant right eigenvector by plain iteration, of unit length.
 fn dominant(matrix: &Matrix, steps: usize) -> Vec<f64> {
-    let mut numbers = Numbers(5);
-    let mut vector: Vec<f64> = matrix.iter().map(|_| numbers.next()).collect();
+    let mut random = Random::new(5);
+    let mut vector: Vec<f64> = matrix.iter().map(|_| random.signed()).collect();
     for _ in 0..steps {
         vector = matrix.iter().map(|row| row.iter().zip(&vector).map(|(a, b)| a * b).sum()).collect();
         let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -112,8 +113,8 @@ fn equation_10_as_printed_is_wrong_on_boundary_rings() {
         let right = normalised(dominant(&compound, 600));
         let left = stencil(&Loop, shape).normal_weights().unwrap();
         let matrix = difference_matrix(&ring_matrix(&Loop, shape).unwrap());
-        let mut numbers = Numbers(u64::from(k));
-        let start: Vec<[f64; 3]> = (0..k).map(|_| numbers.vector()).collect();
+        let mut random = Random::new(u64::from(k));
+        let start: Vec<[f64; 3]> = (0..k).map(|_| random.vector().to_array()).collect();
         let pairs: Vec<[f64; 3]> = (0..start.len())
             .flat_map(|i| (i + 1..k as usize).map(move |j| (i, j)))
             .map(|(i, j)| cross(start[i], start[j]))

@@ -7,26 +7,17 @@ use crate::mesh::{CornerTag, CreaseTag, Tags};
 use crate::models;
 use crate::patch::large_rings::LargeRings;
 use crate::patch::root_patch;
+use crate::random::Random;
 use crate::refine::{UniformOptions, uniform};
 use crate::scheme::{Loop, LoopWarren, Scheme};
-
-/// Numbers between 0 and 1, the same on every run.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
 
 /// Tags on many edges and some vertices, nearly all of them semi-sharp.
 fn tagged(name: &str, seed: u64) -> Mesh {
     let mesh = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0;
-    let mut numbers = Numbers(seed);
+    let mut random = Random::new(seed);
     let mut sharpness = |share: f64| {
-        let (is_tagged, lasts) = (numbers.next() < share, numbers.next() < 0.15);
-        let fading = 3.0 * numbers.next();
+        let (is_tagged, lasts) = (random.unit() < share, random.unit() < 0.15);
+        let fading = 3.0 * random.unit();
         is_tagged.then_some(if lasts { f64::INFINITY } else { fading })
     };
     let mut tags = Tags::default();

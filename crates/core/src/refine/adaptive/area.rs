@@ -77,23 +77,20 @@ impl Areas {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
 
     /// By brute force over places.
     #[test]
     fn an_area_holds_what_was_added() {
-        let mut state = 3u64;
-        let mut number = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut random = Random::new(3);
         let mut left_out = 0;
         for _ in 0..300 {
             let mut area = Area::default();
             let added: Vec<([f64; 2], f64)> =
-                (0..3).map(|_| ([number(), number()], 0.1 * number())).collect();
+                (0..3).map(|_| ([random.unit(), random.unit()], 0.1 * random.unit())).collect();
             added.iter().for_each(|&(at, around)| area.add([at], around));
             for _ in 0..50 {
-                let at = [number(), number()];
+                let at = [random.unit(), random.unit()];
                 let is_in = |&([u, v], around): &([f64; 2], f64)| {
                     (at[0] - u).abs() <= around && (at[1] - v).abs() <= around
                 };

@@ -155,6 +155,7 @@ fn ensure_along(
 mod tests {
     use super::*;
     use crate::mesh::Mesh;
+    use crate::random::Random;
     use crate::refine::adaptive::quadtree::{LEAF, Piece, is_split};
 
     fn model(name: &str) -> Mesh {
@@ -214,21 +215,17 @@ mod tests {
 
     #[test]
     fn the_least_restriction_is_found() {
-        let mut state = 5u64;
-        let mut random = move |below: u64| {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 33) % below
-        };
+        let mut random = Random::new(5);
         for name in ["tetrahedron", "torus", "sheet"] {
             let mesh = model(name);
             let edges = Edges::of(&mesh);
             for _ in 0..20 {
-                let roots: Vec<u32> = (0..mesh.face_count()).map(|_| LEAF + random(3) as u32).collect();
+                let roots: Vec<u32> = (0..mesh.face_count()).map(|_| LEAF + random.below(3) as u32).collect();
                 let mut trees = Trees::of(&[Piece { roots, words: vec![] }], &mut || Ok(())).unwrap();
                 for _ in 0..3 {
-                    let face = random(mesh.face_count() as u64) as u32;
-                    let level = 3 + random(3) as u32;
-                    let place = Place { face, level, path: random(1 << (2 * level)) };
+                    let face = random.below(mesh.face_count()) as u32;
+                    let level = 3 + random.below(3) as u32;
+                    let place = Place { face, level, path: random.below(1 << (2 * level)) as u64 };
                     assert!(trees.ensure(place, |_| ()));
                 }
                 let mut expected = trees.clone();

@@ -389,21 +389,20 @@ pub(super) fn rounding(control: &Mesh, max_levels: usize, watch: &SharedWatch<'_
 mod tests {
     use super::*;
     use crate::progress::{Stage, unobserved};
+    use crate::random::Random;
 
     /// As sorting all of them tells, equal ones by their places.
     #[test]
     fn the_greatest_are_those_of_the_sorted_list() {
         let mut unobserved = unobserved;
         let watch = SharedWatch::new(&mut unobserved, Stage::Assembling);
-        let mut state = 5u64;
+        let mut random = Random::new(5);
         for (count, most) in [(0, 3), (2, 3), (5, 1), (300, 7), (5000, 64), (5000, 2500), (5000, 5000)] {
-            let mut number = |below: u64| {
-                state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-                (state >> 33) % below
-            };
             let mut all: Vec<(f64, Place)> = (0..count)
                 .map(|face| {
-                    (number(count / 3 + 1) as f64, Place { path: number(4), ..Place::root(face as u32) })
+                    let value = random.below(count / 3 + 1) as f64;
+                    let path = random.below(4) as u64;
+                    (value, Place { path, ..Place::root(face as u32) })
                 })
                 .collect();
             let found = greatest(all.iter().copied(), most, &watch).unwrap();

@@ -284,16 +284,15 @@ impl Piece {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
+
     /// Bounds that are read are those that were written, but for what rounding adds.
     #[test]
     fn bounds_are_kept_in_words() {
-        let mut state = 5u64;
-        let random = (0..10_000).map(move |_| {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            f64::from_bits(state >> 1)
-        });
-        let random = random.filter(|bound| bound.is_finite());
-        for bound in random.chain([0.0, -0.0, 1.0, f64::MIN_POSITIVE, 5e-324, f64::MAX]) {
+        let mut random = Random::new(5);
+        let bounds = (0..10_000).map(|_| f64::from_bits(random.bits() >> 1));
+        let bounds = bounds.filter(|bound| bound.is_finite());
+        for bound in bounds.chain([0.0, -0.0, 1.0, f64::MIN_POSITIVE, 5e-324, f64::MAX]) {
             for depth in [0, 1, MOST_LEVELS] {
                 let word = bounded(LEAF + depth, bound);
                 assert_eq!((even_depth(word), is_split(word)), (Some(depth), depth > 0), "{bound}");

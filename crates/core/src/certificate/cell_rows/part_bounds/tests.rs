@@ -3,21 +3,8 @@
 use super::*;
 use crate::certificate::TriangleFrame;
 use crate::certificate::quartic_cell::quadratic_height;
+use crate::random::Random;
 use crate::vector::DVec3;
-
-struct Numbers(u64);
-
-impl Numbers {
-    /// Between −1 and 1.
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-}
 
 /// A part: its corners, the limit normals there, and the second derivatives along its edges.
 struct Part {
@@ -28,28 +15,28 @@ struct Part {
 
 impl Part {
     /// Any shape but the thinnest; bends of a quadratic that may be nearly of one direction.
-    fn random(numbers: &mut Numbers, case: usize, size: f64) -> Self {
+    fn random(random: &mut Random, case: usize, size: f64) -> Self {
         let thin = 10f64.powi(-(case as i32 % 5));
-        let first = numbers.vector();
-        let along = numbers.vector().normalize();
-        let across = along.cross(numbers.vector()).normalize();
+        let first = random.vector();
+        let along = random.vector().normalize();
+        let across = along.cross(random.vector()).normalize();
         let second = first + along;
-        let third = first + numbers.next() * along + thin * (0.6 + 0.5 * numbers.next()) * across;
+        let third = first + random.signed() * along + thin * (0.6 + 0.5 * random.signed()) * across;
         let corners = if case.is_multiple_of(2) { [first, second, third] } else { [second, third, first] };
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
         let edges = [0, 1, 2].map(|edge| corners[(edge + 1) % 3] - corners[edge]);
         // By a quadratic form within the plane, one of whose directions may bend next to nothing.
         let size = size * thin;
-        let less = [1.0, -0.5, 1e-3, 1e-5, 1e-7, 1e-9, 0.0][case % 7] * numbers.next();
-        let turn = (3.0 * numbers.next()).sin_cos();
+        let less = [1.0, -0.5, 1e-3, 1e-5, 1e-7, 1e-9, 0.0][case % 7] * random.signed();
+        let turn = (3.0 * random.signed()).sin_cos();
         let directions = [along * turn.0 + across * turn.1, across * turn.0 - along * turn.1];
-        let aside = 3.0 * numbers.vector().reject_from_normalized(normal);
+        let aside = 3.0 * random.vector().reject_from_normalized(normal);
         let bends = edges.map(|edge| {
             let [x, y] = directions.map(|direction| direction.dot(edge));
             size * ((x * x + less * y * y) * normal + x * y * aside)
         });
-        let tilt = 0.05 * numbers.next();
-        let normals = [0; 3].map(|_| (normal + tilt * numbers.vector()).normalize());
+        let tilt = 0.05 * random.signed();
+        let normals = [0; 3].map(|_| (normal + tilt * random.vector()).normalize());
         Self { corners, normals, bends }
     }
 }
@@ -69,12 +56,12 @@ fn rows(parts: &[Part], is_turned: bool) -> [[[f32; WIDTH]; 3]; 8] {
 
 #[test]
 fn single_precision_is_on_the_safe_side() {
-    let mut numbers = Numbers(3);
+    let mut random = Random::new(3);
     let (mut compared, mut round_ones, mut tight) = (0, 0, 0);
     for round in 0..3000 {
         // Parts of a row are much alike.
-        let size = 10f64.powf(-3.0 + 2.0 * numbers.next());
-        let parts: Vec<Part> = (0..8).map(|i| Part::random(&mut numbers, 35 * i + round, size)).collect();
+        let size = 10f64.powf(-3.0 + 2.0 * random.signed());
+        let parts: Vec<Part> = (0..8).map(|i| Part::random(&mut random, 35 * i + round, size)).collect();
         let rows = rows(&parts, round % 2 == 1);
         let slices = |row: usize| rows[row].each_ref().map(|axis| &axis[..]);
         let input = Parts {
@@ -137,10 +124,10 @@ fn single_precision_is_on_the_safe_side() {
 /// The greatest height of a quadratic, by the places where it can be and none other, is never above what is told.
 #[test]
 fn heights_of_nearly_cylindrical_quadratics_are_no_less_than_they_are() {
-    let mut numbers = Numbers(7);
+    let mut random = Random::new(7);
     for case in 0..200_000 {
-        let small = 10f64.powf(-(case as f64 % 9.0)) * numbers.next();
-        let (x, y) = (numbers.next(), numbers.next());
+        let small = 10f64.powf(-(case as f64 % 9.0)) * random.signed();
+        let (x, y) = (random.signed(), random.signed());
         let form = |[s, t]: [f64; 2]| (x * s + y * t).powi(2) + small * (y * s - x * t).powi(2);
         let sign = if case % 2 == 0 { 1.0 } else { -1.0 };
         let bends = [[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]].map(|edge| (sign * form(edge)) as f32);

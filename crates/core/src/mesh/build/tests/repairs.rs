@@ -1,6 +1,7 @@
 //! Errors, welding, and faces that are dropped or turned.
 
 use super::*;
+use crate::random::Random;
 
 const TETRAHEDRON: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 const SIDES: [&[u32]; 4] = [&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];
@@ -111,12 +112,9 @@ fn welding_reaches_as_far_as_asked() {
 /// Welding against a comparison of all pairs.
 #[test]
 fn welding_finds_what_comparing_all_pairs_finds() {
-    let mut state = 1u64;
-    let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 40) as f64 / (1u64 << 24) as f64
-    };
-    let positions: Vec<[f64; 3]> = (0..400).map(|_| [random(), random(), random() * 0.2]).collect();
+    let mut random = Random::new(1);
+    let mut next = || (random.bits() >> 40) as f64 / (1u64 << 24) as f64;
+    let positions: Vec<[f64; 3]> = (0..400).map(|_| [next(), next(), next() * 0.2]).collect();
     let used = vec![true; positions.len()];
     for distance in [1e-300, 0.01, 0.03, 0.05, 0.08, 0.2, 3.0, 1e300] {
         let near = |a: usize, b: usize| {

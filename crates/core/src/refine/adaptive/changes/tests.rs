@@ -19,6 +19,7 @@ use crate::mesh::Mesh;
 use crate::models::{book, stir, stirred};
 use crate::patch::Rules;
 use crate::progress::unobserved;
+use crate::random::Random;
 use crate::refine::ExactOptions;
 use crate::scheme::Loop;
 
@@ -67,13 +68,13 @@ fn listed(sources: &Sources<'_>, sharp: &HashSet<u32>, face: u32) -> Listed {
 }
 
 /// Divides a leaf of each of some control faces.
-fn divide(engine: &Engine<'_>, plan: &mut Plan, next: &mut impl FnMut(usize) -> usize) {
+fn divide(engine: &Engine<'_>, plan: &mut Plan, random: &mut Random) {
     let mut dirty = Dirty::none(plan.closed.len());
     for _ in 0..1 + plan.closed.len() / 40 {
-        let mut place = Place::root(next(plan.closed.len()) as u32);
+        let mut place = Place::root(random.below(plan.closed.len()) as u32);
         let mut word = plan.decision.trees.root(place.face);
         while is_split(word) {
-            let child = next(4);
+            let child = random.below(4);
             (word, place) = (plan.decision.trees.child(word, child), place.child(child));
         }
         engine.split(&mut plan.decision.trees, place, &mut dirty).unwrap();
@@ -100,11 +101,7 @@ fn assert_holds(found: &[Measured], anew: &[Measured], name: &str) {
 
 /// Rounds of random divisions with vertices moved after each, as balancing does it.
 fn rounds(name: &str, mesh: &Mesh, (share, seed): (f64, u64), counts: &mut [usize; 2]) {
-    let mut state = seed;
-    let mut next = |below: usize| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 33) as usize % below
-    };
+    let mut random = Random::new(seed);
     let limit = share * mesh.diagonal();
     let options = ExactOptions::default().tolerance(limit).balance(true);
     with_engine(mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
@@ -170,7 +167,7 @@ fn rounds(name: &str, mesh: &Mesh, (share, seed): (f64, u64), counts: &mut [usiz
             assert_holds(&measured, &anew, &name);
             before = Some(known);
             plan.emission = Some(emission);
-            divide(engine, &mut plan, &mut next);
+            divide(engine, &mut plan, &mut random);
         }
         Ok(())
     })

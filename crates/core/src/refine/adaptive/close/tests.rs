@@ -8,6 +8,7 @@ use super::judged::in_walks_order;
 use super::*;
 use crate::models::{book, stirred};
 use crate::progress::unobserved;
+use crate::random::Random;
 use crate::refine::ExactOptions;
 use crate::scheme::Loop;
 
@@ -28,33 +29,29 @@ fn faces_closed_again_are_as_if_closed_whole() {
             let is_finer = (0..faces).map(|face| face % 5 < 2 || face % 7 == 0).collect();
             let goal = Goal::Partly(tolerance, share * tolerance, is_finer);
             let mut plan = engine.plan(goal, usize::MAX)?.unwrap();
-            let mut state = seed;
+            let mut random = Random::new(seed);
             for round in 0..12 {
-                let mut next = |below: usize| {
-                    state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-                    (state >> 33) as usize % below
-                };
                 let mut dirty = Dirty::none(plan.closed.len());
                 for _ in 0..1 + plan.closed.len() / 30 {
-                    let mut place = Place::root(next(plan.closed.len()) as u32);
+                    let mut place = Place::root(random.below(plan.closed.len()) as u32);
                     // Of two times one beside a leaf that closes gaps, where there are any.
                     let known = plan.closed[place.face as usize].known();
                     if let Some(parent) =
-                        known.get(next(2 * known.len() + 1)).and_then(|leaf| leaf.place.parent())
+                        known.get(random.below(2 * known.len() + 1)).and_then(|leaf| leaf.place.parent())
                     {
                         place = parent;
                     }
                     let trees = &plan.decision.trees;
                     while trees.word_at(place).is_some_and(is_split) {
-                        place = place.child(next(4));
+                        place = place.child(random.below(4));
                     }
                     if round % 3 == 2 {
                         plan.decision.trees.make_strict(place);
                     }
                     engine.split(&mut plan.decision.trees, place, &mut dirty)?;
                     // Now and then by more levels at once.
-                    for _ in 0..next(3) {
-                        place = place.child(next(4));
+                    for _ in 0..random.below(3) {
+                        place = place.child(random.below(4));
                         engine.split(&mut plan.decision.trees, place, &mut dirty)?;
                     }
                 }

@@ -207,31 +207,28 @@ fn rearrange<T: Copy>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
 
     /// Against a copy.
     #[test]
     fn elements_are_moved_to_where_they_belong() {
-        let mut state = 9u64;
-        let mut below = |limit: u64| {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            ((state >> 33) % limit) as usize
-        };
+        let mut random = Random::new(9);
         let (mut up, mut down) = (0, 0);
         for _ in 0..200 {
             let (mut moves, mut all) = (Shifts::default(), Vec::new());
             let (mut before, mut now) = (0, 0);
-            for _ in 0..below(8) {
-                (before, now) = (before + below(3000), now + below(3000));
-                let count = [below(50), below(3 * COPIED as u64)][below(2)];
+            for _ in 0..random.below(8) {
+                (before, now) = (before + random.below(3000), now + random.below(3000));
+                let count = [random.below(50), random.below(3 * COPIED)][random.below(2)];
                 moves.push(before..before + count, now);
                 all.push((before, now, count));
                 (before, now) = (before + count, now + count);
                 up += usize::from(now > before);
                 down += usize::from(now < before);
             }
-            let array: Vec<u32> = (0..(before + below(100)) as u32).collect();
+            let array: Vec<u32> = (0..(before + random.below(100)) as u32).collect();
             let mut moved = array.clone();
-            let length = now + below(100);
+            let length = now + random.below(100);
             rearrange(&mut moved, (u32::MAX, length), &moves, &|| false);
             assert_eq!(moved.len(), length);
             for (before, now, count) in all {

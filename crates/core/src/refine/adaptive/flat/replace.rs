@@ -442,31 +442,28 @@ fn keep<T>(of_vertices: &mut Vec<T>, renamed: &[u32]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
 
     /// Where more comes than goes, too.
     #[test]
     fn arrays_become_what_was_kept_and_added() {
-        let mut state = 5u64;
-        let mut below = |most: u32| {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 33) as u32 % most
-        };
+        let mut random = Random::new(5);
         let mut grown = 0;
         for _ in 0..500 {
-            let before = 1 + below(40);
+            let before = 1 + random.below(40) as u32;
             let (mut exchange, mut expected, mut added) = (Exchange::default(), Vec::new(), Vec::new());
             let mut at = 0;
             while at < before {
-                let end = (at + below(6)).min(before);
+                let end = (at + random.below(6) as u32).min(before);
                 exchange.keep(at..end);
                 expected.extend((2 * at..2 * end).map(f64::from));
-                for _ in 0..below(7) {
+                for _ in 0..random.below(7) {
                     exchange.add(Fresh { number: exchange.count, triangle: [0; 3], face: 0, region: 0 });
                     let new = [-1.0 - added.len() as f64, 0.5];
                     expected.extend(new);
                     added.extend(new);
                 }
-                at = end + below(4);
+                at = end + random.below(4) as u32;
             }
             let mut items: Vec<f64> = (0..2 * before).map(f64::from).collect();
             grown += usize::from(expected.len() > items.len());
