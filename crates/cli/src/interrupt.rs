@@ -1,7 +1,7 @@
 //! Ctrl-C, SIGTERM and SIGHUP: end the program at once, also while it writes a file, and say what was cancelled.
 //!
 //! Files are written to a temporary neighbour and renamed, so no reader ever sees half of one; a signal on the way removes
-//! the neighbour. Only a batch, whose results belong together, comes to the end of what it has in hand.
+//! the neighbour. Only a batch finishes writing its results first.
 
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -16,6 +16,8 @@ struct State {
     asked: Option<Signal>,
     doing: String,
     written: Vec<String>,
+    /// Whether part of what was being written may have been read.
+    is_in_part: bool,
     /// Whether signals are only noted.
     is_left_to_caller: bool,
 }
@@ -25,6 +27,7 @@ static STATE: Mutex<State> = Mutex::new(State {
     asked: None,
     doing: String::new(),
     written: Vec::new(),
+    is_in_part: false,
     is_left_to_caller: false,
 });
 
@@ -86,13 +89,15 @@ fn end(signal: Signal) {
         state.asked = Some(signal);
         return;
     }
-    // Held, too, so that no file takes its name any more.
+    // Held, too, so that no file takes its name any longer.
     let abandoned = limitmesh_io::abandon_unfinished();
     if let Some((name, before)) = state.writing.take() {
         if abandoned.finished_files() > before {
             state.written.push(name);
         } else {
             state.doing = format!("writing {name}");
+            // Whoever reads from a pipe may have some of it.
+            state.is_in_part = std::fs::metadata(&name).is_ok_and(|there| !there.is_file());
         }
     }
     exit(&state, signal)
@@ -131,6 +136,7 @@ pub(crate) fn end_with_standard_input() {
 fn exit(state: &State, signal: Signal) -> ! {
     let doing = if state.doing.is_empty() { String::new() } else { format!(" while {}", state.doing) };
     let written = match state.written.as_slice() {
+        [] if state.is_in_part => "part of it may have been read".to_owned(),
         [] => "nothing was written".to_owned(),
         names => format!("{} written by then", names.join(", ")),
     };
@@ -159,10 +165,10 @@ pub(crate) fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Runs `write`, which writes a file of that name, whole or not at all even if a signal comes meanwhile.
+/// Runs `write`, which writes a file of that name: whole or not at all, also where a signal ends the program meanwhile.
 ///
 /// Where signals are left to the caller, one that came meanwhile ends the program afterwards.
-pub(crate) fn uninterrupted<T, E>(name: String, write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+pub(crate) fn whole_or_not<T, E>(name: String, write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
     state().writing = Some((name, limitmesh_io::finished_files()));
     let result = write();
     let mut state = state();

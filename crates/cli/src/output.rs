@@ -38,7 +38,7 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         let mut out = std::io::stdout().lock();
         return out.write_all(bytes).and_then(|()| out.flush()).context("standard output");
     }
-    interrupt::uninterrupted(path.display().to_string(), || limitmesh_io::write_whole(path, bytes))?;
+    interrupt::whole_or_not(path.display().to_string(), || limitmesh_io::write_whole(path, bytes))?;
     Ok(())
 }
 
@@ -51,7 +51,7 @@ pub(crate) fn write_mesh(
 ) -> anyhow::Result<()> {
     if !is_standard_output(path) {
         let name = path.display().to_string();
-        interrupt::uninterrupted(name, || limitmesh_io::write_as(path, format, mesh, options))?;
+        interrupt::whole_or_not(name, || limitmesh_io::write_as(path, format, mesh, options))?;
         return Ok(());
     }
     match limitmesh_io::write_to(&mut std::io::stdout().lock(), format, mesh, options) {
@@ -72,7 +72,7 @@ pub(crate) fn write_asset(
         true => asset.write_linked(path, format),
         false => asset.write(path, format),
     };
-    Ok(interrupt::uninterrupted(name, write)?)
+    Ok(interrupt::whole_or_not(name, write)?)
 }
 
 /// Writes JSON to a file, or to standard output for `-`.

@@ -126,25 +126,29 @@ fn signals_leave_the_whole_file_or_none_and_say_what_was_cancelled() {
 #[cfg(unix)]
 #[test]
 fn a_signal_ends_the_writing_of_a_large_file() {
-    let folder = folder();
     for (name, how) in [("out.ply", "--ascii"), ("out.obj", "")] {
+        let folder = folder();
         let output = file(&folder, name, "precious");
         let words = format!("refine builtin:shoe -o {{}} -q --method uniform --levels 6 {how}");
         let mut child =
             command(&words, &[&output]).stderr(Stdio::piped()).spawn().expect("the program starts");
-        let is_begun = || names(folder.path()).iter().any(|name| name.ends_with(".tmp"));
+        // Before the work one is made, too, to find out whether that is possible; nothing is written to it.
+        let is_begun = || {
+            let temporary = |name: &String| name.ends_with(".tmp");
+            let length = |name| std::fs::metadata(folder.path().join(name)).map_or(0, |there| there.len());
+            names(folder.path()).into_iter().filter(temporary).any(|name| length(name) > 0)
+        };
         while !is_begun() {
             assert_eq!(child.try_wait().expect("a child"), None, "{name}: it ends before it writes");
             std::thread::sleep(Duration::from_millis(1));
         }
-        signal(&child, "INT");
+        signal(&child, "TERM");
         let told = ended(child, name);
         let said = String::from_utf8_lossy(&told.stderr);
-        assert_eq!(told.status.code(), Some(130), "{name}: {said}");
+        assert_eq!(told.status.code(), Some(143), "{name}: {said}");
         assert!(said.contains("while writing ") && said.contains("nothing was written"), "{name}: {said}");
         assert_eq!(names(folder.path()), [name]);
         assert_eq!(std::fs::read_to_string(&output).expect("the earlier file"), "precious");
-        std::fs::remove_file(&output).expect("own file");
     }
 }
 
@@ -153,20 +157,53 @@ fn a_signal_ends_the_writing_of_a_large_file() {
 #[test]
 fn a_signal_ends_the_writing_into_a_full_pipe() {
     let folder = folder();
-    let pipe = folder.path().join("pipe.ply");
-    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
-    let child = command("refine builtin:shoe -o {} -q --method uniform --levels 3", &[&pipe])
+    let pipe = pipe(&folder, "pipe.ply");
+    let mut child = command("refine builtin:shoe -o {} -q --method uniform --levels 3", &[&pipe])
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program starts");
-    // Opens when the program does.
-    let reader = std::fs::File::open(&pipe).expect("a pipe");
+    // Opens when the program does, and is read from by nobody.
+    let (sender, opened) = std::sync::mpsc::channel();
+    std::thread::spawn(move || sender.send(std::fs::File::open(&pipe)));
+    let reader = opened.recv_timeout(Duration::from_secs(60));
+    if reader.is_err() {
+        child.kill().expect("a child can be ended");
+    }
     signal(&child, "TERM");
-    let told = ended(child, "pipe");
-    drop(reader);
+    let told = ended(child, "pipe.ply");
+    let said = String::from_utf8_lossy(&told.stderr);
+    assert!(reader.is_ok_and(|reader| reader.is_ok()), "it does not open the pipe: {said}");
+    assert_eq!(told.status.code(), Some(143), "{said}");
+    assert!(said.contains("while writing ") && said.contains("part of it may have been read"), "{said}");
+}
+
+/// Of files that belong together none counts as written before all are.
+#[cfg(unix)]
+#[test]
+fn a_document_is_not_written_when_what_it_names_is() {
+    let folder = folder();
+    let document = pipe(&folder, "pipe.gltf");
+    let mut child = command("refine builtin:cup -o {} -q", &[&document])
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    // Then nothing is left but the pipe, which nobody opens.
+    while !names(folder.path()).contains(&"pipe.bin".to_owned()) {
+        assert_eq!(child.try_wait().expect("a child"), None, "it ends before it writes");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    signal(&child, "TERM");
+    let told = ended(child, "pipe.gltf");
     let said = String::from_utf8_lossy(&told.stderr);
     assert_eq!(told.status.code(), Some(143), "{said}");
-    assert!(said.contains("cancelled by SIGTERM while writing "), "{said}");
+    assert!(said.contains("while writing ") && !said.contains("written by then"), "{said}");
+}
+
+#[cfg(unix)]
+fn pipe(folder: &tempfile::TempDir, name: &str) -> std::path::PathBuf {
+    let pipe = folder.path().join(name);
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
+    pipe
 }
 
 #[cfg(unix)]

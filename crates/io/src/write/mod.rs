@@ -260,8 +260,12 @@ fn write_checked(
         },
         Format::Stl => stl::write(writer, output, options.ascii)?,
         Format::Off => off::write(writer, output)?,
-        Format::Gltf | Format::Glb => writer.write_all(&gltf::write_fresh(None, format, output)?)?,
-        Format::ThreeMf => writer.write_all(&threemf::write_fresh(output.surface, options.unit)?)?,
+        Format::Gltf | Format::Glb => {
+            whole::write_in_pieces(writer, &gltf::write_fresh(None, format, output)?)?;
+        }
+        Format::ThreeMf => {
+            whole::write_in_pieces(writer, &threemf::write_fresh(output.surface, options.unit)?)?;
+        }
     }
     Ok(writer.flush()?)
 }

@@ -58,10 +58,11 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     write_whole_with(path, |writer| Ok(write_in_pieces(writer, bytes)?))
 }
 
-/// Bytes that the system is given at once: some milliseconds of writing, in which a program that is about to end waits for it.
+/// How many bytes the system is given at once: some milliseconds of writing, which a program that is about to end has to wait for.
 const PIECE: usize = 1 << 22;
 
-fn write_in_pieces(writer: &mut dyn Write, bytes: &[u8]) -> io::Result<()> {
+/// Writes bytes so that a program may end on the way.
+pub(super) fn write_in_pieces(writer: &mut dyn Write, bytes: &[u8]) -> io::Result<()> {
     bytes.chunks(PIECE).try_for_each(|piece| writer.write_all(piece))
 }
 
@@ -85,8 +86,10 @@ pub fn write_whole_with(
     if let Some(earlier) = earlier {
         file.set_permissions(earlier.permissions()).map_err(failed)?;
     }
-    let finished = file.finish(&target, &mut register());
-    finished.map_err(failed)
+    let mut register = register();
+    file.finish(&target, &mut register).map_err(failed)?;
+    register.finished += 1;
+    Ok(())
 }
 
 /// A file with all its bytes.
@@ -113,25 +116,30 @@ pub(crate) fn write_together(files: &[WholeFile]) -> Result<(), WriteError> {
         }
         waiting.push((path, Some((file, target))));
     }
-    {
-        // Held for all of them: a program that ends meanwhile leaves all or none.
-        let mut register = register();
-        for (path, file) in &waiting {
-            if let Some((file, target)) = file {
-                let failed = |reason| WriteError::File { path: (*path).clone(), reason };
-                file.finish(target, &mut register).map_err(failed)?;
+    // Held as long as files take their names: a program that ends meanwhile leaves all or none. Nobody holds it while a device is
+    // written to, which may last for ever.
+    let mut held = None;
+    for ((path, file), WholeFile { bytes, .. }) in waiting.iter().zip(files) {
+        match file {
+            Some((file, target)) => {
+                let finished = file.finish(target, held.get_or_insert_with(register));
+                finished.map_err(|reason| WriteError::File { path: (*path).clone(), reason })?;
+            }
+            None => {
+                held = None;
+                write_whole(path, bytes)?;
             }
         }
     }
-    let direct = waiting.iter().zip(files).filter(|((_, file), _)| file.is_none());
-    direct.into_iter().try_for_each(|((path, _), file)| write_whole(path, &file.bytes))
+    held.get_or_insert_with(register).finished += 1;
+    Ok(())
 }
 
 /// What this process is writing and has written.
 struct Register {
     /// The temporary files.
     unfinished: Vec<PathBuf>,
-    /// How many files took their names.
+    /// How often writing came to its end; files that belong together count once.
     finished: usize,
 }
 
@@ -141,7 +149,7 @@ fn register() -> MutexGuard<'static, Register> {
     REGISTER.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// How many files this process has finished writing; those that are written to directly are not counted.
+/// How often this process has finished writing a file, or files that belong together; what is written to directly may not count.
 pub fn finished_files() -> usize {
     register().finished
 }
@@ -151,7 +159,7 @@ pub fn finished_files() -> usize {
 pub struct Abandoned(MutexGuard<'static, Register>);
 
 impl Abandoned {
-    /// [`finished_files`], which asked now would wait for ever.
+    /// [`finished_files`], which would wait for ever if it were called while this is held.
     pub fn finished_files(&self) -> usize {
         self.0.finished
     }
@@ -159,7 +167,8 @@ impl Abandoned {
 
 /// Removes the temporary files of all files that this process is writing, for a process that is about to end in the midst of it.
 ///
-/// Nothing is begun or finished until what this gives is dropped; who goes on then finds that the writing fails.
+/// Nothing is begun or finished until what this gives is dropped; writing to a regular file that was under way fails afterwards. Folders
+/// that were made for the files stay.
 pub fn abandon_unfinished() -> Abandoned {
     let mut register = register();
     for path in register.unfinished.drain(..) {
@@ -201,7 +210,6 @@ impl Unfinished {
     fn finish(&self, target: &Path, register: &mut Register) -> io::Result<()> {
         fs::rename(&self.path, target)?;
         register.unfinished.retain(|path| *path != self.path);
-        register.finished += 1;
         Ok(())
     }
 }

@@ -21,7 +21,7 @@ use crate::interrupt;
 /// How often limits are looked at.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// How long a process that is to end may take to finish the file that it writes.
+/// How long a process that is to end may take to remove what it has begun.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// The end of what a process that crashed said is kept, up to so many bytes.
