@@ -17,7 +17,7 @@
 //! sum over the triangles of (x_p + x_q + x_r)² is Σ k x² + 2·xᵀ(adjacency)x and not negative, whence the adjacency is at least
 //! −k/2; and a > k/2, as k·β(k) is below 3/4 for Loop's weights and Warren's (0.61 at most, at valence 2). So there is a solution
 //! for every mesh, and with the diagonal as preconditioner the condition number is at most that of (1 + k/a)/(1 − k/2a): 4 for
-//! six edges, 10 for three, 14 for two. That takes some twenty steps of conjugate gradients at any size. Lines have 4 on the
+//! six edges, 10 for three, 14 for two. That takes some thirty steps of conjugate gradients at any size. Lines have 4 on the
 //! diagonal and two neighbours. No length enters: slivers are as good as other triangles.
 //!
 //! Where a dart or a tag that fades gives the neighbours of a vertex weights of their own, and for schemes outside the Loop
