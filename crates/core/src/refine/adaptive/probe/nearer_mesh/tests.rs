@@ -31,8 +31,8 @@ fn greatest(points: &[[f64; 3]], mesh: &Mesh) -> f64 {
 fn reference(mesh: &Mesh, most: f64) -> (Mesh, f64) {
     let options = UniformOptions::default().limit(true);
     let at_level = |levels| uniform(mesh, &Loop, &options.levels(levels)).unwrap().mesh;
-    let mut coarse = at_level(4);
-    for levels in 5.. {
+    let mut coarse = at_level(2);
+    for levels in 3.. {
         let fine = at_level(levels);
         let off = greatest(fine.positions(), &coarse);
         if off <= most {
