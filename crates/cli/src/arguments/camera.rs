@@ -5,7 +5,8 @@ use std::path::Path;
 use anyhow::Context;
 use limitmesh::criterion::Camera;
 
-use super::values::{Size, finite};
+use super::quantity::finite;
+use super::values::Size;
 
 /// How a camera is written.
 const FORM: &str = "eye, target and up (three numbers each), the vertical angle of view in degrees and the size in \

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::Args;
 
 use super::LimitArguments;
-use super::values;
+use super::quantity::finite;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -91,7 +91,7 @@ impl FromStr for Place {
         let [face, weights @ ..] = &words[..] else {
             return Err("FACE,W0,W1,W2 is expected".to_owned());
         };
-        let weights = weights.iter().map(|weight| values::finite(weight)).collect::<Result<Vec<_>, _>>()?;
+        let weights = weights.iter().map(|weight| finite(weight)).collect::<Result<Vec<_>, _>>()?;
         let weights = <[f64; 3]>::try_from(weights).map_err(|weights| {
             format!("{} weights in '{text}', three are expected: FACE,W0,W1,W2", weights.len())
         })?;

@@ -5,7 +5,6 @@ use std::str::FromStr;
 use clap::ValueEnum;
 use limitmesh_io::threemf::LengthUnit;
 
-use super::values::finite;
 use crate::failure::usage;
 
 /// What the numbers of a mesh are measured in; of all files only 3MF packages say.
@@ -91,6 +90,12 @@ impl Length {
             )),
         }
     }
+}
+
+/// A number that is finite.
+pub(super) fn finite(text: &str) -> Result<f64, String> {
+    let value = f64::from_str(text.trim()).map_err(|_| format!("'{text}' is not a number"))?;
+    if value.is_finite() { Ok(value) } else { Err(format!("{value} is not a finite number")) }
 }
 
 /// A number, perhaps with a unit of length after it.

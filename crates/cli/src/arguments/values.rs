@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use limitmesh::measure::SamplingOptions;
 
-use super::quantity::{self, Length, Unit};
+use super::quantity::{self, Length, Unit, finite};
 
 /// Levels beyond this would need more than 4^12 (16 million) triangles for a single input triangle.
 const MAX_LEVELS: usize = 12;
@@ -18,12 +18,6 @@ const MAX_THREADS: usize = 4096;
 
 /// Pixels on a side; a picture of this size takes about a gigabyte while it is drawn.
 const MAX_SIDE: u32 = 8192;
-
-/// A number that is finite.
-pub(super) fn finite(text: &str) -> Result<f64, String> {
-    let value = f64::from_str(text.trim()).map_err(|_| format!("'{text}' is not a number"))?;
-    if value.is_finite() { Ok(value) } else { Err(format!("{value} is not a finite number")) }
-}
 
 /// An angle in degrees, above 0 and at most 180.
 pub(super) fn angle(text: &str) -> Result<f64, String> {

@@ -13,7 +13,7 @@ use super::control::Control;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
 use super::judge::HOPELESS;
-use super::measure::{Measured, fail};
+use super::measured::{FoundLast, Measured, fail};
 use super::quadtree::Place;
 use crate::certificate::{BentFour, FOUR, TriangleFrame};
 use crate::criterion::Region;
@@ -49,22 +49,6 @@ pub(super) struct Bulge {
     /// What their parts of the surface are like, in a unit that makes so much of lengths.
     pub(super) parts: Vec<BentFour>,
     pub(super) scale: f64,
-}
-
-/// What a triangle came to among its neighbours.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FoundLast {
-    /// How far its corners were moved; not numbers as long as it was not measured.
-    pub(super) offsets: [f64; 3],
-    /// The bound of its distance; what counts of that, which has one where the bound is infinite, too; and the height of the surface over it.
-    pub(super) bound: f64,
-    pub(super) value: f64,
-    pub(super) height: f64,
-}
-
-impl FoundLast {
-    const NOTHING: Self =
-        Self { offsets: [f64::NAN; 3], bound: f64::INFINITY, value: f64::INFINITY, height: 0.0 };
 }
 
 impl Bulges {

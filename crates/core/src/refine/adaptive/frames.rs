@@ -7,7 +7,8 @@
 use super::demands::Demands;
 use super::dirty::Dirty;
 use super::judge::Goal;
-use super::measure::{Measured, measure};
+use super::measure::measure;
+use super::measured::Measured;
 use super::result::open_cones;
 use super::{Engine, Plan, with_engine};
 use crate::mesh::Mesh;

@@ -12,11 +12,12 @@ use std::collections::HashSet;
 use smallvec::SmallVec;
 
 use super::backs::{BackFaces, Behind, looks_away};
-use super::bulges::{Bulge, Bulges, FoundLast};
+use super::bulges::{Bulge, Bulges};
 use super::changes::Changes;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
 use super::judge::{DIVISIONS, Goal};
+use super::measured::{FoundLast, Measured, Value, fail};
 use super::quadtree::Place;
 use super::settle::{Neighbours, beside, neighbours, sharp_edges};
 use super::surface::GeneralPiece;
@@ -33,23 +34,6 @@ const MOST_HALVINGS: usize = 10;
 
 /// What rounding leaves of a height that is just good enough.
 const ROUNDED: f64 = 1.0 - 1e-9;
-
-/// What the triangles of a control face come to.
-#[derive(Clone, Debug)]
-pub(super) struct Measured {
-    /// The greatest bound of a distance, and the leaf that has it.
-    pub(super) worst: (f64, Place),
-    /// The greatest height of the surface over a triangle, about, and the leaf.
-    pub(super) highest: (f64, Place),
-    /// The greatest value.
-    pub(super) value: f64,
-    /// The greatest distance in the cameras' pictures, in pixels.
-    pub(super) pixels: f64,
-    /// Leaves that fail, in the order of the walk, and what they come to.
-    pub(super) failing: Vec<(Place, f64)>,
-    /// What each triangle came to, this time or before, where that is kept.
-    pub(super) each: Vec<FoundLast>,
-}
 
 /// Looks at the triangles of some control faces, or those of them that changes concern. Bounds of distances below `length`, of
 /// triangles that do not fail, need not be tight. Where it is known how the surface bulges over them as they are emitted, most
@@ -177,58 +161,6 @@ impl Beholder for Measuring<'_> {
         let Some(value) = best else { return };
         let value = Value { value: if exceeds(value.value, cone) { value.value } else { cone }, ..value };
         self.take((emitted.number, emitted.place), value, highest);
-    }
-}
-
-impl Measured {
-    /// Before anything was measured.
-    pub(super) fn nothing(face: u32) -> Self {
-        let nowhere = (0.0, Place::root(face));
-        Self {
-            worst: nowhere,
-            highest: nowhere,
-            value: 0.0,
-            pixels: 0.0,
-            failing: Vec::new(),
-            each: Vec::new(),
-        }
-    }
-
-    fn add(&mut self, place: Place, value: &Value, height: f64) {
-        if exceeds(height, self.highest.0) {
-            self.highest = (height, place);
-        }
-        if exceeds(value.bound, self.worst.0) {
-            self.worst = (value.bound, place);
-        }
-        if exceeds(value.value, self.value) {
-            self.value = value.value;
-        }
-        self.pixels = self.pixels.max(value.pixels);
-    }
-
-    /// Takes what was found of all triangles of the control face, or adds what was of some while that of others is not kept.
-    pub(super) fn replace(&mut self, found: Self, is_all: bool) {
-        if is_all {
-            *self = found;
-            return;
-        }
-        if exceeds(found.worst.0, self.worst.0) {
-            self.worst = found.worst;
-        }
-        if exceeds(found.highest.0, self.highest.0) {
-            self.highest = found.highest;
-        }
-        (self.value, self.pixels) = (self.value.max(found.value), self.pixels.max(found.pixels));
-        self.failing.extend(found.failing);
-    }
-}
-
-/// Adds a leaf that fails to a list in the order of the walk, or what another triangle of the last one comes to.
-pub(super) fn fail(failing: &mut Vec<(Place, f64)>, place: Place, value: f64) {
-    match failing.last_mut() {
-        Some((last, known)) if *last == place => *known = known.max(value),
-        _ => failing.push((place, value)),
     }
 }
 
@@ -398,28 +330,6 @@ impl Height {
         match self {
             Self::Regular((height, rest), _) => height - rest,
             Self::General(height) => *height,
-        }
-    }
-}
-
-/// What a triangle comes to.
-#[derive(Clone, Copy)]
-struct Value {
-    /// Of the distance.
-    bound: f64,
-    /// By the criteria; the bound where there are none.
-    value: f64,
-    /// In the cameras' pictures.
-    pixels: f64,
-}
-
-impl Value {
-    /// The lesser of two proofs.
-    fn least(&self, other: &Self) -> Self {
-        Self {
-            bound: self.bound.min(other.bound),
-            value: self.value.min(other.value),
-            pixels: self.pixels.min(other.pixels),
         }
     }
 }

@@ -45,6 +45,7 @@ mod judge;
 mod leaf;
 mod leaves;
 mod measure;
+mod measured;
 mod nested;
 mod offsets;
 mod plan;

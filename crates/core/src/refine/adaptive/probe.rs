@@ -12,7 +12,8 @@ use std::collections::{HashMap, HashSet};
 
 use super::emit::Emission;
 use super::judge::Goal;
-use super::measure::{Measured, measure};
+use super::measure::measure;
+use super::measured::Measured;
 use super::quadtree::Place;
 use super::{Engine, Plan};
 use crate::certificate::TriangleFrame;

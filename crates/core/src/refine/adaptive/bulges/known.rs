@@ -1,7 +1,8 @@
 //! What is known of triangles that are there again after others were divided: they are told by their leaves and by which part of these they
 //! cover.
 
-use super::{Bulge, ENDS, FoundLast};
+use super::super::measured::FoundLast;
+use super::{Bulge, ENDS};
 use crate::certificate::{FOUR, SubTriangle};
 use crate::refine::adaptive::emit::Emission;
 use crate::refine::adaptive::emitted::Emitted;

@@ -1,7 +1,8 @@
 //! The triangles of a control face by what was kept of their parts of the surface when these were looked at ([`super::super::bulges`]), four at a
 //! time and without the surface: what passes or fails so needs no closer look.
 
-use super::super::bulges::{Bulge, FoundLast};
+use super::super::bulges::Bulge;
+use super::super::measured::FoundLast;
 use super::Measuring;
 use crate::certificate::{FOUR, MovedFour};
 use crate::mesh::NONE;

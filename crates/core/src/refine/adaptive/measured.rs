@@ -1,0 +1,112 @@
+//! What is found where emitted triangles are measured among their neighbours ([`super::measure`]): of one triangle, of one that was there
+//! before, and of all of a control face.
+
+use super::quadtree::Place;
+use crate::certificate::exceeds;
+
+/// What a triangle comes to.
+#[derive(Clone, Copy)]
+pub(super) struct Value {
+    /// Of the distance.
+    pub(super) bound: f64,
+    /// By the criteria; the bound where there are none.
+    pub(super) value: f64,
+    /// In the cameras' pictures.
+    pub(super) pixels: f64,
+}
+
+impl Value {
+    /// The lesser of two proofs.
+    pub(super) fn least(&self, other: &Self) -> Self {
+        Self {
+            bound: self.bound.min(other.bound),
+            value: self.value.min(other.value),
+            pixels: self.pixels.min(other.pixels),
+        }
+    }
+}
+
+/// What a triangle came to among its neighbours.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FoundLast {
+    /// How far its corners were moved; not numbers as long as it was not measured.
+    pub(super) offsets: [f64; 3],
+    /// The bound of its distance; what counts of that, which has one where the bound is infinite, too; and the height of the surface over it.
+    pub(super) bound: f64,
+    pub(super) value: f64,
+    pub(super) height: f64,
+}
+
+impl FoundLast {
+    pub(super) const NOTHING: Self =
+        Self { offsets: [f64::NAN; 3], bound: f64::INFINITY, value: f64::INFINITY, height: 0.0 };
+}
+
+/// What the triangles of a control face come to.
+#[derive(Clone, Debug)]
+pub(super) struct Measured {
+    /// The greatest bound of a distance, and the leaf that has it.
+    pub(super) worst: (f64, Place),
+    /// The greatest height of the surface over a triangle, about, and the leaf.
+    pub(super) highest: (f64, Place),
+    /// The greatest value.
+    pub(super) value: f64,
+    /// The greatest distance in the cameras' pictures, in pixels.
+    pub(super) pixels: f64,
+    /// Leaves that fail, in the order of the walk, and what they come to.
+    pub(super) failing: Vec<(Place, f64)>,
+    /// What each triangle came to, this time or before, where that is kept.
+    pub(super) each: Vec<FoundLast>,
+}
+
+impl Measured {
+    /// Before anything was measured.
+    pub(super) fn nothing(face: u32) -> Self {
+        let nowhere = (0.0, Place::root(face));
+        Self {
+            worst: nowhere,
+            highest: nowhere,
+            value: 0.0,
+            pixels: 0.0,
+            failing: Vec::new(),
+            each: Vec::new(),
+        }
+    }
+
+    pub(super) fn add(&mut self, place: Place, value: &Value, height: f64) {
+        if exceeds(height, self.highest.0) {
+            self.highest = (height, place);
+        }
+        if exceeds(value.bound, self.worst.0) {
+            self.worst = (value.bound, place);
+        }
+        if exceeds(value.value, self.value) {
+            self.value = value.value;
+        }
+        self.pixels = self.pixels.max(value.pixels);
+    }
+
+    /// Takes what was found of all triangles of the control face, or adds what was of some while that of others is not kept.
+    pub(super) fn replace(&mut self, found: Self, is_all: bool) {
+        if is_all {
+            *self = found;
+            return;
+        }
+        if exceeds(found.worst.0, self.worst.0) {
+            self.worst = found.worst;
+        }
+        if exceeds(found.highest.0, self.highest.0) {
+            self.highest = found.highest;
+        }
+        (self.value, self.pixels) = (self.value.max(found.value), self.pixels.max(found.pixels));
+        self.failing.extend(found.failing);
+    }
+}
+
+/// Adds a leaf that fails to a list in the order of the walk, or what another triangle of the last one comes to.
+pub(super) fn fail(failing: &mut Vec<(Place, f64)>, place: Place, value: f64) {
+    match failing.last_mut() {
+        Some((last, known)) if *last == place => *known = known.max(value),
+        _ => failing.push((place, value)),
+    }
+}
