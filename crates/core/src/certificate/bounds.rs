@@ -19,7 +19,7 @@
 //! if its foot lies in T′ turned into the plane of T ([`Deviation::height`], [`Deviation::drift`]); |h| + σ max(0, g)
 //! is convex. Its foot does lie there where g is at most tan x times its distance along e from either end, x being
 //! at most the angles of T′ at e and at most half of what the angles of T at e leave of π, so that T and its three
-//! flaps are convex together ([`Deviation::slope`]). For the other way take the pieces of T and its neighbours, each
+//! flaps are convex together ([`Deviation::slopes`]). For the other way take the pieces of T and its neighbours, each
 //! projected on its own plane, and turn the latter into the plane of T. Along the shared curve the two projections
 //! differ by at most |h| sin θ + g(1 − cos θ), and a strip of straight lines joins them. The outer curves do not reach
 //! over T as long as no curve crosses another edge of its own triangle, which is checked; so what is covered, strips

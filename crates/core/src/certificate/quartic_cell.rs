@@ -7,8 +7,8 @@
 //!
 //! * q = −½ Σ λᵢλⱼ Wᵢⱼ, whose greatest height has a closed form;
 //! * c = −Σ (tᵢ/12) λₐλ_b(λ_b − λₐ) + B λ₀λ₁λ₂, tᵢ the third derivative along edge i from a to b, and
-//!   B = −¼(t₁ + 2 f‴[e₁e₁e₂]) + (t₂ − t₃)/12: so |c| is at most [`CUBIC`] max |tᵢ| + |B|/27;
-//! * r, linear in the fourth derivatives, is at most [`QUARTIC`] times the greatest of the six |f⁗[eᵢeᵢeⱼeⱼ]|.
+//!   B = −¼(t₁ + 2 f‴(e₁e₁e₂)) + (t₂ − t₃)/12: so |c| is at most [`CUBIC`] max |tᵢ| + |B|/27;
+//! * r, linear in the fourth derivatives, is at most [`QUARTIC`] times the greatest of the six |f⁗(eᵢeᵢeⱼeⱼ)|.
 //!
 //! So the greatest height lies within |c| + |r| of that of q, for parts of any size. Where that does not decide, the
 //! coefficients of f in Bernstein's basis over sixteen parts of D bound it.

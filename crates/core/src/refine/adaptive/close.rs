@@ -2,7 +2,7 @@
 //! made for their neighbours' sake. Counts vertices and triangles on the way.
 //!
 //! A face is walked over as a whole once; where leaves were split since, only they and those beside them are looked at
-//! again ([`close_again`]).
+//! again ([`Closing::close_again`]).
 
 mod judged;
 mod unfinished;
