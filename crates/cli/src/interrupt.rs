@@ -4,6 +4,7 @@
 //! the neighbour. Only a batch finishes writing its results first.
 
 use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use anyhow::Context;
@@ -11,13 +12,11 @@ use anyhow::Context;
 /// What the program does, for the message of an interrupt.
 struct State {
     /// The file that is being written, and how many had been finished before.
-    writing: Option<(String, usize)>,
+    writing: Option<(PathBuf, usize)>,
     /// What was asked for meanwhile.
     asked: Option<Signal>,
     doing: String,
     written: Vec<String>,
-    /// Whether part of what was being written may have been read.
-    is_in_part: bool,
     /// Whether signals are only noted.
     is_left_to_caller: bool,
 }
@@ -27,7 +26,6 @@ static STATE: Mutex<State> = Mutex::new(State {
     asked: None,
     doing: String::new(),
     written: Vec::new(),
-    is_in_part: false,
     is_left_to_caller: false,
 });
 
@@ -83,22 +81,16 @@ fn end(signal: Signal) {
     // Held while exiting, so that no write can begin meanwhile.
     let mut state = state();
     if state.is_left_to_caller {
-        if let Some((name, _)) = &state.writing {
-            say(&format!("{name} is written to its end first"));
+        if let Some((path, _)) = &state.writing {
+            say(&format!("{} is written to its end first", path.display()));
         }
         state.asked = Some(signal);
         return;
     }
     // Held, too, so that no file takes its name any longer.
     let abandoned = limitmesh_io::abandon_unfinished();
-    if let Some((name, before)) = state.writing.take() {
-        if abandoned.finished_files() > before {
-            state.written.push(name);
-        } else {
-            state.doing = format!("writing {name}");
-            // Whoever reads from a pipe may have some of it.
-            state.is_in_part = std::fs::metadata(&name).is_ok_and(|there| !there.is_file());
-        }
+    if let Some((path, _)) = state.writing.take_if(|(_, before)| abandoned.finished_files() > *before) {
+        state.written.push(path.display().to_string());
     }
     exit(&state, signal)
 }
@@ -134,9 +126,16 @@ pub(crate) fn end_with_standard_input() {
 
 /// Says what was cancelled, and exits with what shells report for a program that a signal ended.
 fn exit(state: &State, signal: Signal) -> ! {
-    let doing = if state.doing.is_empty() { String::new() } else { format!(" while {}", state.doing) };
+    let unfinished = state.writing.as_ref().map(|(path, _)| path);
+    let doing = match unfinished {
+        Some(path) => format!(" while writing {}", path.display()),
+        None if state.doing.is_empty() => String::new(),
+        None => format!(" while {}", state.doing),
+    };
+    // Whoever reads from a pipe may have some of it.
+    let is_read = |path: &PathBuf| std::fs::metadata(path).is_ok_and(|there| !there.is_file());
     let written = match state.written.as_slice() {
-        [] if state.is_in_part => "part of it may have been read".to_owned(),
+        [] if unfinished.is_some_and(is_read) => "part of it may have been read".to_owned(),
         [] => "nothing was written".to_owned(),
         names => format!("{} written by then", names.join(", ")),
     };
@@ -165,16 +164,16 @@ pub(crate) fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Runs `write`, which writes a file of that name: whole or not at all, also where a signal ends the program meanwhile.
+/// Runs `write`, which writes this file: whole or not at all, also where a signal ends the program meanwhile.
 ///
 /// Where signals are left to the caller, one that came meanwhile ends the program afterwards.
-pub(crate) fn whole_or_not<T, E>(name: String, write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
-    state().writing = Some((name, limitmesh_io::finished_files()));
+pub(crate) fn whole_or_not<T, E>(path: &Path, write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+    state().writing = Some((path.to_owned(), limitmesh_io::finished_files()));
     let result = write();
     let mut state = state();
-    let name = state.writing.take().map(|(name, _)| name);
+    state.writing = None;
     if result.is_ok() {
-        state.written.extend(name);
+        state.written.push(path.display().to_string());
     }
     if let Some(signal) = state.asked {
         exit(&state, signal);

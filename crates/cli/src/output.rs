@@ -38,7 +38,7 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         let mut out = std::io::stdout().lock();
         return out.write_all(bytes).and_then(|()| out.flush()).context("standard output");
     }
-    interrupt::whole_or_not(path.display().to_string(), || limitmesh_io::write_whole(path, bytes))?;
+    interrupt::whole_or_not(path, || limitmesh_io::write_whole(path, bytes))?;
     Ok(())
 }
 
@@ -50,8 +50,7 @@ pub(crate) fn write_mesh(
     options: &WriteOptions,
 ) -> anyhow::Result<()> {
     if !is_standard_output(path) {
-        let name = path.display().to_string();
-        interrupt::whole_or_not(name, || limitmesh_io::write_as(path, format, mesh, options))?;
+        interrupt::whole_or_not(path, || limitmesh_io::write_as(path, format, mesh, options))?;
         return Ok(());
     }
     match limitmesh_io::write_to(&mut std::io::stdout().lock(), format, mesh, options) {
@@ -67,12 +66,11 @@ pub(crate) fn write_asset(
     asset: &Asset,
     (format, are_images_linked): (Format, bool),
 ) -> anyhow::Result<Vec<PathBuf>> {
-    let name = path.display().to_string();
     let write = || match are_images_linked {
         true => asset.write_linked(path, format),
         false => asset.write(path, format),
     };
-    Ok(interrupt::whole_or_not(name, write)?)
+    Ok(interrupt::whole_or_not(path, write)?)
 }
 
 /// Writes JSON to a file, or to standard output for `-`.

@@ -288,8 +288,7 @@ fn write(
             })
             .collect();
         let name = arguments.output.file_stem().unwrap_or_default().to_string_lossy();
-        let shown = arguments.output.display().to_string();
-        return interrupt::whole_or_not(shown, || {
+        return interrupt::whole_or_not(&arguments.output, || {
             write_levels(&arguments.output, format, (&name, &levels), asset)
         })
         .context("levels of detail");

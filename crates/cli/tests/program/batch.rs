@@ -1,13 +1,13 @@
 //! `limitmesh batch`: a line in, a line out, whatever happens in between.
 
 use std::path::Path;
-use std::process::{Child, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{command, file, folder, names, run};
+use crate::common::{Running, command, file, folder, names, run};
 
 const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
@@ -229,30 +229,9 @@ fn results_are_kept_where_nothing_changed() {
     kept(2);
 }
 
-/// Starts the program; it is ended when it is forgotten.
-struct Running(Child);
-
-impl Running {
-    fn start(words: &str, paths: &[&Path]) -> Self {
-        let mut command = command(words, paths);
-        Self(command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().expect("the program starts"))
-    }
-
-    /// Waits until the results have so many lines.
-    fn until(&self, lines: usize, path: &Path) {
-        let start = Instant::now();
-        while std::fs::read_to_string(path).unwrap_or_default().lines().count() < lines {
-            assert!(start.elapsed() < Duration::from_secs(100), "there are no {lines} results");
-            std::thread::sleep(Duration::from_millis(5));
-        }
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
+/// Waits until the results have so many lines.
+fn until_results(running: &mut Running, lines: usize, path: &Path) {
+    running.until("results", || std::fs::read_to_string(path).unwrap_or_default().lines().count() >= lines);
 }
 
 /// Jobs of some tenths of a second into a folder, and the results of an undisturbed batch.
@@ -280,11 +259,11 @@ fn killed_twice_and_resumed_it_gives_the_same_bytes() {
     let whole = meshes(&outputs);
     std::fs::remove_dir_all(below(&folder, "out")).expect("meshes");
     for (lines, processes) in [(2, 2), (5, 3)] {
-        let running = Running::start(
+        let mut running = Running::start(
             &format!("batch {{}} -o {{}} --jobs {processes} --resume --quiet"),
             &[&list, &again],
         );
-        running.until(lines, &again);
+        until_results(&mut running, lines, &again);
         // SIGKILL.
         drop(running);
         // Killed while it wrote a line.
@@ -370,16 +349,9 @@ fn signals_leave_results_that_can_be_resumed_and_nothing_else() {
         let all = text(&list);
         std::fs::write(&list, format!("{all}{long}")).expect("a job");
         let mut running = Running::start("batch {} -o {} --jobs 2", &[&list, &found]);
-        running.until(2, &found);
-        let sent = std::process::Command::new("kill")
-            .args([&format!("-{signal}"), &running.0.id().to_string()])
-            .status();
-        assert!(sent.expect("kill").success());
-        let ended = running.0.wait().expect("it ends");
-        let mut told = String::new();
-        std::io::Read::read_to_string(running.0.stderr.as_mut().expect("piped"), &mut told).expect("text");
-        assert_eq!(ended.code(), Some(code), "{told}");
-        assert!(told.contains("cancelled by") && told.contains("found.jsonl written by then"), "{told}");
+        until_results(&mut running, 2, &found);
+        running.signal(signal);
+        running.end().expect(code).saying("cancelled by").saying("found.jsonl written by then");
         let there = names(&folder.path().join("out"));
         assert!(there.iter().all(|name| name.ends_with(".ply")), "{there:?}");
         let lines = results(&found);

@@ -77,6 +77,53 @@ pub(crate) fn run(arguments: &str, paths: &[&Path]) -> Run {
     Run { code, stdout: text(stdout), stderr: text(stderr) }
 }
 
+/// The program at work; it is killed when this goes.
+pub(crate) struct Running(Child);
+
+impl Running {
+    pub(crate) fn start(arguments: &str, paths: &[&Path]) -> Self {
+        let mut command = command(arguments, paths);
+        Self(command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program starts"))
+    }
+
+    /// Waits until something holds; before that the program must not end.
+    #[track_caller]
+    pub(crate) fn until(&mut self, what: &str, holds: impl Fn() -> bool) {
+        let start = Instant::now();
+        while !holds() {
+            let ended = self.0.try_wait().expect("a child can be waited for");
+            assert!(ended.is_none() || holds(), "{what}: it has ended before");
+            assert!(start.elapsed() < TIME_LIMIT, "{what}: nothing for {TIME_LIMIT:?}");
+            thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// Sends it a signal, `TERM` for instance.
+    #[cfg(unix)]
+    #[track_caller]
+    pub(crate) fn signal(&self, name: &str) {
+        let kill = Command::new("kill").args([&format!("-{name}"), &self.0.id().to_string()]).status();
+        assert!(kill.expect("kill").success());
+    }
+
+    /// Waits for its end; what it said on standard output is not known.
+    #[track_caller]
+    pub(crate) fn end(mut self) -> Run {
+        let stderr = read_all(self.0.stderr.take());
+        let code = wait(&mut self.0, "to its end");
+        let stderr = String::from_utf8(stderr.join().expect("read")).expect("output is UTF-8");
+        Run { code, stdout: String::new(), stderr }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
 fn read_all(stream: Option<impl Read + Send + 'static>) -> thread::JoinHandle<Vec<u8>> {
     thread::spawn(move || {
         let mut bytes = Vec::new();

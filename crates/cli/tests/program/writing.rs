@@ -2,9 +2,9 @@
 
 use std::path::Path;
 use std::process::Stdio;
-#[cfg(unix)]
-use std::time::Duration;
 
+#[cfg(unix)]
+use crate::common::Running;
 use crate::common::{command, file, folder, names, run, soup};
 
 #[test]
@@ -87,6 +87,7 @@ fn a_reader_that_goes_away_is_no_error() {
 #[cfg(unix)]
 #[test]
 fn signals_leave_the_whole_file_or_none_and_say_what_was_cancelled() {
+    use std::time::Duration;
     for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
         for delay in [20, 200, 600] {
             let folder = folder();
@@ -130,23 +131,15 @@ fn a_signal_ends_the_writing_of_a_large_file() {
         let folder = folder();
         let output = file(&folder, name, "precious");
         let words = format!("refine builtin:shoe -o {{}} -q --method uniform --levels 6 {how}");
-        let mut child =
-            command(&words, &[&output]).stderr(Stdio::piped()).spawn().expect("the program starts");
+        let mut running = Running::start(&words, &[&output]);
         // Before the work one is made, too, to find out whether that is possible; nothing is written to it.
-        let is_begun = || {
+        running.until("a temporary file", || {
             let temporary = |name: &String| name.ends_with(".tmp");
             let length = |name| std::fs::metadata(folder.path().join(name)).map_or(0, |there| there.len());
             names(folder.path()).into_iter().filter(temporary).any(|name| length(name) > 0)
-        };
-        while !is_begun() {
-            assert_eq!(child.try_wait().expect("a child"), None, "{name}: it ends before it writes");
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        signal(&child, "TERM");
-        let told = ended(child, name);
-        let said = String::from_utf8_lossy(&told.stderr);
-        assert_eq!(told.status.code(), Some(143), "{name}: {said}");
-        assert!(said.contains("while writing ") && said.contains("nothing was written"), "{name}: {said}");
+        });
+        running.signal("TERM");
+        running.end().expect(143).saying("while writing ").saying("nothing was written");
         assert_eq!(names(folder.path()), [name]);
         assert_eq!(std::fs::read_to_string(&output).expect("the earlier file"), "precious");
     }
@@ -158,23 +151,12 @@ fn a_signal_ends_the_writing_of_a_large_file() {
 fn a_signal_ends_the_writing_into_a_full_pipe() {
     let folder = folder();
     let pipe = pipe(&folder, "pipe.ply");
-    let mut child = command("refine builtin:shoe -o {} -q --method uniform --levels 3", &[&pipe])
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
+    let mut running = Running::start("refine builtin:shoe -o {} -q --method uniform --levels 3", &[&pipe]);
     // Opens when the program does, and is read from by nobody.
-    let (sender, opened) = std::sync::mpsc::channel();
-    std::thread::spawn(move || sender.send(std::fs::File::open(&pipe)));
-    let reader = opened.recv_timeout(Duration::from_secs(60));
-    if reader.is_err() {
-        child.kill().expect("a child can be ended");
-    }
-    signal(&child, "TERM");
-    let told = ended(child, "pipe.ply");
-    let said = String::from_utf8_lossy(&told.stderr);
-    assert!(reader.is_ok_and(|reader| reader.is_ok()), "it does not open the pipe: {said}");
-    assert_eq!(told.status.code(), Some(143), "{said}");
-    assert!(said.contains("while writing ") && said.contains("part of it may have been read"), "{said}");
+    let reader = std::thread::spawn(move || std::fs::File::open(&pipe));
+    running.until("a pipe", || reader.is_finished());
+    running.signal("TERM");
+    running.end().expect(143).saying("while writing ").saying("part of it may have been read");
 }
 
 /// Of files that belong together none counts as written before all are.
@@ -183,20 +165,12 @@ fn a_signal_ends_the_writing_into_a_full_pipe() {
 fn a_document_is_not_written_when_what_it_names_is() {
     let folder = folder();
     let document = pipe(&folder, "pipe.gltf");
-    let mut child = command("refine builtin:cup -o {} -q", &[&document])
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("it starts");
+    let mut running = Running::start("refine builtin:cup -o {} -q", &[&document]);
     // Then nothing is left but the pipe, which nobody opens.
-    while !names(folder.path()).contains(&"pipe.bin".to_owned()) {
-        assert_eq!(child.try_wait().expect("a child"), None, "it ends before it writes");
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    signal(&child, "TERM");
-    let told = ended(child, "pipe.gltf");
-    let said = String::from_utf8_lossy(&told.stderr);
-    assert_eq!(told.status.code(), Some(143), "{said}");
-    assert!(said.contains("while writing ") && !said.contains("written by then"), "{said}");
+    running.until("pipe.bin", || names(folder.path()).contains(&"pipe.bin".to_owned()));
+    running.signal("TERM");
+    let told = running.end().expect(143).saying("while writing ");
+    assert!(!told.stderr.contains("written by then"), "{}", told.stderr);
 }
 
 #[cfg(unix)]
@@ -204,27 +178,6 @@ fn pipe(folder: &tempfile::TempDir, name: &str) -> std::path::PathBuf {
     let pipe = folder.path().join(name);
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
     pipe
-}
-
-#[cfg(unix)]
-fn signal(child: &std::process::Child, name: &str) {
-    let sent =
-        std::process::Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status();
-    assert!(sent.expect("kill").success());
-}
-
-/// What became of a child that ends within a minute.
-#[cfg(unix)]
-fn ended(mut child: std::process::Child, what: &str) -> std::process::Output {
-    let start = std::time::Instant::now();
-    while child.try_wait().expect("a child").is_none() && start.elapsed() < Duration::from_secs(60) {
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    let has_ended = child.try_wait().expect("a child").is_some();
-    // Nothing happens if it has.
-    child.kill().expect("a child can be ended");
-    assert!(has_ended, "{what}: it does not end");
-    child.wait_with_output().expect("it has ended")
 }
 
 /// What whoever starts the program has it ignore stays ignored, as `nohup` needs.

@@ -19,7 +19,7 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     match earlier(path).map_err(failed)? {
         Some(device) if !device.is_file() => Ok(()),
         earlier => {
-            Unfinished::beside(&target(path, earlier.as_ref()).map_err(failed)?).map(drop).map_err(failed)
+            Unfinished::beside(target(path, earlier.as_ref()).map_err(failed)?).map(drop).map_err(failed)
         }
     }
 }
@@ -80,14 +80,9 @@ pub fn write_whole_with(
         let mut device = fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
         return fill(&mut device).map_err(|error| error.in_file(path));
     }
-    let target = target(path, earlier.as_ref()).map_err(failed)?;
-    let mut file = Unfinished::beside(&target).map_err(failed)?;
-    fill(&mut file.file).map_err(|error| error.in_file(path))?;
-    if let Some(earlier) = earlier {
-        file.set_permissions(earlier.permissions()).map_err(failed)?;
-    }
+    let file = Unfinished::filled(path, earlier, fill)?;
     let mut register = register();
-    file.finish(&target, &mut register).map_err(failed)?;
+    file.finish(&mut register).map_err(failed)?;
     register.finished += 1;
     Ok(())
 }
@@ -108,21 +103,16 @@ pub(crate) fn write_together(files: &[WholeFile]) -> Result<(), WriteError> {
             waiting.push((path, None));
             continue;
         }
-        let target = target(path, earlier.as_ref()).map_err(failed)?;
-        let mut file = Unfinished::beside(&target).map_err(failed)?;
-        write_in_pieces(&mut file.file, bytes).map_err(failed)?;
-        if let Some(earlier) = earlier {
-            file.set_permissions(earlier.permissions()).map_err(failed)?;
-        }
-        waiting.push((path, Some((file, target))));
+        let fill = |writer: &mut dyn Write| Ok(write_in_pieces(writer, bytes)?);
+        waiting.push((path, Some(Unfinished::filled(path, earlier, fill)?)));
     }
     // Held as long as files take their names: a program that ends meanwhile leaves all or none. Nobody holds it while a device is
     // written to, which may last for ever.
     let mut held = None;
     for ((path, file), WholeFile { bytes, .. }) in waiting.iter().zip(files) {
         match file {
-            Some((file, target)) => {
-                let finished = file.finish(target, held.get_or_insert_with(register));
+            Some(file) => {
+                let finished = file.finish(held.get_or_insert_with(register));
                 finished.map_err(|reason| WriteError::File { path: (*path).clone(), reason })?;
             }
             None => {
@@ -182,13 +172,15 @@ pub fn abandon_unfinished() -> Abandoned {
 struct Unfinished {
     file: fs::File,
     path: PathBuf,
+    /// The file that it will be.
+    target: PathBuf,
 }
 
 impl Unfinished {
     /// A new file in the folder of `target`.
     ///
     /// It is opened here and written to as it is, since errors would name the temporary file otherwise, which nobody asked for.
-    fn beside(target: &Path) -> io::Result<Self> {
+    fn beside(target: PathBuf) -> io::Result<Self> {
         let folder = match target.parent() {
             Some(folder) if folder != Path::new("") => folder.to_owned(),
             _ => PathBuf::from("."),
@@ -199,16 +191,27 @@ impl Unfinished {
         let file = tempfile::Builder::new().prefix(".limitmesh-").suffix(".tmp").make_in(folder, open)?;
         let (file, path) = file.keep().map_err(|error| error.error)?;
         register.unfinished.push(path.clone());
-        Ok(Self { file, path })
+        Ok(Self { file, path, target })
     }
 
-    fn set_permissions(&self, permissions: fs::Permissions) -> io::Result<()> {
-        fs::set_permissions(&self.path, permissions)
+    /// With all that `fill` gives, for `path`, where `earlier` is what is known of an earlier file.
+    fn filled(
+        path: &Path,
+        earlier: Option<fs::Metadata>,
+        fill: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
+    ) -> Result<Self, WriteError> {
+        let failed = |reason: io::Error| WriteError::File { path: path.to_owned(), reason };
+        let mut file = Self::beside(target(path, earlier.as_ref()).map_err(failed)?).map_err(failed)?;
+        fill(&mut file.file).map_err(|error| error.in_file(path))?;
+        if let Some(earlier) = earlier {
+            fs::set_permissions(&file.path, earlier.permissions()).map_err(failed)?;
+        }
+        Ok(file)
     }
 
     /// Gives it its name.
-    fn finish(&self, target: &Path, register: &mut Register) -> io::Result<()> {
-        fs::rename(&self.path, target)?;
+    fn finish(&self, register: &mut Register) -> io::Result<()> {
+        fs::rename(&self.path, &self.target)?;
         register.unfinished.retain(|path| *path != self.path);
         Ok(())
     }

@@ -225,8 +225,7 @@ impl ResultFile {
             }
             Ok(())
         };
-        let name = path.display().to_string();
-        Ok(interrupt::whole_or_not(name, || limitmesh_io::write_whole_with(&path, fill))?)
+        Ok(interrupt::whole_or_not(&path, || limitmesh_io::write_whole_with(&path, fill))?)
     }
 }
 
