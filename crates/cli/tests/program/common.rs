@@ -1,6 +1,5 @@
 //! Running the program from tests: a command line in; exit code, output and messages out, within a time limit.
 
-#![allow(dead_code, reason = "each test binary uses its own part")]
 #![allow(clippy::panic, reason = "a test's helpers fail the test")]
 
 use std::io::Read;

@@ -30,6 +30,7 @@ mod reproduce;
 mod restricted;
 mod seams;
 mod shading;
+mod shared_models;
 mod size;
 mod sqrt3;
 mod streams;
