@@ -13,6 +13,7 @@ use crate::vector::{cross, dot, length, minus};
 
 /// Area and volume, in squares and cubes of the mesh's unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Bulk {
     pub(crate) area: f64,
     /// Null where the surface has a boundary.

@@ -10,6 +10,7 @@ const STEPS: usize = 18;
 
 /// Edges between faces, by the angle between these faces' normals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Dihedrals {
     /// Edges with an angle in [0°, 10°), [10°, 20°) … [170°, 180°].
     pub(crate) histogram: [usize; STEPS],

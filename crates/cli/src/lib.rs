@@ -19,6 +19,8 @@ mod input;
 mod interrupt;
 mod mesh_info;
 mod output;
+#[cfg(test)]
+mod pages;
 mod pieces;
 mod points;
 mod progress;

@@ -10,6 +10,7 @@ use crate::failure::usage;
 
 /// The shape of a surface's boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Boundary {
     /// A smooth curve
@@ -23,6 +24,7 @@ pub(crate) enum Boundary {
 
 /// What becomes of corners whose faces take 180° or more between two sharp edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum ConcaveCorners {
     /// Sharp edges inside divide them: flat faces stay flat
@@ -33,6 +35,7 @@ pub(crate) enum ConcaveCorners {
 
 /// What in a file says that edges are sharp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum CreasesFrom {
     /// Its tags alone

@@ -17,6 +17,7 @@ use crate::output::is_standard_output;
 
 /// What decides which faces are divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Method {
     /// What is too far from the limit surface, or fails another goal; vertices lie on the limit surface

@@ -13,6 +13,7 @@ use crate::failure::usage;
 
 /// Which subdivision scheme defines the smooth surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum SchemeName {
     /// Loop's scheme with his own weights: smooth, approximating
@@ -37,6 +38,7 @@ impl SchemeName {
 
 /// Which scheme `refine` follows: those that split triangles in four, and one that does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum RefiningScheme {
     /// Loop's scheme with his own weights: smooth, approximating
@@ -77,6 +79,7 @@ impl RefiningScheme {
 
 /// Which vertices move where divided and undivided faces meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Seam {
     /// All vertices of the mesh move in each step

@@ -6,9 +6,13 @@ use crate::arguments::ModelsArguments;
 use crate::failure::Outcome;
 use crate::output;
 
+/// A built-in model.
 #[derive(Serialize)]
-struct ModelEntry {
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct ModelEntry {
+    /// Its name, after `builtin:`.
     name: &'static str,
+    /// What it is.
     about: &'static str,
 }
 

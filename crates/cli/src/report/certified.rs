@@ -7,7 +7,9 @@ use super::whole::Whole;
 
 /// Both directions, and the symmetric distance. Lengths are in the meshes' units.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct CertifiedReport {
+    /// `certified interval`.
     pub(crate) kind: &'static str,
     /// The symmetric distance is at least this.
     pub(crate) lower: f64,
@@ -15,15 +17,21 @@ pub(crate) struct CertifiedReport {
     pub(crate) upper: f64,
     /// In per cent of `diagonal`; null where that is 0.
     pub(crate) lower_percent: Option<f64>,
+    /// In per cent of `diagonal`; null where that is 0.
     pub(crate) upper_percent: Option<f64>,
     /// Whether both intervals are as narrow as was asked for.
     pub(crate) converged: bool,
     /// Triangles and pieces of them looked at.
     pub(crate) work: u64,
+    /// What per cent are of.
     pub(crate) diagonal: f64,
-    /// `control mesh` or `second mesh`.
+    /// Whose diagonal that is: `control mesh` or `second mesh`.
     pub(crate) diagonal_of: &'static str,
+    /// From the surface to the reference.
+    #[cfg_attr(test, schemars(with = "crate::pages::schema::Bounds"))]
     pub(crate) forward: Bounds,
+    /// From the reference to the surface.
+    #[cfg_attr(test, schemars(with = "crate::pages::schema::Bounds"))]
     pub(crate) backward: Bounds,
 }
 

@@ -7,6 +7,7 @@ use crate::arguments::ChannelArguments;
 
 /// A channel of the input.
 #[derive(Serialize, Debug, Clone)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ChannelReport {
     /// Its name in the file, or what it is where the format gives no names.
     pub(crate) name: String,

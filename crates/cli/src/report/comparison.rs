@@ -6,6 +6,7 @@ use super::measurement::LimitReport;
 
 /// One method at its triangle count.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ComparedMethod {
     /// `limit-normal`, `amresh`, `uniform`, `uniform-limit`, `exact`, `exact-balance`, `exact-optimize`, `planarity`, `planarity-distance`,
     /// `vertex-error` or `sqrt3`.
@@ -14,6 +15,7 @@ pub(crate) struct ComparedMethod {
     pub(crate) angle_degrees: Option<f64>,
     /// Steps done, or levels of the most divided part.
     pub(crate) levels: usize,
+    /// Triangles of the method's mesh.
     pub(crate) triangles: usize,
     /// Symmetric Hausdorff distance to the limit surface, sampled: a lower bound, in the mesh's units.
     pub(crate) symmetric: f64,
@@ -27,22 +29,28 @@ pub(crate) struct ComparedMethod {
     pub(crate) certified: Option<CertifiedErrorReport>,
     /// Samples of both directions together.
     pub(crate) samples: usize,
+    /// The least angle of a triangle.
     pub(crate) min_angle_degrees: f64,
+    /// The mean of the triangles' least angles.
     pub(crate) mean_min_angle_degrees: f64,
     /// Wall-clock seconds of the refinement alone.
     pub(crate) seconds: f64,
     /// What stands for the limit surface; sqrt3 has its own.
     pub(crate) reference: LimitReport,
+    /// Triangles of that mesh.
     pub(crate) reference_triangles: usize,
 }
 
 /// The true distance to the limit surface lies between these.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct CertifiedErrorReport {
     /// In the mesh's units.
     pub(crate) lower: f64,
+    /// In the mesh's units.
     pub(crate) upper: f64,
     /// In per cent of the diagonal of the control mesh's bounding box.
     pub(crate) lower_percent: f64,
+    /// In per cent of that diagonal.
     pub(crate) upper_percent: f64,
 }

@@ -7,11 +7,13 @@ use serde::Serialize;
 
 /// All findings, whether or not something was found.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct DiagnosisReport {
     /// Whether nothing had to be repaired; polygons and equal positions are no defects.
     pub(crate) clean: bool,
     /// By the library's names of the findings.
     #[serde(flatten)]
+    #[cfg_attr(test, schemars(schema_with = "crate::pages::schema::findings"))]
     pub(crate) findings: BTreeMap<&'static str, Finding>,
 }
 

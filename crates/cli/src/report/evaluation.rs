@@ -7,37 +7,49 @@ use crate::arguments::Place;
 
 /// A place of a limit surface.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct EvaluationReport {
     /// The control mesh's triangle, from 0.
     pub(crate) face: u32,
     /// The file's face that this is, or is a part of.
     pub(crate) input_face: u32,
+    /// The weights of the triangle's corners.
     pub(crate) barycentric: [f64; 3],
+    /// The point of the limit surface.
     pub(crate) point: [f64; 3],
     /// The unit normal on the face's side; null where there is none.
     pub(crate) normal: Option<[f64; 3]>,
-    /// By the second and third weight; null where there are none.
+    /// By the weights of the second and third corner; null where there are none.
     pub(crate) derivatives: Option<DerivativesReport>,
-    /// Null where there is none.
+    /// How the surface bends; null where it has no curvature.
     pub(crate) curvature: Option<CurvatureReport>,
 }
 
 /// Derivatives by the weights of the second (u) and third corner (v).
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct DerivativesReport {
+    /// The first derivative by u.
     pub(crate) u: [f64; 3],
+    /// The first derivative by v.
     pub(crate) v: [f64; 3],
+    /// The second derivative by u.
     pub(crate) uu: [f64; 3],
+    /// The mixed second derivative.
     pub(crate) uv: [f64; 3],
+    /// The second derivative by v.
     pub(crate) vv: [f64; 3],
 }
 
 /// How the surface bends.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct CurvatureReport {
+    /// The product of the principal curvatures.
     pub(crate) gaussian: f64,
+    /// Half the sum of the principal curvatures.
     pub(crate) mean: f64,
-    /// The greatest and the least.
+    /// The greatest and the least curvature.
     pub(crate) principal: [f64; 2],
     /// Their unit directions.
     pub(crate) directions: [[f64; 3]; 2],

@@ -7,6 +7,7 @@ use super::percent;
 
 /// How control points came about.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct InterpolationReport {
     /// How near limits were to be to their vertices, in the mesh's unit.
     pub(crate) within: f64,
@@ -16,7 +17,7 @@ pub(crate) struct InterpolationReport {
     pub(crate) iterations: usize,
     /// The greatest distance of a limit from its vertex, but for those that are passed by.
     pub(crate) residual: f64,
-    /// Vertices beside much longer edges of sharp lines and boundaries.
+    /// Vertices that the surface passes by: those next to much longer edges of sharp lines and boundaries.
     pub(crate) passed_by: usize,
     /// The greatest distance of a control point from its vertex.
     pub(crate) displacement: f64,
@@ -24,9 +25,9 @@ pub(crate) struct InterpolationReport {
     pub(crate) displacement_percent: f64,
     /// The vertex whose control point that is.
     pub(crate) most_displaced: usize,
-    /// The thin-plate energy beside that of the surface through the vertices, and what it is at least; null where limits are to
-    /// be at their vertices.
+    /// The thin-plate energy, as a share of that of the surface through the vertices; null where limits are to be at their vertices.
     pub(crate) energy: Option<f64>,
+    /// The least energy that is possible; null as `energy`.
     pub(crate) least_energy: Option<f64>,
 }
 

@@ -11,18 +11,25 @@ use crate::arguments::{Boundary, ConcaveCorners, CreasesFrom, LimitArguments, Re
 /// What a sampled distance is, in every report of one.
 pub(crate) const KIND: &str = "sampled lower bound";
 
-/// All of it.
+/// How far two surfaces are from each other.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct MeasureReport {
+    /// The program's version.
     pub(crate) version: &'static str,
+    /// The surface that is measured.
     pub(crate) surface: SurfaceReport,
+    /// What it is measured against.
     pub(crate) reference: SurfaceReport,
+    /// The distance.
     pub(crate) hausdorff: DistanceReport,
+    /// How long it took.
     pub(crate) seconds: MeasureSeconds,
 }
 
 /// The distance, by its kind.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub(crate) enum DistanceReport {
     Sampled(HausdorffReport),
@@ -31,15 +38,19 @@ pub(crate) enum DistanceReport {
 
 /// One of the two surfaces.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct SurfaceReport {
     /// As given on the command line.
     pub(crate) path: String,
+    /// Its vertices.
     pub(crate) vertices: usize,
+    /// Its triangles.
     pub(crate) triangles: usize,
     /// In squares of the mesh's unit; null where it is not known, as for limit surfaces outside the Loop family.
     pub(crate) area: Option<f64>,
     /// In cubes of the mesh's unit, above 0 where normals point outwards; null for open surfaces, and where it is not known.
     pub(crate) volume: Option<f64>,
+    /// What was found and repaired.
     pub(crate) diagnosis: DiagnosisReport,
     /// How the surface stands for a limit surface; null where it is measured as it is.
     pub(crate) limit: Option<LimitReport>,
@@ -47,7 +58,9 @@ pub(crate) struct SurfaceReport {
 
 /// How a limit surface is represented.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct LimitReport {
+    /// The subdivision scheme.
     pub(crate) scheme: RefiningScheme,
     /// Levels of uniform refinement, all vertices moved to the limit; for certified distances, of the most divided part
     /// of exact refinement.
@@ -56,12 +69,15 @@ pub(crate) struct LimitReport {
     pub(crate) chosen: bool,
     /// How far the mesh that stands for the limit surface is from it at most; null where that is not proven.
     pub(crate) error: Option<f64>,
+    /// The rule for open boundaries.
     pub(crate) boundary: Boundary,
+    /// Edges beyond this angle are sharp; null for none.
     pub(crate) crease_angle_degrees: Option<f64>,
     /// What in the file says that edges are sharp, beside tags.
     pub(crate) creases_from: CreasesFrom,
     /// How near it passes to the vertices of the control mesh; null where these are its control points.
     pub(crate) interpolate_within: Option<f64>,
+    /// What becomes of corners of 180° and more between sharp edges.
     pub(crate) concave_corners: ConcaveCorners,
 }
 
@@ -88,7 +104,9 @@ impl LimitReport {
 
 /// The distances. Lengths are in the meshes' units.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct HausdorffReport {
+    /// `sampled lower bound`.
     pub(crate) kind: &'static str,
     /// The greater of `forward` and `backward`.
     pub(crate) symmetric: f64,
@@ -100,10 +118,15 @@ pub(crate) struct HausdorffReport {
     pub(crate) backward: f64,
     /// Samples of both directions together.
     pub(crate) samples: usize,
+    /// What per cent are of.
     pub(crate) diagonal: f64,
-    /// `control mesh` or `second mesh`.
+    /// Whose diagonal that is: `control mesh` or `second mesh`.
     pub(crate) diagonal_of: &'static str,
+    /// From the surface to the reference.
+    #[cfg_attr(test, schemars(with = "crate::pages::schema::OneSided"))]
     pub(crate) forward_detail: OneSided,
+    /// From the reference to the surface.
+    #[cfg_attr(test, schemars(with = "crate::pages::schema::OneSided"))]
     pub(crate) backward_detail: OneSided,
 }
 
@@ -126,8 +149,10 @@ impl HausdorffReport {
 
 /// Wall-clock seconds by phase.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct MeasureSeconds {
     /// Reading and preparing both surfaces, the limit surface's refinement included.
     pub(crate) prepare: f64,
+    /// Measuring.
     pub(crate) measure: f64,
 }

@@ -15,44 +15,57 @@ use crate::arguments::{
 use crate::bulk::Bulk;
 use crate::format::{lower_bound, upper_bound};
 
-/// All of it.
+/// What became of a mesh that was refined.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct RefineReport {
+    /// The program's version.
     pub(crate) version: &'static str,
     #[serde(flatten)]
     pub(crate) of: MeshReport,
+    /// How long it took.
     pub(crate) seconds: SecondsReport,
 }
 
 /// What became of a mesh.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct MeshReport {
+    /// What was read.
     pub(crate) input: InputReport,
+    /// What was found and repaired.
     pub(crate) diagnosis: DiagnosisReport,
+    /// What was asked for.
     pub(crate) parameters: ParametersReport,
     /// How control points were found; null where the input's vertices are the control points.
     pub(crate) interpolation: Option<InterpolationReport>,
     #[serde(flatten)]
     pub(crate) method: MethodReport,
+    /// Area and volume.
     pub(crate) size: SizeReport,
+    /// What was written.
     pub(crate) output: OutputReport,
 }
 
 /// The report on an asset of several meshes.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct AssetReport {
+    /// The program's version.
     pub(crate) version: &'static str,
-    /// As given on the command line.
+    /// The file that was read, as given on the command line.
     pub(crate) path: String,
     /// Attributes that were left out, by their names in the asset.
     pub(crate) left_out: Vec<String>,
     /// The meshes that were refined.
     pub(crate) meshes: Vec<AssetMeshReport>,
+    /// How long it took.
     pub(crate) seconds: SecondsReport,
 }
 
 /// What became of a mesh of an asset. All lengths are the scene's.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct AssetMeshReport {
     /// Its number.
     pub(crate) mesh: usize,
@@ -64,24 +77,31 @@ pub(crate) struct AssetMeshReport {
 
 /// Area and volume of the mesh that was read and of the one that was written.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct SizeReport {
+    /// Of the mesh that was read.
     pub(crate) before: Bulk,
+    /// Of the mesh that was written.
     pub(crate) after: Bulk,
 }
 
-/// The distance between the mesh that was read and the one that was written lies between these.
+/// The distance between the mesh that was read and the one that was written, certified.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct InputDistanceReport {
-    /// In the mesh's unit.
+    /// The distance is at least this, in the mesh's unit.
     pub(crate) lower: f64,
+    /// The distance is at most this.
     pub(crate) upper: f64,
     /// In per cent of the diagonal of the control mesh's bounding box.
     pub(crate) lower_percent: f64,
+    /// In per cent of that diagonal.
     pub(crate) upper_percent: f64,
 }
 
 /// What the method did.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct MethodReport {
     /// Steps of a stepwise method.
     pub(crate) steps: Vec<StepEntry>,
@@ -89,7 +109,9 @@ pub(crate) struct MethodReport {
     pub(crate) rounds: Vec<RoundEntry>,
     /// Times that the most divided part of a control face was divided.
     pub(crate) levels: usize,
-    /// See [`stop_name`] and [`exact_stop_name`].
+    /// Why it ended. The exact method: `met` (all goals), `triangles` (those asked for are used up), `triangle-cap`, `level-cap`,
+    /// `memory-cap`, `rounding` (the tolerance is finer than the numbers) or `cones` (met but for `open_cones`). Others: `levels`
+    /// (all steps done), `satisfied` (no face has to be divided any more) or `triangle-cap`.
     pub(crate) stop: &'static str,
     /// Triangles that the step left undone would have given; null unless the cap stopped a stepwise method.
     pub(crate) needed_triangles: Option<usize>,
@@ -125,6 +147,7 @@ impl MethodReport {
 
 /// A goal for what the mesh carries: a channel's values, or the surface that a morph target makes.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct AttributeReport {
     /// The channel's, or `targets[2]`.
     pub(crate) name: String,
@@ -169,24 +192,37 @@ pub(crate) fn exact_stop_name(stop: ExactStop) -> &'static str {
 
 /// What was asked for, defaults filled in; null where an option does not apply to the method.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ParametersReport {
+    /// The method.
     pub(crate) method: Method,
+    /// The angle of `--angle`.
     pub(crate) angle_degrees: Option<f64>,
+    /// Steps of a stepwise method.
     pub(crate) levels: Option<usize>,
+    /// The subdivision scheme.
     pub(crate) scheme: RefiningScheme,
+    /// Which vertices move where divided and undivided faces meet.
     pub(crate) seam: Option<Seam>,
+    /// Where the viewer looks from.
     pub(crate) view: Option<ViewReport>,
+    /// Whether vertices were moved to the limit at the end.
     pub(crate) limit: bool,
+    /// The rule for open boundaries.
     pub(crate) boundary: Boundary,
+    /// Edges beyond this angle are sharp; null for none.
     pub(crate) crease_angle_degrees: Option<f64>,
     /// What in the file says that edges are sharp, beside tags.
     pub(crate) creases_from: CreasesFrom,
     /// How near the limit surface is to pass to the input's vertices, in the mesh's unit; null where these are the control points.
     pub(crate) interpolate_within: Option<f64>,
+    /// What becomes of corners of 180° and more between sharp edges.
     pub(crate) concave_corners: ConcaveCorners,
+    /// Triangles at most.
     pub(crate) max_triangles: usize,
     /// Distance within which vertices were merged: 0 at equal positions, null for none.
     pub(crate) weld: Option<f64>,
+    /// Whether a mesh that needs repair was to be refused.
     pub(crate) strict: bool,
     /// Goals and caps of the exact method; null for the others.
     pub(crate) exact: Option<ExactParametersReport>,
@@ -224,20 +260,29 @@ impl ParametersReport {
 
 /// Goals and caps of the exact method; null where a goal was not set.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ExactParametersReport {
-    /// In the mesh's unit.
+    /// The distance to the limit surface at most, in the mesh's unit.
     pub(crate) tolerance: Option<f64>,
     /// In per cent of the control mesh's diagonal.
     pub(crate) tolerance_percent: Option<f64>,
+    /// The number of triangles.
     pub(crate) triangles: Option<usize>,
+    /// The distance in pixels at most.
     pub(crate) pixels: Option<f64>,
+    /// The cameras that these pixels are of.
     pub(crate) cameras: Vec<CameraReport>,
+    /// Whether vertices may leave the surface.
     pub(crate) balance: bool,
+    /// Whether edges were to be collapsed.
     pub(crate) optimize: bool,
+    /// Whether flat regions were divided like the rest.
     pub(crate) divide_flat: bool,
+    /// Levels at most.
     pub(crate) max_levels: usize,
-    /// In bytes.
+    /// Memory at most, in bytes.
     pub(crate) max_memory: Option<usize>,
+    /// Whether the file has where vertices and triangles came from.
     pub(crate) provenance: bool,
 }
 
@@ -267,21 +312,31 @@ impl ExactParametersReport {
 
 /// Where the viewer looks from: one of direction and eye.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ViewReport {
+    /// Direction of sight.
     pub(crate) direction: Option<[f64; 3]>,
+    /// The eye.
     pub(crate) eye: Option<[f64; 3]>,
+    /// The factor of `--dilatation`.
     pub(crate) dilatation: f64,
 }
 
 /// What one step did.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct StepEntry {
+    /// Its number, from 1.
     pub(crate) step: usize,
+    /// Faces before it.
     pub(crate) faces_before: usize,
+    /// Faces that were divided.
     pub(crate) divisible: usize,
     /// Indivisible faces with 0, 1, 2 and 3 split edges.
     pub(crate) closure: [usize; 4],
+    /// Faces after it.
     pub(crate) faces_after: usize,
+    /// How long it took.
     pub(crate) seconds: f64,
 }
 
@@ -300,12 +355,19 @@ impl From<&StepReport> for StepEntry {
 
 /// A camera that the distance in pixels is for.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct CameraReport {
+    /// The eye.
     pub(crate) eye: [f64; 3],
+    /// The point that it looks at.
     pub(crate) target: [f64; 3],
+    /// The upward direction.
     pub(crate) up: [f64; 3],
+    /// The vertical field of view.
     pub(crate) fov_degrees: f64,
+    /// The picture's width in pixels.
     pub(crate) width: u32,
+    /// The picture's height in pixels.
     pub(crate) height: u32,
 }
 
@@ -318,19 +380,27 @@ impl From<&Camera> for CameraReport {
 
 /// The report of a dry run.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct PredictionReport {
+    /// The program's version.
     pub(crate) version: &'static str,
+    /// What was read.
     pub(crate) input: InputReport,
+    /// What was found and repaired.
     pub(crate) diagnosis: DiagnosisReport,
+    /// What was asked for.
     pub(crate) parameters: ParametersReport,
+    /// What is predicted.
     pub(crate) estimate: EstimateReport,
 }
 
-/// What a refinement would come to.
+/// What a refinement is predicted to give.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct EstimateReport {
+    /// Triangles of the result, about.
     pub(crate) triangles: usize,
-    /// At most, about.
+    /// Memory in bytes at most, about.
     pub(crate) memory_bytes: usize,
     /// Whether the triangles were counted rather than extrapolated.
     pub(crate) counted: bool,
@@ -338,14 +408,17 @@ pub(crate) struct EstimateReport {
 
 /// What one round of the exact method did.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct RoundEntry {
+    /// Its number, from 1.
     pub(crate) round: usize,
-    /// What it came to.
+    /// Triangles after it.
     pub(crate) triangles: usize,
 }
 
 /// An interval for the symmetric Hausdorff distance between the mesh and the limit surface of the control mesh.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ErrorReport {
     /// A distance that was found, in the mesh's unit.
     pub(crate) lower: f64,
@@ -353,6 +426,7 @@ pub(crate) struct ErrorReport {
     pub(crate) upper: Option<f64>,
     /// In per cent of `diagonal`.
     pub(crate) lower_percent: f64,
+    /// In per cent of `diagonal`; null as `upper`.
     pub(crate) upper_percent: Option<f64>,
     /// Diagonal of the bounding box of the control mesh.
     pub(crate) diagonal: f64,
@@ -432,19 +506,31 @@ impl InputDistanceReport {
 
 /// The mesh that was written.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct OutputReport {
+    /// The file.
     pub(crate) path: String,
+    /// Its vertices.
     pub(crate) vertices: usize,
+    /// Its triangles.
     pub(crate) triangles: usize,
+    /// Edges with one face.
     pub(crate) boundary_edges: usize,
+    /// Edges with more than two faces.
     pub(crate) non_manifold_edges: usize,
+    /// Whether every edge has two faces.
     pub(crate) watertight: bool,
+    /// Vertices less edges plus triangles.
     pub(crate) euler_characteristic: i64,
+    /// Connected parts.
     pub(crate) components: usize,
+    /// Vertices inside an edge of another triangle.
     pub(crate) t_junctions: usize,
     /// Triangles whose normal is more than 90° from the limit normal at one of their corners; null for the stepwise methods.
     pub(crate) inverted_triangles: Option<usize>,
+    /// The least angle of a triangle.
     pub(crate) min_angle_degrees: f64,
+    /// The mean of the triangles' least angles.
     pub(crate) mean_min_angle_degrees: f64,
     /// Triangles with a least angle in [0°, 5°), [5°, 10°) … [55°, 60°].
     pub(crate) angle_histogram: [usize; 12],
@@ -476,10 +562,15 @@ impl OutputReport {
 
 /// Wall-clock seconds by phase.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct SecondsReport {
+    /// Reading.
     pub(crate) read: f64,
+    /// Repairing, and making the control mesh.
     pub(crate) repair: f64,
+    /// Refining.
     pub(crate) refine: f64,
+    /// Writing.
     pub(crate) write: f64,
     /// All four together; the report's own checks and the picture are not in it.
     pub(crate) total: f64,

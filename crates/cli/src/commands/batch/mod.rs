@@ -36,6 +36,8 @@ use job::{Claims, Job, Reader};
 pub(super) use process::Verdict;
 use process::{Ended, Limits, Starter};
 use results::{EarlierResults, Place, Results};
+#[cfg(test)]
+pub(crate) use told::Line as BatchLine;
 use told::{ErrorTold, Kind, Line, Told};
 
 /// Where nobody sees a spinner, how things stand is told so often.

@@ -5,14 +5,19 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 use std::fmt;
 
-/// A line of the results.
+/// What became of a job, in a line.
 #[derive(Serialize)]
-pub(super) struct Line<'a> {
-    /// The line of the job, counted from 1. First: where results are kept it is replaced.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(test, schemars(rename = "BatchLine"))]
+pub(crate) struct Line<'a> {
+    /// The line of the job, counted from 1.
+    // First: where results are kept it is replaced.
     pub(super) line: usize,
-    /// Null where the input cannot be read.
+    /// SHA-256 of version, options, formats and the input's bytes; null where the input cannot be read.
     pub(super) key: Option<&'a str>,
+    /// The file that was read; null of what is no job.
     pub(super) input: Option<&'a str>,
+    /// The file that was written; null of what is no job.
     pub(super) output: Option<&'a str>,
     #[serde(flatten)]
     pub(super) told: Told,
@@ -20,36 +25,50 @@ pub(super) struct Line<'a> {
 
 /// What became of a job.
 #[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(tag = "status", rename_all = "kebab-case")]
 pub(super) enum Told {
+    /// All goals are met.
     Done {
-        /// Of the mesh; null for a dry run.
+        /// The size of the file; null for a dry run.
         output_bytes: Option<u64>,
+        /// As of `refine`, without seconds unless `--seconds` is given.
+        #[cfg_attr(test, schemars(with = "serde_json::Value"))]
         report: Box<RawValue>,
     },
     /// A cap was reached before what was asked for.
     StoppedShort {
+        /// Which one, in words.
         why: String,
+        /// The size of the file; null for a dry run.
         output_bytes: Option<u64>,
+        /// As of `refine`, without seconds unless `--seconds` is given.
+        #[cfg_attr(test, schemars(with = "serde_json::Value"))]
         report: Box<RawValue>,
     },
+    /// There is no result.
     Failed {
+        /// What went wrong.
         error: ErrorTold,
     },
 }
 
 /// Why a job failed.
 #[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(super) struct ErrorTold {
+    /// What is to be mended.
     pub(super) kind: Kind,
     /// The limit that it passed: seconds or bytes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) limit: Option<serde_json::Number>,
+    /// In words.
     pub(super) message: String,
 }
 
 /// What is to be mended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, serde::Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Kind {
     /// The line is no job.
