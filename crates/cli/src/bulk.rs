@@ -20,16 +20,52 @@ pub(crate) struct Bulk {
     pub(crate) volume: Option<f64>,
 }
 
+/// How a mesh is shown: not as large along all directions, perhaps, nor at right angles.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shown {
+    /// By rows: x' = row · x.
+    linear: [[f64; 3]; 3],
+}
+
+impl Default for Shown {
+    fn default() -> Self {
+        Self { linear: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
+    }
+}
+
+impl Shown {
+    /// By a map of vectors, where the mesh has been made `stretch` times as large already.
+    pub(crate) fn of(linear: [[f64; 3]; 3], stretch: f64) -> Self {
+        let linear = linear.map(|row| row.map(|x| x / stretch));
+        if linear.iter().flatten().all(|x| x.is_finite()) { Self { linear } } else { Self::default() }
+    }
+
+    fn point(&self, at: [f64; 3]) -> [f64; 3] {
+        self.linear.map(|row| dot(row, at))
+    }
+
+    /// How many times larger volumes are.
+    fn volume(&self) -> f64 {
+        let [a, b, c] = self.linear;
+        dot(a, cross(b, c)).abs()
+    }
+}
+
 impl Bulk {
     /// Of a mesh.
     pub(crate) fn of(mesh: &Mesh) -> Self {
+        Self::as_shown(mesh, &Shown::default())
+    }
+
+    /// Of a mesh as it is shown.
+    pub(crate) fn as_shown(mesh: &Mesh, shown: &Shown) -> Self {
         let surface = mesh.as_triangles();
         let corner = surface.bounding_box().unwrap_or_default()[0];
         let is_closed = mesh.topology().boundary_edge_count() == 0;
         let sums = pieces(surface.triangles.len(), |faces| {
             faces.map(|face| surface.corners(face)).fold([Sum::default(); 2], |[areas, volumes], corners| {
                 let volumes = if is_closed { volumes.with(volume(corners, corner)) } else { volumes };
-                [areas.with(area(corners)), volumes]
+                [areas.with(area(corners.map(|corner| shown.point(corner)))), volumes]
             })
         });
         let total = |which: usize| {
@@ -37,7 +73,7 @@ impl Bulk {
                 .fold(Sum::default(), |all, sums| all.with(sums[which].sum).with(sums[which].lost))
                 .total()
         };
-        Self { area: total(0), volume: is_closed.then(|| total(1)) }
+        Self { area: total(0), volume: is_closed.then(|| shown.volume() * total(1)) }
     }
 
     /// Of the limit surface of a control mesh; `None` for schemes outside the Loop family.

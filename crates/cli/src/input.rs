@@ -12,7 +12,7 @@ use limitmesh_io::gltf::Contents;
 use limitmesh_io::threemf::PackageContents;
 use limitmesh_io::{Asset, Format, Package};
 
-use crate::arguments::{BuildArguments, ChannelArguments, CreasesFrom, FileFormat};
+use crate::arguments::{BuildArguments, ChannelArguments, CreasesFrom, FileFormat, Unit};
 use crate::creases::Hints;
 use crate::failure::usage;
 use crate::format::{counted, thousands};
@@ -38,6 +38,8 @@ pub(crate) struct Soup {
     pub(crate) asset: Option<(Asset, Contents)>,
     /// What else a 3MF package holds.
     pub(crate) package: Option<PackageContents>,
+    /// What its numbers are measured in, by itself or by `--unit`.
+    pub(crate) unit: Option<Unit>,
     /// Time taken to read or generate it.
     pub(crate) reading: Duration,
 }
@@ -56,6 +58,23 @@ impl Input {
         let edges = self.hints().edges(&self.mesh, from, &self.name)?;
         Ok(Self { mesh: self.mesh.with_creases(&edges), ..self })
     }
+
+    /// It with its numbers measured in another unit, where both are known.
+    ///
+    /// # Errors
+    /// They are beyond what numbers hold then.
+    pub(crate) fn in_unit(self, other: Option<Unit>, progress: &Progress) -> anyhow::Result<Self> {
+        let Some(factor) = factor(self.unit, other, &self.name, progress) else { return Ok(self) };
+        let positions = self.mesh.positions().iter().map(|p| p.map(|x| factor * x)).collect();
+        Ok(Self { mesh: self.mesh.with_positions(positions)?, unit: other, ..self })
+    }
+}
+
+/// What makes numbers in one unit such in another, where both are known and differ; a note says it of the file that is called `name`.
+pub(crate) fn factor(own: Option<Unit>, other: Option<Unit>, name: &str, progress: &Progress) -> Option<f64> {
+    let (own, other) = own.zip(other).filter(|(own, other)| own != other)?;
+    progress.note(format!("{name}: its {} are taken to {}", own.name(), other.name()));
+    Some(own.in_others(other))
 }
 
 /// A control mesh and where it came from.
@@ -82,6 +101,8 @@ pub(crate) struct Input {
     pub(crate) texture_files: Vec<String>,
     /// The glTF document, if it was one.
     pub(crate) asset: Option<Asset>,
+    /// What its numbers are measured in, by itself or by `--unit`.
+    pub(crate) unit: Option<Unit>,
     /// Time taken to read or generate it.
     pub(crate) reading: Duration,
     /// Time taken to repair and connect it.
@@ -96,7 +117,7 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
     let name = display_name(path);
     progress.stage(format!("reading {name}"));
     let start = Instant::now();
-    let (mut document, mut held) = (None, None);
+    let (mut document, mut held, mut unit) = (None, None, build.unit);
     let (soup, format) = match builtin_name(path) {
         Some(model) => (builtin(model)?, "builtin"),
         None => {
@@ -104,10 +125,12 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
             let soup = if format.is_gltf() {
                 let asset = asset(path)?;
                 let (soup, contents) = (asset.scene_soup()?, asset.contents()?);
+                unit.get_or_insert(Unit::M);
                 document = Some((asset, contents));
                 soup
             } else if format == Format::ThreeMf {
                 let package = package(path)?;
+                unit = Some(unit_of_package(&package, build.unit, &name)?);
                 held = Some(package.contents());
                 package.scene_soup()?
             } else if path.as_os_str() == STANDARD_INPUT {
@@ -123,7 +146,7 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
     let mut soup: PolygonSoup = soup;
     let normals = soup.channels.iter().position(|channel| channel.name == NORMALS);
     let normals = normals.map(|at| soup.channels.remove(at));
-    Ok(Soup { name, format, soup, normals, asset: document, package: held, reading: start.elapsed() })
+    Ok(Soup { name, format, soup, normals, asset: document, package: held, unit, reading: start.elapsed() })
 }
 
 /// Opens a glTF document: a file, or standard input for `-`.
@@ -148,6 +171,18 @@ pub(crate) fn package(path: &Path) -> anyhow::Result<Package> {
             .map_err(|why| anyhow::anyhow!("standard input: {why}"));
     }
     Ok(Package::open(path)?)
+}
+
+/// The unit of a package that is called `name`.
+///
+/// # Errors
+/// Another one was given.
+pub(crate) fn unit_of_package(package: &Package, given: Option<Unit>, name: &str) -> anyhow::Result<Unit> {
+    let own = Unit::of_package(package.unit());
+    match given.filter(|&given| given != own) {
+        Some(given) => usage(format!("--unit {}: {name} says that it is in {}", given.name(), own.name())),
+        None => Ok(own),
+    }
 }
 
 fn standard_input() -> anyhow::Result<Vec<u8>> {
@@ -258,8 +293,8 @@ pub(crate) fn connect(
     kept: &[&str],
     progress: &Progress,
 ) -> anyhow::Result<Input> {
-    let options = &build.options()?;
-    let Soup { name, format, mut soup, normals, asset, reading, .. } = read;
+    let options = &build.in_unit(read.unit).options()?;
+    let Soup { name, format, mut soup, normals, asset, unit, reading, .. } = read;
     progress.stage(format!("connecting {}", counted(soup.faces.len(), "face", "faces")));
     let start = Instant::now();
     let (mesh, diagnosis, trace) =
@@ -270,7 +305,7 @@ pub(crate) fn connect(
         normals.map(|own| own.on_mesh(&soup, &mesh, &trace)).transpose().with_context(|| name.clone())?;
     let material_libraries = std::mem::take(&mut soup.material_libraries);
     let texture_files = std::mem::take(&mut soup.texture_files);
-    let near = nearly_closed(&soup, &mesh, options);
+    let near = nearly_closed(&mesh, options.weld, welded(&soup));
     let left_out = std::mem::take(&mut soup.left_out);
     // Large soups are given back before refinement needs the memory.
     drop(soup);
@@ -297,6 +332,7 @@ pub(crate) fn connect(
         material_libraries,
         texture_files,
         asset: asset.map(|(asset, _)| asset),
+        unit,
         reading,
         building,
     })
@@ -306,16 +342,24 @@ pub(crate) fn connect(
 /// ten steps of single precision.
 const NEAR: f64 = 1e-6;
 
-/// Tells where open edges would close if nearly equal positions were merged too.
-pub(crate) fn nearly_closed(soup: &PolygonSoup, mesh: &Mesh, options: &BuildOptions) -> Option<String> {
+/// The mesh of a soup for another way to merge vertices, if there is one.
+pub(crate) fn welded(soup: &PolygonSoup) -> impl FnOnce(Weld) -> Option<Mesh> {
+    |weld| Some(Mesh::from_soup(soup, &BuildOptions::default().weld(weld)).ok()?.0)
+}
+
+/// Reports where open edges of a mesh would close if nearly equal positions were merged too; `build` makes it anew for that.
+pub(crate) fn nearly_closed(
+    mesh: &Mesh,
+    weld: Weld,
+    build: impl FnOnce(Weld) -> Option<Mesh>,
+) -> Option<String> {
     let open = mesh.topology().boundary_edge_count();
-    if open == 0 || options.weld != Weld::Exact {
+    if open == 0 || weld != Weld::Exact {
         return None;
     }
     // As it would be typed: one digit.
     let distance: f64 = format!("{:.0e}", NEAR * mesh.diagonal()).parse().ok()?;
-    let (welded, _) = Mesh::from_soup(soup, &BuildOptions::default().weld(Weld::Within(distance))).ok()?;
-    let left = welded.topology().boundary_edge_count();
+    let left = build(Weld::Within(distance))?.topology().boundary_edge_count();
     (left < open).then(|| {
         let closing = if left == 0 { "all of them".to_owned() } else { thousands(open - left) };
         let open = counted(open, "edge is open", "edges are open");

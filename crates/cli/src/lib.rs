@@ -27,6 +27,7 @@ mod progress;
 mod reference;
 mod report;
 mod vector;
+mod written_unit;
 
 use std::ffi::OsString;
 

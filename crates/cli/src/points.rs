@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, bail};
 
-use crate::arguments::BuildArguments;
+use crate::arguments::{BuildArguments, Unit};
 use crate::format::counted;
 use crate::input;
 use crate::progress::Progress;
@@ -15,6 +15,19 @@ pub(crate) struct Points {
     pub(crate) name: String,
     pub(crate) positions: Vec<[f64; 3]>,
     pub(crate) triangles: Vec<[u32; 3]>,
+    /// What they are measured in, where that is known.
+    unit: Option<Unit>,
+}
+
+impl Points {
+    /// Them measured in another unit, where both are known.
+    pub(crate) fn in_unit(mut self, other: Option<Unit>, progress: &Progress) -> Self {
+        if let Some(factor) = input::factor(self.unit, other, &self.name, progress) {
+            self.positions.iter_mut().flatten().for_each(|x| *x *= factor);
+            self.unit = other;
+        }
+        self
+    }
 }
 
 /// Extensions of text files.
@@ -43,9 +56,9 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
             let text = text.with_context(|| name.clone())?;
             let has_count = is_text.is_some_and(|extension| extension == COUNTED);
             let positions = coordinates(&text, has_count).with_context(|| name.clone())?;
-            Points { name, positions, triangles: Vec::new() }
+            Points { name, positions, triangles: Vec::new(), unit: build.unit }
         } else {
-            let input::Soup { name, soup, .. } = input::read(path, build, progress)?;
+            let input::Soup { name, soup, unit, .. } = input::read(path, build, progress)?;
             let count = soup.positions.len();
             let triangle = |face: &[u32]| <[u32; 3]>::try_from(face).ok();
             let triangles: Vec<[u32; 3]> = soup
@@ -60,7 +73,7 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
                     "{name}: {left} no triangles over its points and left out; all points are projected"
                 ));
             }
-            Points { name, positions: soup.positions, triangles }
+            Points { name, positions: soup.positions, triangles, unit }
         };
     if let Some(index) = points.positions.iter().position(|at| !at.iter().all(|x| x.is_finite())) {
         bail!("{}: point {index} (from 0) is not finite", points.name);

@@ -57,6 +57,12 @@ pub(crate) fn mirrors(m: &Affine) -> bool {
     determinant(&linear(m)) < 0.0
 }
 
+/// Of several the one that makes vectors longest, and the first of equals; without any, the map that does nothing.
+pub(crate) fn largest<'a>(all: impl Iterator<Item = &'a Affine>) -> &'a Affine {
+    let stretched = all.map(|m| (m, greatest_stretch(m)));
+    stretched.reduce(|most, own| if own.1 > most.1 { own } else { most }).map_or(&IDENTITY, |(m, _)| m)
+}
+
 /// How many times longer it makes vectors at most: the greatest singular value M, √λ of the greatest eigenvalue of MᵀM,
 /// by the closed form for symmetric matrices of three rows (Smith 1961).
 pub(crate) fn greatest_stretch(m: &Affine) -> f64 {
@@ -82,7 +88,8 @@ pub(crate) fn greatest_stretch(m: &Affine) -> f64 {
     size * greatest.max(0.0).sqrt()
 }
 
-fn linear(m: &Affine) -> [[f64; 3]; 3] {
+/// What it does to vectors, by rows.
+pub(crate) fn linear(m: &Affine) -> [[f64; 3]; 3] {
     m.map(|[a, b, c, _]| [a, b, c])
 }
 

@@ -68,13 +68,15 @@ pub(crate) enum RelativeTo {
 }
 
 impl AssetArguments {
-    /// Which vertices of a mesh become one.
-    pub(crate) fn joining(&self, weld: Weld) -> Joining {
+    /// Which vertices of a mesh become one that the scene shows `stretch` times as large.
+    pub(crate) fn joining(&self, weld: Weld, stretch: f64) -> Joining {
         let ignores = |mover| self.weld_ignores.contains(&mover);
-        match weld {
-            Weld::Never => Joining::Never,
-            _ => Joining::Ignoring { skins: ignores(Mover::Skin), morphs: ignores(Mover::Morphs) },
-        }
+        let distance = match weld {
+            Weld::Never => return Joining::Never,
+            Weld::Within(distance) => distance / stretch,
+            _ => 0.0,
+        };
+        Joining::Ignoring { skins: ignores(Mover::Skin), morphs: ignores(Mover::Morphs), distance }
     }
 
     /// The first of these options that is given.

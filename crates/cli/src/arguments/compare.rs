@@ -20,7 +20,7 @@ Examples:
 /// triangles: plain, balanced and optimised. Beside them stand criteria of the literature with no more triangles over restricted
 /// quadtrees of eight levels, planarity by angle and by distance (Zorin, Schröder and Sweldens) and vertex errors (Müller and Jaeschke), and
 /// √3-subdivision (Kobbelt). Each is measured against its scheme's limit surface.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Clone)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct CompareArguments {
     /// Control mesh: a file, - for standard input, or builtin:NAME

@@ -23,7 +23,7 @@ Examples:
 /// are divided by their sum. The limit surface itself is evaluated, not a mesh that stands for it. Derivatives are by the weights of the second (u) and the third corner (v). --crease-angle and --boundary may
 /// divide faces at concave corners, which are numbered anew then; --concave-corners as-tagged leaves them. Curvature is in 1 / unit (Gaussian: 1 / unit²), below 0 on convex places whose normals point outwards; there
 /// is none at irregular vertices, nor for schemes other than loop and loop-warren.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Clone)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct EvaluateArguments {
     /// Control mesh: a file, - for standard input, or builtin:NAME

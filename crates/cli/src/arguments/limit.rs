@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{BuildArguments, FeatureArguments, InterpolationArguments, SchemeName};
+use super::{BuildArguments, FeatureArguments, InterpolationArguments, SchemeName, Unit};
 
 /// The scheme, and what is done to the mesh that was read before it is the control mesh.
 #[derive(Args, Debug, Clone, Copy)]
@@ -22,6 +22,11 @@ pub(crate) struct LimitArguments {
 }
 
 impl LimitArguments {
+    /// For a file whose unit is known, or not.
+    pub(crate) fn in_unit(self, unit: Option<Unit>) -> Self {
+        Self { build: self.build.in_unit(unit), ..self }
+    }
+
     /// The scheme that holds.
     pub(crate) fn scheme(&self) -> SchemeName {
         self.scheme.unwrap_or_default()

@@ -27,7 +27,7 @@ Exit code 3 means that a level could not be reached; those up to it are written.
 /// that the object takes where each ends (MSFT_screencoverage); with --morph each mesh has a morph target that makes it the coarser level.
 /// Of a glTF input its materials and textures come along, its nodes as one mesh in the scene's coordinates. PLY files have a level each, with
 /// the vertices' places on the coarser level as coarse_x, coarse_y and coarse_z.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Clone)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct LodArguments {
     /// Control mesh: a file, - for standard input with --from, or builtin:NAME

@@ -24,7 +24,7 @@ Examples:
 /// The distance is sampled on vertices, edges and faces of both: a lower bound of the true one. It is given
 /// as a length and in per cent of a bounding box's diagonal: the control mesh's with --limit-of, as in refine; else B's.
 /// With --certified it is bounded from both sides instead.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Clone)]
 #[command(after_help = EXAMPLES)]
 #[command(mut_arg("scheme", |scheme| scheme.help("Scheme of the limit surface [default: loop]; with --limit-of only")))]
 pub(crate) struct MeasureArguments {

@@ -21,7 +21,7 @@ Examples:
 /// be their number), between blanks, commas or semicolons. Each is projected onto the limit surface of CONTROL itself, not onto a mesh
 /// that stands for it: no point of the surface is nearer by more than --tolerance.
 /// Distances are below 0 inside of a closed surface; where it is open, behind it, as its normal at the closest point tells.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Clone)]
 #[command(after_help = EXAMPLES)]
 #[command(mut_arg("scheme", |scheme| scheme.help("Scheme of the limit surface: loop or loop-warren [default: loop]")))]
 pub(crate) struct ProjectArguments {

@@ -7,7 +7,7 @@ use limitmesh_io::threemf::LengthUnit;
 
 use crate::failure::usage;
 
-/// What the numbers of a mesh are measured in; of all files only 3MF packages say.
+/// What the numbers of a mesh are measured in. 3MF packages say it, glTF documents are in metres, other files do not say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Unit {
     /// Micrometres
@@ -56,9 +56,14 @@ impl Unit {
         IN_PACKAGES.iter().find(|pair| pair.1 == unit).map_or(Self::Mm, |pair| pair.0)
     }
 
-    /// As a 3MF package has it; millimetres where nobody says.
-    pub(crate) fn in_package(unit: Option<Self>) -> LengthUnit {
-        IN_PACKAGES.iter().find(|pair| Some(pair.0) == unit).map_or(LengthUnit::Millimeter, |pair| pair.1)
+    /// As a 3MF package has it.
+    pub(crate) fn in_package(self) -> LengthUnit {
+        IN_PACKAGES.iter().find(|pair| pair.0 == self).map_or(LengthUnit::Millimeter, |pair| pair.1)
+    }
+
+    /// How many of another unit it is.
+    pub(crate) fn in_others(self, other: Self) -> f64 {
+        self.micrometres() / other.micrometres()
     }
 
     fn micrometres(self) -> f64 {
@@ -84,7 +89,7 @@ impl Length {
             (Some(own), Some(mesh)) if own == mesh => Ok(self.value),
             (Some(own), Some(mesh)) => Ok(self.value * own.micrometres() / mesh.micrometres()),
             (Some(own), None) => usage(format!(
-                "{}{name}: mesh files do not say what their numbers are measured in; with --unit {name} they are {name}",
+                "{}{name}: the file does not say what its numbers are measured in; --unit does, such as --unit {name} if they are {name}",
                 self.value,
                 name = own.name()
             )),

@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::values;
 use super::{
     AssetArguments, BuildArguments, ChannelArguments, ExactArguments, FeatureArguments, FileFormat,
-    InterpolationArguments, RefiningScheme, Seam, Unit,
+    InterpolationArguments, RefiningScheme, Seam,
 };
 use crate::failure::{UsageError, usage};
 use crate::output::is_standard_output;
@@ -297,6 +297,6 @@ impl RefineArguments {
 
     /// How the output is written.
     pub(crate) fn write_options(&self) -> WriteOptions {
-        WriteOptions::default().ascii(self.ascii).unit(Unit::in_package(self.build.unit))
+        WriteOptions::default().ascii(self.ascii)
     }
 }

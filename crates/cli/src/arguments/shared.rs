@@ -112,7 +112,9 @@ pub(crate) struct BuildArguments {
     #[arg(long, value_name = "DIST", value_parser = values::weld, allow_hyphen_values = true)]
     weld: Option<WeldDistance>,
 
-    /// What the mesh's numbers are measured in, for lengths that have a unit, such as 0.05mm; 3MF packages say it, also those that are written
+    /// What the mesh's numbers are measured in, for lengths that have a unit, such as 0.05mm [default: what a 3MF package says; m for glTF]
+    ///
+    /// 3MF packages that are written say it, and glTF documents, which are in metres, scale to it.
     #[arg(long, value_enum)]
     pub(crate) unit: Option<Unit>,
 
@@ -126,6 +128,11 @@ pub(crate) struct BuildArguments {
 }
 
 impl BuildArguments {
+    /// For a file whose unit is known, or not.
+    pub(crate) fn in_unit(self, unit: Option<Unit>) -> Self {
+        Self { unit, ..self }
+    }
+
     /// The library's options.
     ///
     /// # Errors

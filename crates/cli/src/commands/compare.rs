@@ -26,6 +26,8 @@ use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport, percent};
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     let input = input::load(&arguments.input, &arguments.limit.build, progress)?;
+    let limit = arguments.limit.in_unit(input.unit);
+    let arguments = &CompareArguments { limit, ..arguments.clone() };
     let diagonal = input.mesh.diagonal();
     let (control, _) = limit_control::prepared(input, &arguments.limit, progress)?;
     let scheme = arguments.limit.scheme().scheme();

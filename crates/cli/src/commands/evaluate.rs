@@ -23,8 +23,8 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
     input::check_once(core::iter::once(&arguments.control).chain(files))?;
     let places: Vec<Place> = arguments.at.iter().map(places).collect::<anyhow::Result<Vec<_>>>()?.concat();
     let input = input::load(&arguments.control, &arguments.limit.build, progress)?;
-    let name = input.name.clone();
-    let (mesh, faces) = limit_control::prepared(input, &arguments.limit, progress)?;
+    let (name, limit) = (input.name.clone(), arguments.limit.in_unit(input.unit));
+    let (mesh, faces) = limit_control::prepared(input, &limit, progress)?;
     if !faces.iter().zip(0..).all(|(&face, own)| face == own) {
         let count = counted(mesh.face_count(), "triangle", "triangles");
         progress.note(format!(

@@ -31,9 +31,9 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
     if let (Some(option), false) = (arguments.features.given(), arguments.limit) {
         return usage(format!("{option} belongs to a limit surface; it needs --limit"));
     }
-    let input::Soup { name, format, soup, asset, package, .. } =
+    let input::Soup { name, format, soup, asset, package, unit, .. } =
         input::read(&arguments.input, &arguments.build, progress)?;
-    let options = arguments.build.options()?;
+    let options = arguments.build.in_unit(unit).options()?;
     let mut corners = BTreeMap::<usize, usize>::new();
     for face in soup.faces.iter() {
         *corners.entry(face.len()).or_default() += 1;
@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
     progress.stage(format!("connecting {}", counted(input.faces, "face", "faces")));
     let (mesh, diagnosis) =
         Mesh::from_soup(&soup, &options).map_err(|error| input::describe(&name, error))?;
-    if let Some(near) = input::nearly_closed(&soup, &mesh, &options) {
+    if let Some(near) = input::nearly_closed(&mesh, options.weld, input::welded(&soup)) {
         progress.note(format!("{name}: {near}"));
     }
     drop(soup);

@@ -3,16 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use limitmesh::Mesh;
 use limitmesh::mesh::SplitSurface;
 use limitmesh::refine::{ExactStop, Level, LodOptions, levels_of_detail_observed, switching_distance};
+use limitmesh::{Mesh, Triangles};
 use limitmesh_io::gltf::{DetailLevel, write_levels};
 use limitmesh_io::{Asset, Format, Output, Property, WriteOptions};
 
 use super::channels::{Channels, Destination};
 use super::interpolation;
 use super::normals::Normals;
-use crate::arguments::{Extent, Featured, LodArguments, MOST_EXACT, Unit};
+use crate::arguments::{Extent, Featured, LodArguments, MOST_EXACT};
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, table, thousands, upper_bound};
 use crate::input::{self, Input};
@@ -21,6 +21,7 @@ use crate::output;
 use crate::progress::Progress;
 use crate::report::refinement::exact_stop_name;
 use crate::report::{InputReport, LevelReport, LodReport, MorphReport, PictureReport, VERSION};
+use crate::written_unit::WrittenUnit;
 
 /// What holds where nothing is said.
 const USUAL_LEVELS: usize = 4;
@@ -73,6 +74,9 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     let kept = [Normals::kept(Some(format)), if format.is_gltf() { &[MATERIALS] } else { &[] }].concat();
     let input = input::load_for(&arguments.input, &arguments.build, (&kept, &arguments.channels), progress)?;
     let input = input.with_creases(arguments.features.creases_from)?;
+    let arguments = &LodArguments { build: arguments.build.in_unit(input.unit), ..arguments.clone() };
+    let unit = WrittenUnit::of(&arguments.input, &arguments.build, format);
+    unit.note(&arguments.output.display().to_string(), progress);
     let diagonal = input.mesh.diagonal();
     let told = InputReport::of(&input, &arguments.channels);
     let Input { mesh, channels, material_libraries, texture_files, asset, .. } = input;
@@ -107,7 +111,7 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     }
     let reports = reports(&levels, &mesh, arguments, format);
     progress.stage(format!("writing {}", arguments.output.display()));
-    write(arguments, format, &written, &reports, asset.as_ref())?;
+    write(arguments, (format, &unit), &written, &reports, asset.as_ref())?;
     progress.clear();
     progress.note(in_words(&reports, arguments));
     let certified = levels.iter().all(|level| level.exact.error.certified);
@@ -270,11 +274,12 @@ fn path(output: &Path, format: Format, lod: usize) -> PathBuf {
 
 fn write(
     arguments: &LodArguments,
-    format: Format,
+    (format, unit): (Format, &WrittenUnit<'_>),
     levels: &[Written],
     reports: &[LevelReport],
     asset: Option<&Asset>,
 ) -> anyhow::Result<()> {
+    let options = unit.options(WriteOptions::default().ascii(arguments.ascii));
     if format.is_gltf() {
         let levels: Vec<DetailLevel<'_>> = levels
             .iter()
@@ -289,7 +294,7 @@ fn write(
             .collect();
         let name = arguments.output.file_stem().unwrap_or_default().to_string_lossy();
         return interrupt::whole_or_not(&arguments.output, || {
-            write_levels(&arguments.output, format, (&name, &levels), asset)
+            write_levels(&arguments.output, format, (&name, &levels), asset, options.unit)
         })
         .context("levels of detail");
     }
@@ -303,9 +308,9 @@ fn write(
             Some(_) => names.iter().zip(&coarse).map(|(name, own)| Property::numbers(name, own)).collect(),
             None => Vec::new(),
         };
-        let options =
-            WriteOptions::default().ascii(arguments.ascii).unit(Unit::in_package(arguments.build.unit));
         let written = level.output().vertex_properties(&properties);
+        let positions = unit.positions(written.surface.positions);
+        let written = Output { surface: Triangles { positions: &positions, ..written.surface }, ..written };
         output::write_mesh(&path(&arguments.output, format, lod), format, &written, &options)?;
     }
     Ok(())

@@ -24,8 +24,13 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
     check(arguments)?;
     let start = Instant::now();
     let surface = input::load(&arguments.surface, &arguments.limit.build, progress)?;
+    let second = arguments.limit_of.as_deref().or(arguments.reference.as_deref()).unwrap_or(Path::new(""));
+    let second = input::load(second, &arguments.limit.build, progress)?;
+    let limit = arguments.limit.in_unit(second.unit);
+    let arguments = &MeasureArguments { limit, ..arguments.clone() };
+    let surface = surface.in_unit(second.unit, progress)?;
+    let (control, reference_report, whole) = reference(second, arguments, progress)?;
     let a = surface.mesh.as_triangles();
-    let (control, reference_report, whole) = load_reference(arguments, progress)?;
     let prepare = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
@@ -121,19 +126,16 @@ fn against_limit(
 
 /// The second surface: a mesh as it is, or one that stands for a limit surface; the control mesh itself, where the
 /// distance to its limit surface is to be certified. And what lengths are given in per cent of.
-fn load_reference(
+fn reference(
+    input: Input,
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, SurfaceReport, Whole)> {
-    let build = &arguments.limit.build;
-    let Some(control) = &arguments.limit_of else {
-        let name = arguments.reference.as_deref().unwrap_or(Path::new(""));
-        let input = input::load(name, build, progress)?;
+    if arguments.limit_of.is_none() {
         let report = describe(&input, Some(Bulk::of(&input.mesh)));
         let whole = Whole { diagonal: input.mesh.diagonal(), of: "second mesh" };
         return Ok((input.mesh, report, whole));
-    };
-    let input = input::load(control, build, progress)?;
+    }
     let scheme = arguments.limit.scheme();
     let report = describe(&input, None);
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };

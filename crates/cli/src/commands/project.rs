@@ -29,6 +29,9 @@ pub(crate) fn run(arguments: &ProjectArguments, progress: &Progress) -> anyhow::
     let start = Instant::now();
     let points = points::read(&arguments.points, &arguments.limit.build, progress)?;
     let control = input::load(&arguments.onto, &arguments.limit.build, progress)?;
+    let limit = arguments.limit.in_unit(control.unit);
+    let arguments = &ProjectArguments { limit, ..arguments.clone() };
+    let points = points.in_unit(control.unit, progress);
     let (name, diagonal) = (control.name.clone(), control.mesh.diagonal());
     let scheme = arguments.limit.scheme();
     let (mesh, _) = limit_control::prepared(control, &arguments.limit, progress)?;

@@ -240,7 +240,6 @@ fn what_has_no_meaning_for_a_scene_is_refused() {
     };
     refused("--camera 0,0,5,0,0,0,0,1,0,45,100x100", "stand in a scene");
     refused("--angle 5 --view 0,0,1", "stand in a scene");
-    refused("--weld 0.1", "--weld can be 0 or none");
     refused("--provenance", "PLY");
     assert!(!output.exists());
     let broken = file(&folder, "broken.gltf", r#"{"asset":{"version":"2.0"},"nodes":[{"children":[0]}]}"#);

@@ -176,6 +176,11 @@ pub(crate) struct Counts {
     pub(crate) euler_characteristic: i64,
 }
 
+/// A small file that is kept beside the tests.
+pub(crate) fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
+
 /// Reads a mesh back.
 #[track_caller]
 pub(crate) fn soup(path: &Path) -> PolygonSoup {

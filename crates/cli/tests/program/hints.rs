@@ -137,8 +137,8 @@ fn normals_of_assets_say_so() {
         let report = run(&command, &[&input, &output]).expect(0).json();
         report["meshes"][0]["size"]["after"]["volume"].as_f64().expect("a number")
     };
-    // Meshes are refined at the scale of their largest appearance.
-    let whole = 8.0 * 27.0;
+    // As the scene shows it.
+    let whole = 8.0 * 1.5;
     assert!((refine("--creases-from normals") - whole).abs() < 1e-9);
     assert!(refine("") < 0.7 * whole);
     run("refine {} -o {}", &[&input, &output])

@@ -1,9 +1,12 @@
 //! The program as its users meet it: commands, files, exit codes, the JSON contract.
 
 mod asset;
+mod asset_cards;
 mod asset_choice;
 mod asset_morphs;
+mod asset_seams;
 mod asset_skins;
+mod asset_slits;
 mod asset_tangents;
 mod batch;
 mod channel_goals;
@@ -36,5 +39,6 @@ mod shared_models;
 mod size;
 mod sqrt3;
 mod streams;
+mod units;
 mod usage;
 mod writing;

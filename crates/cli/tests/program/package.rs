@@ -48,10 +48,10 @@ fn cube(folder: &TempDir, name: &str, of_side: &dyn Fn(usize) -> String, more: &
 const ITEM: &str = "<item objectid=\"1\"/>";
 
 /// A triangle of a package's first object: its corners' positions, and the text of its tag.
-type Triangle = ([[f64; 3]; 3], String);
+pub(crate) type Triangle = ([[f64; 3]; 3], String);
 
 /// The triangles of a package, read tag by tag.
-fn triangles(path: &Path) -> Vec<Triangle> {
+pub(crate) fn triangles(path: &Path) -> Vec<Triangle> {
     let bytes = std::fs::read(path).expect("a file");
     let mut archive = ZipArchive::new(Cursor::new(bytes)).expect("an archive");
     let mut text = String::new();

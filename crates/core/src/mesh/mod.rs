@@ -5,6 +5,7 @@
 
 mod build;
 mod channel;
+mod collinear;
 mod concave;
 mod diagnosis;
 mod face_parts;
@@ -20,8 +21,9 @@ mod topology;
 
 pub(crate) use crate::geometry::NONE;
 pub use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule};
-pub use build::{BuildOptions, Weld};
+pub use build::{BuildOptions, Weld, weld_within};
 pub use channel::{Channel, ChannelError, Domain, Interpolation, SeamRule, Semantic, Storage, Trace};
+pub use collinear::are_on_one_line;
 pub use concave::ConcaveCorners;
 pub use diagnosis::{Diagnosis, Finding};
 pub use face_parts::FaceParts;

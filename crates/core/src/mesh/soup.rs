@@ -81,6 +81,9 @@ pub struct PolygonSoup {
     pub positions: Vec<[f64; 3]>,
     /// Polygons over `positions`.
     pub faces: PolygonFaces,
+    /// Faces that count though they have no area, in ascending order: where something moves the vertices apart, such as a morph
+    /// target or a joint, they have one.
+    pub opening: Vec<u32>,
     /// Sharp edges.
     pub creases: Vec<CreaseTag>,
     /// Sharp vertices.

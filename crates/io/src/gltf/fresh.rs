@@ -15,6 +15,7 @@ use super::{Asset, Geometry, GltfFlaw, VertexAttribute};
 use crate::channels::MATERIAL;
 use crate::error::WriteError;
 use crate::format::Format;
+use crate::threemf::LengthUnit;
 use crate::write::{Output, WriteOptions};
 
 /// Writes triangles with their normals and channels to a file, or to one byte vector without a path.
@@ -22,10 +23,11 @@ pub(crate) fn write_fresh(
     path: Option<&Path>,
     format: Format,
     output: &Output<'_>,
+    options: &WriteOptions,
 ) -> Result<Vec<u8>, WriteError> {
     let flawed = |flaw| WriteError::Gltf { flaw };
     let groups = Groups::of(output);
-    let source = Source::parse(groups.document().to_string().as_bytes(), None).map_err(flawed)?;
+    let source = Source::parse(groups.document(options.unit).to_string().as_bytes(), None).map_err(flawed)?;
     let scene = source.scene().map_err(flawed)?;
     let mut asset = Asset { path: None, source, scene, changes: Changes::default() };
     fill(&mut asset, 0, &groups, output, None).map_err(flawed)?;
@@ -80,6 +82,13 @@ pub(super) fn empty() -> Value {
     json!({"asset": {"version": "2.0", "generator": generator}})
 }
 
+/// Makes metres of what a node shows, whose numbers are measured in a unit.
+pub(super) fn scale_to_metres(node: &mut Value, unit: Option<LengthUnit>) {
+    if let Some(metres) = unit.map(LengthUnit::metres).filter(|&metres| metres != 1.0) {
+        node["scale"] = json!([metres, metres, metres]);
+    }
+}
+
 /// Triangles by material, in the order in which materials are met.
 pub(super) struct Groups {
     /// Empty for triangles without one.
@@ -118,7 +127,7 @@ impl Groups {
     }
 
     /// What geometry is put into.
-    fn document(&self) -> Value {
+    fn document(&self, unit: Option<LengthUnit>) -> Value {
         let mut document = empty();
         if self.triangles.is_empty() {
             return document;
@@ -136,6 +145,7 @@ impl Groups {
         document["scene"] = 0.into();
         document["scenes"] = json!([{"nodes": [0]}]);
         document["nodes"] = json!([{"mesh": 0}]);
+        scale_to_metres(&mut document["nodes"][0], unit);
         document["meshes"] = json!([{ "primitives": primitives }]);
         if !materials.is_empty() {
             document["materials"] = materials.into();

@@ -12,11 +12,12 @@ use super::Asset;
 use super::changes::Changes;
 use super::edit::{Members, items_of, quoted};
 use super::flaw::Result;
-use super::fresh::{Groups, empty, fill};
+use super::fresh::{Groups, empty, fill, scale_to_metres};
 use super::gone::Gone;
 use super::source::Source;
 use crate::error::WriteError;
 use crate::format::Format;
+use crate::threemf::LengthUnit;
 use crate::write::{Output, WriteOptions, check};
 
 /// A level of detail.
@@ -67,7 +68,7 @@ impl<'a> DetailLevel<'a> {
 
 /// Writes levels of detail, the finest first, as one document, whose nodes and meshes are called `name` with `_LOD0` and so on. With the
 /// asset that the levels were made of, its materials, textures and images come along, and the bytes that something may name; not its nodes,
-/// skins, animations and cameras, nor extensions that name them.
+/// skins, animations and cameras, nor extensions that name them. Where the unit of the numbers is known, nodes scale them to metres.
 ///
 /// # Errors
 /// The levels do not fit together, or have numbers that 32-bit floats cannot hold; or the system refuses.
@@ -76,11 +77,12 @@ pub fn write_levels(
     format: Format,
     (name, levels): (&str, &[DetailLevel<'_>]),
     of: Option<&Asset>,
+    unit: Option<LengthUnit>,
 ) -> core::result::Result<(), WriteError> {
     let flawed = |flaw| WriteError::Gltf { flaw };
     levels.iter().try_for_each(|level| level.check(format))?;
     let groups: Vec<Groups> = levels.iter().map(|level| Groups::of(&level.output)).collect();
-    let mut asset = document((name, levels), &groups, of).map_err(flawed)?;
+    let mut asset = document((name, levels), &groups, of, unit).map_err(flawed)?;
     for (mesh, (level, groups)) in levels.iter().zip(&groups).enumerate() {
         fill(&mut asset, mesh, groups, &level.output, level.coarser).map_err(flawed)?;
     }
@@ -92,6 +94,7 @@ fn document(
     (name, levels): (&str, &[DetailLevel<'_>]),
     groups: &[Groups],
     of: Option<&Asset>,
+    unit: Option<LengthUnit>,
 ) -> Result<Asset> {
     let known = of.map_or_else(|| Ok(Vec::new()), |asset| asset.source.root().list("materials"))?.len();
     let mut materials: Vec<&str> = Vec::new();
@@ -122,7 +125,11 @@ fn document(
         }
         meshes.push(mesh);
     }
-    let named = |i: usize| json!({"name": format!("{name}_LOD{i}"), "mesh": i});
+    let named = |i: usize| {
+        let mut node = json!({"name": format!("{name}_LOD{i}"), "mesh": i});
+        scale_to_metres(&mut node, unit);
+        node
+    };
     let mut nodes: Vec<Value> = (0..levels.len()).map(named).collect();
     if levels.len() > 1 {
         let coverage: Vec<f64> = levels.iter().map(|level| level.least_coverage).collect();

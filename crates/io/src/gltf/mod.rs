@@ -18,6 +18,7 @@
 
 mod accessor;
 mod attributes;
+mod backs;
 mod changes;
 mod codecs;
 mod container;
@@ -32,6 +33,7 @@ mod kinds;
 mod levels;
 mod materials;
 mod parts;
+mod poses;
 mod primitive;
 mod rest;
 mod scene;
@@ -169,6 +171,11 @@ impl Asset {
         self.scene.stretch(mesh)
     }
 
+    /// What the scene does to vectors of a mesh where it shows it largest, by rows: x' = row · x.
+    pub fn largest(&self, mesh: usize) -> [[f64; 3]; 3] {
+        self.scene.largest(mesh)
+    }
+
     /// The triangles of a mesh, its primitives joined into one soup; none where it has only points and lines.
     ///
     /// # Errors
@@ -223,7 +230,7 @@ impl Asset {
                     .filter(|found| !found.triangles.is_empty()),
             );
         }
-        Ok(parts::join(&primitives, joining, is_wanted))
+        parts::join(primitives, joining, is_wanted)
     }
 
     /// The corners of the box around everything that the scene shows; `None` if it shows no triangles.

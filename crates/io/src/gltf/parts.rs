@@ -6,7 +6,10 @@
 //! touch they are not.
 
 use super::attributes::{self, CornerAttribute};
+use super::backs::Backs;
+use super::flaw::Result as Flawed;
 use super::kinds::Kinds;
+use super::poses::Poses;
 use super::primitive::Primitive;
 use limitmesh::PolygonSoup;
 use limitmesh::mesh::{Channel, CornerTag};
@@ -15,19 +18,21 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 /// Which vertices of a mesh become one.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Joining {
     /// Those that stand and move together: position, displacements of all morph targets, and joints with weights above 0 are the same.
     #[default]
     Together,
-    /// Those that stand together, even if skins or morph targets move them apart: as many are left, and the first of those
-    /// that become one says how it moves.
+    /// Those that stand and move together but for what this says: the first of those that become one says where it stands and how it moves.
     Ignoring {
-        /// What skins do.
+        /// What skins do to them.
         skins: bool,
-        /// What morph targets do.
+        /// What morph targets do to them.
         morphs: bool,
+        /// Differences of positions and of displacements up to this distance, in the mesh's coordinates and along chains, and of weights up to
+        /// its share of the mesh's diagonal; 0 for none.
+        distance: f64,
     },
     /// None: the indices alone connect triangles.
     Never,
@@ -47,7 +52,7 @@ pub struct Part {
     pub targets: Vec<Vec<String>>,
 }
 
-/// Vertices at one place that were not made one.
+/// What was not made one, though it is at one place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct KeptApart {
@@ -59,6 +64,8 @@ pub struct KeptApart {
     pub by_morphs: usize,
     /// Because they belong to primitives with no edge in common there.
     pub touching: usize,
+    /// Triangles that are the back of others, with vertices of their own.
+    pub backs: usize,
 }
 
 /// The triangles of a mesh.
@@ -94,14 +101,24 @@ impl MeshSoup {
 type Local = (usize, u32);
 
 /// The primitives that `is_wanted` by their numbers; the others are looked at for what they share with these.
+///
+/// # Errors
+/// As for [`Kinds::of`].
 pub(super) fn join(
-    primitives: &[Primitive],
+    mut primitives: Vec<Primitive>,
     joining: Joining,
     is_wanted: impl Fn(usize) -> bool,
-) -> MeshSoup {
-    let kinds = Kinds::of(primitives, joining);
+) -> Flawed<MeshSoup> {
+    let mut kinds = Kinds::of(&primitives, joining)?;
+    let backs = Backs::of(&primitives, &kinds.all);
+    if !backs.is_empty() {
+        let sides = backs.split(&mut primitives);
+        kinds = Kinds::of(&primitives, joining)?;
+        kinds.tell_apart(&sides);
+    }
+    let primitives = &primitives[..];
     let names: Vec<Names> =
-        primitives.iter().zip(kinds.all()).map(|(primitive, kinds)| Names::of(primitive, kinds)).collect();
+        primitives.iter().zip(&kinds.all).map(|(primitive, kinds)| Names::of(primitive, kinds)).collect();
     let mut first = Vec::with_capacity(names.len());
     let mut count = 0;
     for names in &names {
@@ -113,7 +130,7 @@ pub(super) fn join(
     let is_wanted: Vec<bool> = primitives.iter().map(|primitive| is_wanted(primitive.index)).collect();
     let mut ends = Vec::new();
     if joining != Joining::Never && names.len() > 1 {
-        for (a, b) in shared_edges(primitives, &names, kinds.all()) {
+        for (a, b) in shared_edges(primitives, &names, &kinds.all) {
             unite(&mut roots, number(a), number(b));
             if is_wanted[a.0] != is_wanted[b.0] {
                 ends.push(number(a));
@@ -123,6 +140,7 @@ pub(super) fn join(
     // Two ends an edge.
     let mut result = MeshSoup { borders: ends.len() / 2, ..MeshSoup::default() };
     let mut numbers = vec![u32::MAX; count];
+    let poses = Poses::new(primitives);
     let is_skinned = primitives.iter().any(|primitive| !primitive.influences.is_empty());
     for (part, (primitive, names)) in primitives.iter().zip(&names).enumerate() {
         if !is_wanted[part] {
@@ -140,7 +158,10 @@ pub(super) fn join(
             }
         }
         let start = result.soup.faces.len();
-        for triangle in &primitive.triangles {
+        for &triangle in &primitive.triangles {
+            if poses.opens(part, triangle) {
+                result.soup.opening.push(result.soup.faces.len() as u32);
+            }
             let corners = triangle.map(|v| {
                 let local = (part, names.of_vertex[v as usize]);
                 numbers[root(&mut roots, number(local))]
@@ -167,7 +188,8 @@ pub(super) fn join(
     if joining != Joining::Never {
         result.kept_apart = kept_apart(&names, &kinds, &wanted, result.soup.positions.len());
     }
-    result
+    result.kept_apart.backs = wanted.iter().map(|&part| backs.count(part)).sum();
+    Ok(result)
 }
 
 /// The vertices of a primitive that differ.

@@ -49,6 +49,28 @@ pub(super) struct Target {
     pub(super) names: Vec<String>,
 }
 
+impl Primitive {
+    /// Adds a vertex that is as another, and gives its number.
+    pub(super) fn repeat_vertex(&mut self, v: u32) -> u32 {
+        let (own, new) = (v as usize, self.positions.len() as u32);
+        self.positions.push(self.positions[own]);
+        for target in self.targets.iter_mut().filter(|target| !target.displacements.is_empty()) {
+            target.displacements.push(target.displacements[own]);
+        }
+        if !self.influences.is_empty() {
+            self.influences.push(self.influences[own].clone());
+        }
+        if !self.normals.is_empty() {
+            self.normals.push(self.normals[own]);
+        }
+        for (_, numbers) in &mut self.attributes {
+            let start = own * numbers.components;
+            numbers.values.extend_from_within(start..start + numbers.components);
+        }
+        new
+    }
+}
+
 /// What a primitive is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Mode {

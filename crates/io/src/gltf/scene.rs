@@ -90,6 +90,25 @@ impl Scene {
         if most > 0.0 && most.is_finite() { most } else { 1.0 }
     }
 
+    /// What the placement by which a mesh is largest does to vectors, by rows. A skin does what all its joints do, or else it makes all
+    /// vectors as long as the worst of them.
+    pub(super) fn largest(&self, mesh: usize) -> [[f64; 3]; 3] {
+        let all = self.placements.get(mesh).into_iter().flatten().map(|(placement, _)| placement);
+        let largest = all.reduce(|most, own| if own.stretch() > most.stretch() { own } else { most });
+        let evenly = |stretch: f64| {
+            std::array::from_fn(|i| std::array::from_fn(|j| if i == j { stretch } else { 0.0 }))
+        };
+        match largest {
+            None => evenly(1.0),
+            Some(Placement::Rigid(m)) => affine::linear(m),
+            Some(skin @ Placement::Skinned(joints)) => {
+                let is_one =
+                    joints.windows(2).all(|pair| affine::linear(&pair[0]) == affine::linear(&pair[1]));
+                joints.first().filter(|_| is_one).map_or_else(|| evenly(skin.stretch()), affine::linear)
+            }
+        }
+    }
+
     /// How the scene that is shown has a mesh; once as it is if the document has no nodes.
     pub(super) fn shown(&self, mesh: usize) -> impl Iterator<Item = &Placement> {
         let all = self.placements.get(mesh).into_iter().flatten();

@@ -212,6 +212,11 @@ impl Package {
         if most > 0.0 && most.is_finite() { most } else { 1.0 }
     }
 
+    /// What the build does to vectors of an object where it is largest, by rows: x' = row · x.
+    pub fn largest(&self, object: usize) -> [[f64; 3]; 3] {
+        affine::linear(affine::largest(self.placements.get(object).into_iter().flatten()))
+    }
+
     fn mesh(&self, object: usize) -> Option<(&Model, &model::Object, &MeshText)> {
         let &(model, own) = self.objects.get(object)?;
         let found = &self.models[model].objects[own];

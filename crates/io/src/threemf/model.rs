@@ -45,6 +45,18 @@ impl LengthUnit {
     pub(super) fn name(self) -> &'static str {
         UNITS.iter().find(|(_, unit)| *unit == self).map_or("millimeter", |(name, _)| name)
     }
+
+    /// Its length in metres.
+    pub fn metres(self) -> f64 {
+        match self {
+            Self::Micron => 1e-6,
+            Self::Millimeter => 1e-3,
+            Self::Centimeter => 1e-2,
+            Self::Inch => 0.0254,
+            Self::Foot => 0.3048,
+            Self::Meter => 1.0,
+        }
+    }
 }
 
 /// A model part of a package.

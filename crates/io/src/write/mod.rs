@@ -156,8 +156,9 @@ impl Output<'_> {
 pub struct WriteOptions {
     /// Text where the format has a binary form as well (PLY, STL). Default: binary there.
     pub ascii: bool,
-    /// What the numbers are measured in. 3MF says so. Default: millimetres.
-    pub unit: LengthUnit,
+    /// What the numbers are measured in, where that is known. 3MF says so, and that they are millimetres where it is not known. In glTF, whose
+    /// unit is the metre, the node of the mesh scales them; where it is not known they are as they are.
+    pub unit: Option<LengthUnit>,
 }
 
 impl WriteOptions {
@@ -169,7 +170,7 @@ impl WriteOptions {
 
     /// Sets [`Self::unit`].
     pub fn unit(mut self, unit: LengthUnit) -> Self {
-        self.unit = unit;
+        self.unit = Some(unit);
         self
     }
 }
@@ -224,7 +225,7 @@ pub fn write_as(
 ) -> Result<(), WriteError> {
     check(output, format, options)?;
     if matches!(format, Format::Gltf | Format::Glb) {
-        return gltf::write_fresh(Some(path), format, output).map(drop);
+        return gltf::write_fresh(Some(path), format, output, options).map(drop);
     }
     whole::write_whole_with(path, |writer| write_checked(writer, format, output, options))
 }
@@ -261,10 +262,13 @@ fn write_checked(
         Format::Stl => stl::write(writer, output, options.ascii)?,
         Format::Off => off::write(writer, output)?,
         Format::Gltf | Format::Glb => {
-            whole::write_in_pieces(writer, &gltf::write_fresh(None, format, output)?)?;
+            whole::write_in_pieces(writer, &gltf::write_fresh(None, format, output, options)?)?;
         }
         Format::ThreeMf => {
-            whole::write_in_pieces(writer, &threemf::write_fresh(output.surface, options.unit)?)?;
+            whole::write_in_pieces(
+                writer,
+                &threemf::write_fresh(output.surface, options.unit.unwrap_or_default())?,
+            )?;
         }
     }
     Ok(writer.flush()?)

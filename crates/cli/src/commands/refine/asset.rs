@@ -11,7 +11,7 @@ use limitmesh::Mesh;
 use limitmesh::carry::borders;
 use limitmesh::mesh::{BuildOptions, Channel, Domain, MeshError, Semantic, Trace, Weld};
 use limitmesh_io::gltf::{CornerAttribute, KeptApart, MeshSoup};
-use limitmesh_io::{Asset, Format};
+use limitmesh_io::{Asset, Format, ReadError};
 
 use super::super::channels::Channels;
 use super::attribute_goals::AttributeGoals;
@@ -23,11 +23,12 @@ use super::selection::Selection;
 use super::several::{self, Progressed};
 use super::{estimate, split_normals};
 use crate::arguments::{
-    ConcaveCorners, CreasesFrom, Featured, MorphTolerance, RefineArguments, RelativeTo, Way,
+    ConcaveCorners, CreasesFrom, Featured, MorphTolerance, RefineArguments, RelativeTo, Unit, Way,
 };
+use crate::bulk::Shown;
 use crate::creases::Hints;
 use crate::failure::{Outcome, usage};
-use crate::format::counted;
+use crate::format::{counted, thousands};
 use crate::input;
 use crate::output;
 use crate::progress::Progress;
@@ -69,7 +70,8 @@ impl Job {
                 None => Ok(None),
             };
         };
-        let job = Self { arguments: arguments.clone(), input, output };
+        let build = arguments.build.in_unit(Some(arguments.build.unit.unwrap_or(Unit::M)));
+        let job = Self { arguments: RefineArguments { build, ..arguments.clone() }, input, output };
         job.check()?;
         Ok(Some(job))
     }
@@ -82,11 +84,7 @@ impl Job {
                 "cameras and views look at one mesh; the meshes of an asset stand in a scene, perhaps many times",
             );
         }
-        if matches!(build.options()?.weld, Weld::Within(_)) {
-            return usage(
-                "the vertices of an asset become one where they stand and move together; --weld can be 0 or none",
-            );
-        }
+        build.options()?;
         Ok(())
     }
 
@@ -147,14 +145,19 @@ impl Job {
         progress: &Progress,
     ) -> anyhow::Result<()> {
         let arguments = &self.arguments;
-        let joining = arguments.asset.joining(arguments.build.options()?.weld);
-        let mut own = asset.mesh_of(mesh, joining, |primitive| selection.has(mesh, primitive))?;
+        let stretch = asset.stretch(mesh);
+        let as_shown = |weld: Weld| -> Result<MeshSoup, ReadError> {
+            let joining = arguments.asset.joining(weld, stretch);
+            let mut own = asset.mesh_of(mesh, joining, |primitive| selection.has(mesh, primitive))?;
+            own.soup.positions.iter_mut().flatten().for_each(|x| *x *= stretch);
+            Ok(own)
+        };
+        let weld = arguments.build.options()?.weld;
+        let mut own = as_shown(weld)?;
         if own.parts.is_empty() {
             return Ok(());
         }
         let name = asset.mesh_name(mesh);
-        let stretch = asset.stretch(mesh);
-        own.soup.positions.iter_mut().flatten().for_each(|x| *x *= stretch);
         // By glTF's rules the way round says which side is drawn.
         let options =
             BuildOptions::default().weld(Weld::Never).strict(arguments.build.strict).keep_windings(true);
@@ -166,6 +169,12 @@ impl Job {
             built => built.map_err(|error| input::describe(&name, error))?,
         };
         self.notes(&name, &own, &built.1, progress);
+        let near = input::nearly_closed(&built.0, weld, |weld| {
+            Some(Mesh::from_soup(&as_shown(weld).ok()?.soup, &options).ok()?.0)
+        });
+        if let Some(near) = near {
+            progress.note(format!("{name}: {near}"));
+        }
         let (built, diagnosis, trace) = built;
         let built = self.sharpened(&name, &own, (built, &trace), progress)?;
         own.soup.channels = own.attributes.iter().map(channel).collect();
@@ -175,7 +184,8 @@ impl Job {
         let channels = narrow.map(on_mesh).collect::<Result<_, _>>()?;
         let vertices = trace.vertices(&own.soup);
         let arguments = self.of_mesh(&own, done);
-        let control = Control::new((built, diagnosis, trace.faces), diagonal, &arguments, progress)?;
+        let shown = Shown::of(asset.largest(mesh), stretch);
+        let control = Control::new((built, diagnosis, trace.faces), shown, diagonal, &arguments, progress)?;
         let mut channels = Channels::of_asset(channels, &arguments);
         channels.on_parts(&control.featured.concave.parts, &control.featured.mesh);
         let kept = kept_edges(&own, &control, &channels);
@@ -243,7 +253,13 @@ impl Job {
             progress
                 .note(format!("{name}: {edges} where primitives meet others that stay are kept straight"));
         }
-        let KeptApart { moving, by_skins, by_morphs, touching, .. } = own.kept_apart;
+        let KeptApart { moving, by_skins, by_morphs, touching, backs, .. } = own.kept_apart;
+        if backs > 0 {
+            let are =
+                if backs == 1 { "face is the back of another" } else { "faces are the backs of others" };
+            progress
+                .note(format!("{name}: {} {are}: both sides are kept, each as if alone", thousands(backs)));
+        }
         let vertices = |count| counted(count, "vertex", "vertices");
         if moving > 0 {
             let vertices = vertices(moving);

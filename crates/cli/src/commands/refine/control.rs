@@ -4,7 +4,7 @@ use limitmesh::Mesh;
 
 use super::interpolation;
 use crate::arguments::{Featured, RefineArguments, Way};
-use crate::bulk::Bulk;
+use crate::bulk::{Bulk, Shown};
 use crate::format::counted;
 use crate::progress::Progress;
 use crate::report::InterpolationReport;
@@ -16,6 +16,8 @@ pub(super) struct Control {
     pub(super) diagnosis: Diagnosis,
     /// The mesh that was read.
     pub(super) before: Before,
+    /// How it is shown, and its area and volume then.
+    pub(super) shown: Shown,
     pub(super) bulk: Bulk,
     pub(super) interpolation: Option<InterpolationReport>,
     /// What lengths are given in per cent of.
@@ -45,11 +47,12 @@ impl Control {
     /// There is no control mesh that interpolates as asked.
     pub(super) fn new(
         (mesh, mut diagnosis, faces): (Mesh, Diagnosis, Vec<u32>),
+        shown: Shown,
         diagonal: Option<f64>,
         arguments: &RefineArguments,
         progress: &Progress,
     ) -> anyhow::Result<Self> {
-        let bulk = Bulk::of(&mesh);
+        let bulk = Bulk::as_shown(&mesh, &shown);
         let is_compared = arguments.way() == Way::Exact && !arguments.exact.no_input_distance;
         let surface = is_compared.then(|| BeforeSurface {
             positions: mesh.positions().to_vec(),
@@ -72,7 +75,7 @@ impl Control {
         let featured = Featured { mesh, concave, along_needles };
         let before =
             Before { surface, faces, residual: interpolation.as_ref().map(|report| report.residual) };
-        Ok(Self { featured, diagnosis, before, bulk, interpolation, diagonal })
+        Ok(Self { featured, diagnosis, before, shown, bulk, interpolation, diagonal })
     }
 }
 

@@ -19,6 +19,7 @@ use super::exact;
 use super::goals::Goals;
 use super::{Refined, check, jobs, write};
 use crate::arguments::{RefineArguments, Way};
+use crate::bulk::Shown;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, seconds, upper_bound};
 use crate::input::{self, Input};
@@ -47,7 +48,8 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     let channels = Channels::of_input(channels, files, &Destination::of(&jobs[0], formats[0]), progress);
     let arguments_of_one = RefineArguments { exact: without_input_distance(arguments), ..jobs[0].clone() };
     let count = mesh.vertex_count();
-    let control = Control::new((mesh, diagnosis, trace.faces), None, &arguments_of_one, progress)?;
+    let control =
+        Control::new((mesh, diagnosis, trace.faces), Shown::default(), None, &arguments_of_one, progress)?;
     let (control, diagonal) = (control.featured.mesh, control.diagonal);
     if control.vertex_count() != count {
         return usage(format!(

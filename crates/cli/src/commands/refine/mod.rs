@@ -27,10 +27,10 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use limitmesh::Mesh;
 use limitmesh::criterion::{View, Viewpoint};
 use limitmesh::mesh::{Channel, Semantic, Tags};
 use limitmesh::refine::ExactStop;
+use limitmesh::{Mesh, Triangles};
 use limitmesh_io::{Format, Output};
 use limitmesh_render::Style;
 
@@ -38,7 +38,7 @@ use super::channels::{Channels, Destination};
 use super::normals::Normals;
 use super::{interpolation, picture};
 use crate::arguments::{CreasesFrom, RefineArguments, Unit};
-use crate::bulk::Bulk;
+use crate::bulk::{Bulk, Shown};
 use crate::creases::Hints;
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds, thousands};
@@ -49,6 +49,7 @@ use crate::report::{
     InputReport, MeshReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport,
     SizeReport, VERSION, ViewReport,
 };
+use crate::written_unit::WrittenUnit;
 use control::Control;
 use provenance::Provenance;
 use ways::Prepared;
@@ -110,6 +111,7 @@ fn refine(
     }
     let asked = (Normals::kept(format), &arguments.channels);
     let input = input::load_for(arguments.input(), &arguments.build, asked, progress)?;
+    let arguments = &RefineArguments { build: arguments.build.in_unit(input.unit), ..arguments.clone() };
     if let Some(note) = format.and_then(|format| lost_tags(input.mesh.tags(), format)) {
         progress.note(note);
     }
@@ -128,8 +130,8 @@ fn refine(
     let names = channels.all().iter().map(|own| (own.name.as_str(), texture(own)));
     arguments.channels.check_tolerances(&input_report.path, names)?;
     let Input { mesh, diagnosis, trace, reading, building, .. } = input;
-    let control = Control::new((mesh, diagnosis, trace.faces), None, arguments, progress)?;
-    let Control { featured: control, diagnosis, before: read, bulk: before, interpolation, diagonal } =
+    let control = Control::new((mesh, diagnosis, trace.faces), Shown::default(), None, arguments, progress)?;
+    let Control { featured: control, diagnosis, before: read, bulk: before, interpolation, diagonal, .. } =
         control;
     channels.on_parts(&control.concave.parts, &control.mesh);
     let way = Prepared::new(arguments, (&control.mesh, &channels), diagonal)?;
@@ -202,6 +204,7 @@ fn write_told(
         refined.channels.note(format, refined.mesh.as_triangles(), splits),
     ];
     notes.into_iter().flatten().for_each(|note| progress.note(note));
+    WrittenUnit::of(arguments.input(), &arguments.build, format).note(&arguments.output_name(), progress);
     write(path, (format, is_split), arguments, refined)
 }
 
@@ -302,7 +305,10 @@ fn write(
         output = output.vertex_properties(vertices).face_properties(faces);
     }
     let output = output.creases(&mesh.tags().creases).corners(&mesh.tags().corners);
-    output::write_mesh(path, format, &output, &arguments.write_options())
+    let unit = WrittenUnit::of(arguments.input(), &arguments.build, format);
+    let positions = unit.positions(output.surface.positions);
+    let output = Output { surface: Triangles { positions: &positions, ..output.surface }, ..output };
+    output::write_mesh(path, format, &output, &unit.options(arguments.write_options()))
 }
 
 /// The view that makes the angle depend on the viewer.

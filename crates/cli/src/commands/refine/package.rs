@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use limitmesh::Mesh;
 use limitmesh::mesh::{BuildOptions, MeshError, Trace, Weld};
-use limitmesh_io::threemf::{Inherited, LengthUnit, NewTriangles, ObjectSoup, Source};
+use limitmesh_io::threemf::{Inherited, NewTriangles, ObjectSoup, Source};
 use limitmesh_io::{Format, Package};
 
 use super::super::channels::Channels;
@@ -16,7 +16,8 @@ use super::control::Control;
 use super::goals::Goals;
 use super::several::{self, Progressed};
 use super::{Refined, estimate};
-use crate::arguments::{RefineArguments, Unit};
+use crate::arguments::RefineArguments;
+use crate::bulk::Shown;
 use crate::failure::{Outcome, usage};
 use crate::format::counted;
 use crate::input;
@@ -61,7 +62,7 @@ impl Job {
         let Some(bounds) = bounds else {
             anyhow::bail!("{name}: nothing is built that has triangles");
         };
-        self.set_unit(package.unit(), &name)?;
+        self.arguments.build.unit = Some(input::unit_of_package(&package, self.arguments.build.unit, &name)?);
         let contents = package.contents();
         let names = contents.objects.iter().flat_map(|object| &object.attributes).map(String::as_str);
         self.arguments.channels.check(&name, names)?;
@@ -74,20 +75,6 @@ impl Job {
             self.object(object, &mut package, diagonal, &mut done, progress)?;
         }
         self.finish(&package, &name, reading, done, progress)
-    }
-
-    /// Lengths have the package's unit.
-    fn set_unit(&mut self, unit: LengthUnit, name: &str) -> anyhow::Result<()> {
-        let own = Unit::of_package(unit);
-        match self.arguments.build.unit {
-            Some(given) if given != own => {
-                usage(format!("--unit {}: {name} says that it is in {}", given.name(), own.name()))
-            }
-            _ => {
-                self.arguments.build.unit = Some(own);
-                Ok(())
-            }
-        }
     }
 
     /// Refines an object and puts it back, unless there is nothing to refine, or more than can be inherited.
@@ -124,7 +111,8 @@ impl Job {
         let mut arguments = done.share(&self.arguments);
         // A flat region has triangles across faces that carry different things.
         arguments.exact.divide_flat |= self.is_traced() && (own.varies_within || !own.is_uniform);
-        let control = Control::new((built, diagnosis, faces), Some(diagonal), &arguments, progress)?;
+        let shown = Shown::of(package.largest(object), stretch);
+        let control = Control::new((built, diagnosis, faces), shown, Some(diagonal), &arguments, progress)?;
         let goals = Goals::new(&arguments, &control.featured.mesh, diagonal)?;
         let goals = if self.is_traced() { goals.keeping_origins(Vec::new()) } else { goals };
         let parameters = several::parameters(&arguments, &goals);

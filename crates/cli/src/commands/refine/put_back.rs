@@ -79,7 +79,7 @@ impl PutBack<'_> {
         let count = self.own.parts.iter().map(|part| part.targets.len()).max().unwrap_or(0);
         let mut moved_normals = Vec::with_capacity(count);
         for target in 0..count {
-            let is_asked = self.own.parts.iter().any(|part| has_normals(part, target));
+            let is_asked = self.own.parts.iter().any(|part| self.has_normals(part, target));
             let found = match self.displacement(target).filter(|_| is_asked) {
                 Some(channel) => {
                     let asked = (surface.triangles, normals.len());
@@ -115,7 +115,7 @@ impl PutBack<'_> {
                 if has("NORMAL") && !has("POSITION") {
                     told.left_out.push("NORMAL of morph targets that move nothing".to_owned());
                 }
-                if has_normals(part, target) {
+                if self.has_normals(part, target) {
                     let moved = moved_normals[target].as_deref();
                     own.push(added_normals(moved, &numbered.surface, &directions));
                 }
@@ -194,6 +194,13 @@ impl PutBack<'_> {
             let table = self.own.attributes.iter().find(|table| table.name == channel.name);
             table.is_some_and(|table| table.is_in[part] && !table.is_displacement())
         })
+    }
+
+    /// Whether a target is to say how normals change: where it did, and where it moves vertices, whose normals do not follow by themselves.
+    fn has_normals(&self, part: &Part, target: usize) -> bool {
+        let has =
+            |name: &str| part.targets.get(target).is_some_and(|names| names.iter().any(|own| own == name));
+        has("NORMAL") || has("POSITION") && self.displacement(target).is_some()
     }
 
     /// The table of a target's displacements.
@@ -285,15 +292,6 @@ pub(super) fn moved_positions(mesh: &Mesh, displacement: &Channel, stretch: f64)
         }
     }
     positions
-}
-
-/// Whether a target is to say how normals change: where it did, and where the input has no normals at all, so that they followed the
-/// shape.
-fn has_normals(part: &Part, target: usize) -> bool {
-    let has = |names: &[String], name: &str| names.iter().any(|own| own == name);
-    part.targets.get(target).is_some_and(|names| {
-        has(names, "NORMAL") || has(names, "POSITION") && !has(&part.attributes, "NORMAL")
-    })
 }
 
 /// What a target adds to the normals of vertices of the surface; nothing where it does not move them, or they have none then.

@@ -76,13 +76,13 @@ pub(super) fn one(
     progress: &Progress,
 ) -> anyhow::Result<One> {
     let start = Instant::now();
-    let Control { featured, before, bulk, .. } = control;
+    let Control { featured, before, bulk, shown, .. } = control;
     let mut refined = match arguments.way() {
         Way::Exact => exact::run((featured, before, channels), goals, arguments, progress)?,
         _ => stepwise::run((featured.mesh.clone(), channels, keeps_origins), arguments, format, progress)?,
     };
     let refining = start.elapsed();
-    let size = SizeReport { before: *bulk, after: Bulk::of(&refined.mesh) };
+    let size = SizeReport { before: *bulk, after: Bulk::as_shown(&refined.mesh, shown) };
     refined.tell_size([size.before, size.after], arguments);
     progress.note(summary(name, &refined, refining));
     if let Some(note) = refined.inverted.and_then(turned_over) {

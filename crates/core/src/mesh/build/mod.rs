@@ -22,7 +22,8 @@ use crate::options::options;
 use crate::vector::vector;
 use cut::Sheets;
 use retag::VertexMaps;
-use triangulate::Faces;
+use triangulate::{Faces, Flatness};
+pub use weld::weld_within;
 
 /// Which vertices are merged before connecting the faces.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -114,9 +115,10 @@ fn weld(soup: &PolygonSoup, used: &[bool], weld: Weld) -> Result<Vec<u32>, MeshE
 fn repair_faces(soup: &PolygonSoup, kept: &[u32], diagnosis: &mut Diagnosis) -> Result<Faces, MeshError> {
     let mut faces = triangulate::triangulate(soup, kept, diagnosis)?;
     let vertex_count = kept.len();
-    repeated::drop_repeated(&mut faces, &soup.positions, diagnosis);
+    let flatness = Flatness { positions: &soup.positions, opening: &soup.opening };
+    repeated::drop_repeated(&mut faces, flatness, diagnosis);
     let is_polygon = |input: u32| soup.faces.get(input as usize).len() > 3;
-    zero_area::remove_zero_area(&mut faces, &soup.positions, vertex_count, is_polygon, diagnosis);
+    zero_area::remove_zero_area(&mut faces, flatness, vertex_count, is_polygon, diagnosis);
     if !faces.triangles.is_empty() {
         return Ok(faces);
     }

@@ -1,15 +1,15 @@
 //! Faces on the same three vertices: the first one stays. Of faces without area pairs go altogether: they fill
 //! a slit from both sides, which is then closed.
 
-use super::triangulate::{Faces, is_flat};
+use super::triangulate::{Faces, Flatness};
 use crate::mesh::Diagnosis;
 
 /// Drops faces that repeat an earlier one, whichever corner they start at and whichever way round they are.
-pub(super) fn drop_repeated(faces: &mut Faces, positions: &[[f64; 3]], diagnosis: &mut Diagnosis) {
+pub(super) fn drop_repeated(faces: &mut Faces, flatness: Flatness<'_>, diagnosis: &mut Diagnosis) {
     let mut marked = Vec::new();
-    for_each_repetition(&faces.triangles, positions.len(), |group| {
+    for_each_repetition(&faces.triangles, flatness.positions.len(), |group| {
         marked.resize(faces.triangles.len(), false);
-        let stay = if is_flat(positions, faces.triangles[group[0] as usize]) { group.len() % 2 } else { 1 };
+        let stay = if flatness.is_flat(faces, group[0]) { group.len() % 2 } else { 1 };
         group[stay..].iter().for_each(|&face| marked[face as usize] = true);
     });
     if marked.is_empty() {

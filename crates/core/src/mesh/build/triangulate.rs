@@ -9,10 +9,9 @@
 
 use earcut::{Earcut, Refiner};
 
+use super::super::collinear::are_on_one_line;
 use super::super::topology::MAX_FACES;
 use super::super::{Diagnosis, MeshError, PolygonSoup};
-use glam::Vec3Swizzles;
-
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// Up to this many corners diagonals are flipped, whose number may grow with the square of the corners': a saw of
@@ -366,32 +365,23 @@ fn cut_quad(positions: &[[f64; 3]], quad: [u32; 4]) -> ([[u32; 3]; 2], bool) {
     (triangles, proper)
 }
 
-/// Sides of lengths within these bounds have a cross product that neither overflows nor vanishes.
-const MIDDLING: core::ops::Range<f64> = 1e-120..1e120;
-
-/// Powers of two that bring the least and the greatest lengths there: 2⁶⁰⁰ and 2⁻⁶⁰⁰.
-const MAGNIFIED: f64 = 4.149_515_568_880_993e180;
-const REDUCED: f64 = 1.0 / MAGNIFIED;
-
-/// Whether three corners lie on one line as far as their numbers tell: the cross product of two sides is no
-/// larger than its rounding error.
+/// Whether a triangle's corners lie on one line.
 pub(super) fn is_flat(positions: &[[f64; 3]], triangle: [u32; 3]) -> bool {
-    // Each factor carries half an ulp from its subtraction, the product and the difference half an ulp each:
-    // below 2.5 ulp together, rounded up to 4.
-    const ROUNDING: f64 = 4.0 * f64::EPSILON;
-    let sides = |scale: f64| {
-        let [a, b, c] = triangle.map(|v| vector(positions[v as usize]) * scale);
-        (b - a, c - a)
-    };
-    let (u, v) = sides(1.0);
-    let size = u.abs().max(v.abs()).max_element();
-    let (u, v) = match size {
-        0.0 => return true,
-        size if size < MIDDLING.start => sides(MAGNIFIED),
-        size if size > MIDDLING.end => sides(REDUCED),
-        _ => (u, v),
-    };
-    let (left, right) = (u.yzx() * v.zxy(), u.zxy() * v.yzx());
-    let bound = (left.abs() + right.abs()) * ROUNDING;
-    (left - right).abs().cmple(bound).all()
+    are_on_one_line(triangle.map(|v| positions[v as usize]))
+}
+
+/// Which triangles have no area wherever their vertices are moved.
+#[derive(Clone, Copy)]
+pub(super) struct Flatness<'a> {
+    pub(super) positions: &'a [[f64; 3]],
+    /// Input faces that have one somewhere, in ascending order.
+    pub(super) opening: &'a [u32],
+}
+
+impl Flatness<'_> {
+    /// Whether one of the faces has none.
+    pub(super) fn is_flat(&self, faces: &Faces, face: u32) -> bool {
+        is_flat(self.positions, faces.triangles[face as usize])
+            && self.opening.binary_search(&faces.inputs[face as usize]).is_err()
+    }
 }

@@ -32,6 +32,16 @@ pub(super) fn exact(positions: &[[f64; 3]], used: &[bool]) -> Vec<u32> {
     kept
 }
 
+/// For each of some points the first that it is joined with: those within `distance` of each other are, and so on along chains of
+/// them, as [`Weld::Within`](super::Weld::Within) joins vertices.
+///
+/// # Errors
+/// A point is not finite, or the distance is not a finite number of at least 0.
+pub fn weld_within(points: &[[f64; 3]], distance: f64) -> Result<Vec<u32>, MeshError> {
+    super::check_finite(points)?;
+    within(points, &vec![true; points.len()], distance)
+}
+
 /// Merges vertices within `distance` of each other, and so on along chains of them.
 ///
 /// # Errors

@@ -7,7 +7,7 @@
 use std::collections::{BinaryHeap, HashMap};
 
 use super::repeated::for_each_repetition;
-use super::triangulate::{Faces, is_flat};
+use super::triangulate::{Faces, Flatness};
 use crate::mesh::Diagnosis;
 use crate::vector::vector;
 
@@ -19,19 +19,18 @@ const SPLITS_A_FACE: usize = 64;
 /// corners are no defect.
 pub(super) fn remove_zero_area(
     faces: &mut Faces,
-    positions: &[[f64; 3]],
+    flatness: Flatness<'_>,
     vertex_count: usize,
     is_polygon: impl Fn(u32) -> bool,
     diagnosis: &mut Diagnosis,
 ) {
-    let flat: Vec<u32> = (0..faces.triangles.len() as u32)
-        .filter(|&face| is_flat(positions, faces.triangles[face as usize]))
-        .collect();
+    let flat: Vec<u32> =
+        (0..faces.triangles.len() as u32).filter(|&face| flatness.is_flat(faces, face)).collect();
     if flat.is_empty() {
         return;
     }
     count_inputs(faces, &flat, is_polygon, diagnosis);
-    let mut removal = Removal::new(faces, positions, &flat);
+    let mut removal = Removal::new(faces, flatness, &flat);
     removal.run(flat.len());
     let mut marked = removal.dropped;
     let split = removal.split;
@@ -89,7 +88,7 @@ impl Ord for Candidate {
 
 struct Removal<'a> {
     faces: &'a mut Faces,
-    positions: &'a [[f64; 3]],
+    flatness: Flatness<'a>,
     edges: HashMap<[u32; 2], EdgeFaces>,
     queue: BinaryHeap<Candidate>,
     dropped: Vec<bool>,
@@ -97,11 +96,11 @@ struct Removal<'a> {
 }
 
 impl<'a> Removal<'a> {
-    fn new(faces: &'a mut Faces, positions: &'a [[f64; 3]], flat: &[u32]) -> Self {
+    fn new(faces: &'a mut Faces, flatness: Flatness<'a>, flat: &[u32]) -> Self {
         let dropped = vec![false; faces.triangles.len()];
         let edges = HashMap::with_capacity(faces.triangles.len() * 3 / 2);
         let mut removal =
-            Self { faces, positions, edges, queue: BinaryHeap::new(), dropped, split: Vec::new() };
+            Self { faces, flatness, edges, queue: BinaryHeap::new(), dropped, split: Vec::new() };
         for face in 0..removal.dropped.len() as u32 {
             removal.connect(face);
         }
@@ -135,7 +134,8 @@ impl<'a> Removal<'a> {
 
     /// The corner at which the longest side starts, and that side's length.
     fn longest_side(&self, face: u32) -> (usize, f64) {
-        let p = self.faces.triangles[face as usize].map(|v| vector(self.positions[v as usize]) * 0.5);
+        let p =
+            self.faces.triangles[face as usize].map(|v| vector(self.flatness.positions[v as usize]) * 0.5);
         // Divided by the largest coordinate, so that squares neither overflow nor vanish.
         let sides = [p[1] - p[0], p[2] - p[1], p[0] - p[2]];
         let size = sides.iter().fold(0.0, |size: f64, side| size.max(side.abs().max_element()));
@@ -154,7 +154,7 @@ impl<'a> Removal<'a> {
             // A face may have changed since it was queued; what it is now was queued as well.
             if self.dropped[face as usize]
                 || self.longest_side(face).1 != length
-                || !is_flat(self.positions, self.faces.triangles[face as usize])
+                || !self.flatness.is_flat(self.faces, face)
             {
                 continue;
             }
@@ -190,7 +190,7 @@ impl<'a> Removal<'a> {
         for changed in [face, neighbour] {
             self.connect(changed);
             self.split.push(changed);
-            if is_flat(self.positions, self.faces.triangles[changed as usize]) {
+            if self.flatness.is_flat(self.faces, changed) {
                 self.enqueue(changed);
             }
         }

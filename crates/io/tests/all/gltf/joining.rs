@@ -35,6 +35,10 @@ impl Builder {
     }
 
     fn read(&self, joining: Joining) -> MeshSoup {
+        self.asset().mesh(0, joining).unwrap()
+    }
+
+    fn asset(&self) -> Asset {
         let json = format!(
             r#"{{"asset":{{"version":"2.0"}},"meshes":[{{"primitives":[{}]}}],"buffers":[{{"byteLength":{}}}],
                 "bufferViews":[{}],"accessors":[{}]}}"#,
@@ -43,7 +47,7 @@ impl Builder {
             self.views.join(","),
             self.accessors.join(",")
         );
-        Asset::from_bytes(&glb(&json, &self.bin), None).unwrap().mesh(0, joining).unwrap()
+        Asset::from_bytes(&glb(&json, &self.bin), None).unwrap()
     }
 }
 
@@ -76,7 +80,7 @@ fn what_morphs_apart_stays_apart() {
     assert_eq!((found.soup.positions.len(), found.kept_apart.moving, found.kept_apart.touching), (5, 1, 0));
     assert_eq!((found.kept_apart.by_skins, found.kept_apart.by_morphs), (0, 1));
     // Joined all the same, they move as the first does.
-    let found = builder.read(Joining::Ignoring { skins: false, morphs: true });
+    let found = builder.read(Joining::Ignoring { skins: false, morphs: true, distance: 0.0 });
     assert_eq!((found.soup.positions.len(), found.kept_apart.moving), (4, 0));
     let table = &found.attributes[0];
     assert_eq!(
@@ -113,7 +117,7 @@ fn what_joints_move_apart_stays_apart() {
     let found = builder.read(Joining::Together);
     assert_eq!((found.soup.positions.len(), found.kept_apart.moving), (5, 1));
     assert_eq!((found.kept_apart.by_skins, found.kept_apart.by_morphs), (1, 0));
-    let found = builder.read(Joining::Ignoring { skins: true, morphs: false });
+    let found = builder.read(Joining::Ignoring { skins: true, morphs: false, distance: 0.0 });
     assert_eq!((found.soup.positions.len(), found.kept_apart.moving), (4, 0));
 }
 
@@ -155,4 +159,68 @@ fn primitives_that_touch_are_not_joined() {
         builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
     }
     assert_eq!(builder.read(Joining::Together).soup.positions.len(), 9);
+}
+
+/// A primitive of one triangle whose corners stand here, with morph targets.
+fn triangle(corners: [[f32; 3]; 3], targets: &[[[f32; 3]; 3]]) -> Builder {
+    let mut builder = Builder::new();
+    let points = builder.points(&corners);
+    let targets: Vec<String> =
+        targets.iter().map(|moved| format!(r#"{{"POSITION":{}}}"#, builder.points(moved))).collect();
+    builder
+        .primitives
+        .push(format!(r#"{{"attributes":{{"POSITION":{points}}},"targets":[{}]}}"#, targets.join(",")));
+    builder
+}
+
+#[test]
+fn faces_without_area_count_where_something_opens_them() {
+    const LINE: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0], [2.0, 4.0, 6.0]];
+    const NOWHERE: [f32; 3] = [0.0; 3];
+    const NONE: [u32; 0] = [];
+    let lid = [NOWHERE, [0.0, 0.0, 1.0], NOWHERE];
+    let opening = |corners, targets: &[_]| triangle(corners, targets).read(Joining::Never).soup.opening;
+    assert_eq!(opening(LINE, &[]), NONE);
+    assert_eq!(opening(LINE, &[[NOWHERE; 3], lid]), [0]);
+    // Twice as large it is a line still, and a triangle with area counts by itself.
+    assert_eq!(opening(LINE, &[LINE]), NONE);
+    assert_eq!(opening([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[lid]), NONE);
+    // Two corners leave a point in two directions: only together they make an area.
+    let apart = [[NOWHERE, [1.0, 0.0, 0.0], NOWHERE], [NOWHERE, NOWHERE, [0.0, 1.0, 0.0]]];
+    assert_eq!(opening([NOWHERE; 3], &apart), [0]);
+    assert_eq!(opening([NOWHERE; 3], &apart[..1]), NONE);
+    // Joints open what they do not move as one.
+    for (weights, expected) in [([1.0f32, 1.0, 1.0], &NONE[..]), ([1.0, 0.5, 1.0], &[0])] {
+        let mut builder = Builder::new();
+        let points = builder.points(&LINE);
+        let joints = builder.accessor([0u8, 1, 0, 0].repeat(3), 3, "VEC4", 5121);
+        let weights: Vec<f32> = weights.iter().flat_map(|&own| [own, 1.0 - own, 0.0, 0.0]).collect();
+        let weights = builder.accessor(floats(&weights), 3, "VEC4", 5126);
+        builder.primitives.push(format!(
+            r#"{{"attributes":{{"POSITION":{points},"JOINTS_0":{joints},"WEIGHTS_0":{weights}}}}}"#
+        ));
+        assert_eq!(builder.read(Joining::Together).soup.opening, expected);
+    }
+}
+
+#[test]
+fn a_distance_joins_what_rounding_tells_apart() {
+    let mut points = APART;
+    points[3] = [1.0, 1e-6, 0.0];
+    let read = |distance| {
+        let mut builder = Builder::new();
+        let points = builder.points(&points);
+        builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+        builder.read(Joining::Ignoring { skins: false, morphs: false, distance }).soup.positions.len()
+    };
+    assert_eq!([0.0, 1e-7, 1e-5].map(read), [5, 5, 4]);
+    let mut builder = Builder::new();
+    let points = builder.points(&APART);
+    builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+    let asset = builder.asset();
+    for distance in [-1.0, f64::NAN, f64::INFINITY] {
+        let joining = Joining::Ignoring { skins: false, morphs: false, distance };
+        let error = asset.mesh(0, joining).expect_err("no distance").to_string();
+        assert!(error.contains("at least 0"), "{error}");
+    }
 }

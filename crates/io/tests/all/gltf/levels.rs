@@ -25,7 +25,7 @@ fn written(
 ) -> Result<(tempfile::TempDir, PathBuf), WriteError> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("levels.glb");
-    write_levels(&path, Format::Glb, ("square", levels), of).map(|()| (folder, path))
+    write_levels(&path, Format::Glb, ("square", levels), of, None).map(|()| (folder, path))
 }
 
 #[track_caller]

@@ -27,7 +27,7 @@ fn exercise(bytes: &[u8]) {
     let _ = asset.scene_soup();
     for mesh in 0..asset.mesh_count().min(4) {
         let _ = asset.mesh(mesh, Joining::Never);
-        let _ = asset.mesh(mesh, Joining::Ignoring { skins: true, morphs: true });
+        let _ = asset.mesh(mesh, Joining::Ignoring { skins: true, morphs: true, distance: 0.0 });
         let Ok(own) = asset.mesh(mesh, Joining::Together) else { continue };
         let stretch = asset.stretch(mesh);
         assert!(stretch > 0.0 && stretch.is_finite());

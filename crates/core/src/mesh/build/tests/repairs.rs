@@ -48,6 +48,39 @@ fn bad_input_is_named() {
 }
 
 #[test]
+fn faces_that_open_elsewhere_are_kept() {
+    // An octahedron whose top vertex stands twice, as lips do, with two faces without area between.
+    let mut positions: Vec<[f64; 3]> = Vec::new();
+    for axis in 0..3 {
+        positions.extend([1.0, -1.0].map(|sign| std::array::from_fn(|i| if i == axis { sign } else { 0.0 })));
+    }
+    positions.push([0.0, 0.0, 1.0]);
+    let faces: [&[u32]; 10] = [
+        &[0, 2, 4],
+        &[2, 1, 4],
+        &[1, 3, 6],
+        &[3, 0, 6],
+        &[2, 0, 5],
+        &[1, 2, 5],
+        &[3, 1, 5],
+        &[0, 3, 5],
+        &[0, 4, 6],
+        &[4, 1, 6],
+    ];
+    let options = BuildOptions::default().weld(Weld::Never);
+    let built = |opening: &[u32]| {
+        let soup = PolygonSoup { opening: opening.to_vec(), ..soup(&positions, &faces) };
+        let (mesh, diagnosis) = Mesh::from_soup(&soup, &options).unwrap();
+        check_mesh(&mesh);
+        (mesh.face_count(), mesh.topology().boundary_edge_count(), diagnosis.zero_area_faces)
+    };
+    assert_eq!(built(&[8, 9]), (10, 0, Finding::default()));
+    // One of them goes where nothing opens it.
+    assert_eq!(built(&[8]).2, finding(&[9]));
+    assert_eq!(built(&[]), (8, 0, finding(&[8, 9])));
+}
+
+#[test]
 fn strict_refuses_defects_and_nothing_else() {
     let strict = BuildOptions::default().strict(true);
     let mut faces = SIDES.to_vec();
