@@ -1,11 +1,11 @@
-//! Area and volume of a surface, and closed parts of it that are inside out.
+//! Area and volume of a surface.
 //!
 //! The volume is the sum of those of the tetrahedra over the triangles, V = Σ a·(b × c)/6: above 0 where normals point
 //! outwards. Open surfaces have none. Limit surfaces are integrated themselves.
 
 use anyhow::bail;
 use limitmesh::scheme::Scheme;
-use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
+use limitmesh::{LimitSurface, Mesh};
 use serde::Serialize;
 
 use crate::pieces::pieces;
@@ -122,67 +122,6 @@ impl Sum {
     }
 }
 
-/// The sum of many numbers.
-fn sum(numbers: impl Iterator<Item = f64>) -> f64 {
-    numbers.fold(Sum::default(), Sum::with).total()
-}
-
-/// Number of closed components whose normals point inwards, though no other closed component is around them whose inside
-/// they could bound.
-pub(crate) fn inside_out(mesh: &Mesh) -> usize {
-    let parts = components(mesh);
-    let positions = mesh.positions();
-    let surface = mesh.as_triangles();
-    let volume_of = |faces: &[u32]| {
-        let tip = surface.corners(faces[0] as usize)[0];
-        sum(faces.iter().map(|&face| volume(surface.corners(face as usize), tip)))
-    };
-    let closed: Vec<&Vec<u32>> = parts.iter().filter(|faces| is_closed(mesh, faces)).collect();
-    let turned = closed.iter().enumerate().filter(|(_, faces)| volume_of(faces) < 0.0);
-    let alone = turned.filter(|&(own, faces)| {
-        let point = positions[surface.triangles[faces[0] as usize][0] as usize];
-        let around = closed.iter().enumerate().filter(|&(other, _)| other != own);
-        let times: f64 = around
-            .map(|(_, faces)| {
-                let triangles = faces.iter().map(|&face| surface.triangles[face as usize]);
-                winding(point, positions, triangles)
-            })
-            .sum();
-        times < 0.5
-    });
-    alone.count()
-}
-
-/// The faces of each component, joined through edges.
-fn components(mesh: &Mesh) -> Vec<Vec<u32>> {
-    let topology = mesh.topology();
-    let mut is_met = vec![false; mesh.face_count()];
-    let mut parts = Vec::new();
-    for start in 0..mesh.face_count() {
-        if std::mem::replace(&mut is_met[start], true) {
-            continue;
-        }
-        let mut faces = vec![start as u32];
-        let mut next = 0;
-        while let Some(&face) = faces.get(next) {
-            next += 1;
-            for side in 0..3 {
-                let Some(twin) = topology.twin(HalfEdgeId::of(FaceId(face), side)) else { continue };
-                if !std::mem::replace(&mut is_met[twin.face().index()], true) {
-                    faces.push(twin.face().0);
-                }
-            }
-        }
-        parts.push(faces);
-    }
-    parts
-}
-
-fn is_closed(mesh: &Mesh, faces: &[u32]) -> bool {
-    let has_twin = |face: u32, side| mesh.topology().twin(HalfEdgeId::of(FaceId(face), side)).is_some();
-    faces.iter().all(|&face| (0..3).all(|side| has_twin(face, side)))
-}
-
 /// How often a closed surface runs around a point: the solid angles of its triangles (Van Oosterom and Strackee 1983)
 /// by that of a sphere.
 pub(crate) fn winding(
@@ -269,19 +208,5 @@ mod tests {
         let mesh = Mesh::from_triangles(positions, triangles).expect("a mesh");
         assert!(pieces(mesh.face_count(), |faces| faces.len()).len() > 2);
         assert_eq!(Bulk::of(&mesh), Bulk { area: 2f64.powi(54) + 1e4, volume: None });
-    }
-
-    #[test]
-    fn what_is_inside_out_is_not_a_cavity() {
-        let cases = [
-            (vec![(0.0, 1.0, false)], 0),
-            (vec![(0.0, 1.0, true)], 1),
-            (vec![(0.0, 4.0, false), (1.0, 2.0, true)], 0),
-            (vec![(0.0, 4.0, true), (1.0, 2.0, false)], 1),
-            (vec![(0.0, 1.0, false), (2.0, 3.0, true), (4.0, 5.0, true)], 2),
-        ];
-        for (parts, expected) in cases {
-            assert_eq!(inside_out(&cubes(&parts)), expected, "{parts:?}");
-        }
     }
 }

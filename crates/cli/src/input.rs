@@ -372,10 +372,19 @@ pub(crate) fn describe(name: &str, error: MeshError) -> anyhow::Error {
     anyhow::Error::new(error).context(format!("{name} gives no control mesh"))
 }
 
-/// Whether both paths name one file, as far as can be told without reading it.
+/// Whether both paths name one file, as far as can be known without reading it.
 pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
-    let full = |path: &Path| -> PathBuf {
-        std::fs::canonicalize(path).or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned())
-    };
-    full(a) == full(b)
+    full_path(a) == full_path(b)
+}
+
+/// One name for one file, as far as can be known without making it: links are followed.
+pub(crate) fn full_path(path: &Path) -> PathBuf {
+    if let Ok(there) = path.canonicalize() {
+        return there;
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match (folder.canonicalize(), path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),
+    }
 }

@@ -4,7 +4,7 @@
 use limitmesh::measure::{triangle_quality, watertightness};
 use limitmesh::{Mesh, VertexId};
 
-use crate::bulk::{Bulk, inside_out};
+use crate::bulk::Bulk;
 use crate::dihedral::Dihedrals;
 use crate::report::MeshInformation;
 use crate::report::information::BoundingBox;
@@ -37,7 +37,6 @@ pub(crate) fn examine(mesh: &Mesh) -> MeshInformation {
         irregular_vertices: topology.vertices().filter(|&v| !mesh.ring_shape(v).is_regular()).count(),
         bounding_box: BoundingBox { low, high, diagonal: surface.diagonal() },
         bulk: Bulk::of(mesh),
-        inside_out_components: inside_out(mesh),
         dihedrals: Dihedrals::of(mesh),
         min_angle_degrees: quality.min_angle_degrees,
         mean_min_angle_degrees: quality.mean_min_angle_degrees,

@@ -1,5 +1,6 @@
 //! Writing: text and JSON to standard output, files whole or not at all.
 
+use std::collections::HashSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -7,6 +8,7 @@ use anyhow::Context;
 use limitmesh_io::{Asset, Format, Output, WriteError, WriteOptions};
 use serde::Serialize;
 
+use crate::arguments::OverwriteArguments;
 use crate::failure::usage;
 use crate::input;
 use crate::interrupt;
@@ -78,20 +80,29 @@ pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<
     write_file(path, json(value)?.as_bytes())
 }
 
-/// Refuses files that would replace an input; `what` they are.
-pub(crate) fn check_replaced(written: &[&Path], inputs: &[&Path], what: &str) -> anyhow::Result<()> {
-    let is_input = |path: &Path| inputs.iter().any(|input| input::same_file(input, path));
-    match written.iter().find(|path| !is_standard_output(path) && is_input(path)) {
-        Some(path) => usage(format!("{} is the input; {what} would replace it", path.display())),
-        None => Ok(()),
+/// Refuses files that would replace an input, unless that is asked for.
+pub(crate) fn check_replaced(
+    written: &[&Path],
+    inputs: &[&Path],
+    asked: Option<OverwriteArguments>,
+) -> anyhow::Result<()> {
+    let inputs: HashSet<PathBuf> = inputs.iter().map(|path| input::full_path(path)).collect();
+    let is_input = |path: &Path| !is_standard_output(path) && inputs.contains(&input::full_path(path));
+    let replaced = written.iter().find(|path| is_input(path)).map(|path| path.display());
+    match (replaced, asked) {
+        (None, _) | (_, Some(OverwriteArguments { overwrite: true })) => Ok(()),
+        (Some(path), Some(_)) => {
+            usage(format!("{path} is an input, which the result would replace; --overwrite allows that"))
+        }
+        (Some(path), None) => usage(format!("{path} is an input, which it would replace")),
     }
 }
 
 /// Refuses to write a file twice.
 pub(crate) fn check_once(written: &[&Path]) -> anyhow::Result<()> {
-    let is_twice = |i: &usize| written[..*i].iter().any(|earlier| input::same_file(earlier, written[*i]));
-    match (0..written.len()).find(is_twice) {
-        Some(i) => usage(format!("{} would be written twice", written[i].display())),
+    let mut seen = HashSet::new();
+    match written.iter().find(|path| !seen.insert(input::full_path(path))) {
+        Some(path) => usage(format!("{} would be written twice", path.display())),
         None => Ok(()),
     }
 }

@@ -5,7 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::values::{self, Extent};
-use super::{BuildArguments, ChannelArguments, FeatureArguments, InterpolationArguments, SchemeName};
+use super::{
+    BuildArguments, ChannelArguments, FeatureArguments, InterpolationArguments, OverwriteArguments,
+    SchemeName,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -92,6 +95,9 @@ pub(crate) struct LodArguments {
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,
+
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArguments,
 
     /// Write PLY and STL as text rather than binary
     #[arg(long)]

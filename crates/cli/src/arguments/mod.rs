@@ -42,7 +42,7 @@ pub(crate) use quantity::{Length, Unit};
 pub(crate) use refine::{MOST_EXACT, Method, RefineArguments, Way};
 pub(crate) use render::RenderArguments;
 pub(crate) use reproduce::ReproduceArguments;
-pub(crate) use shared::{BuildArguments, FileFormat, RefiningScheme, SchemeName, Seam};
+pub(crate) use shared::{BuildArguments, FileFormat, OverwriteArguments, RefiningScheme, SchemeName, Seam};
 pub(crate) use tolerances::MorphTolerance;
 pub(crate) use values::{Extent, Size};
 

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::LimitArguments;
 use super::values::{self, Extent};
+use super::{LimitArguments, OverwriteArguments};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -40,6 +40,9 @@ pub(crate) struct ProjectArguments {
     /// Write the points with what was found: .ply (coloured; closest points and places as properties), .csv, or .png (a picture, of meshes)
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArguments,
 
     #[command(flatten)]
     pub(crate) limit: LimitArguments,

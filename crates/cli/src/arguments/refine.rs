@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::values;
 use super::{
     AssetArguments, BuildArguments, ChannelArguments, ExactArguments, FeatureArguments, FileFormat,
-    InterpolationArguments, RefiningScheme, Seam,
+    InterpolationArguments, OverwriteArguments, RefiningScheme, Seam,
 };
 use crate::failure::{UsageError, usage};
 use crate::output::is_standard_output;
@@ -119,9 +119,13 @@ pub(crate) struct RefineArguments {
 
     /// File to write, whose extension (.obj, .ply, .stl, .off, .gltf, .glb, .3mf) chooses the format; FOLDER/, or - for standard output
     ///
-    /// In a folder, which is made if its name ends with a slash, files are called as their inputs are.
-    #[arg(short, long, value_name = "FILE", required_unless_present = "dry_run")]
+    /// In a folder, which is made if its name ends with a slash, files are called as their inputs are. Without this, x.obj becomes
+    /// x-smooth.obj in the same folder, and builtin:cup becomes cup-smooth.ply in the current one.
+    #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) overwrite: OverwriteArguments,
 
     /// Format to write, whatever the name of the file says; standard output needs it
     #[arg(long, value_enum, value_name = "FORMAT")]

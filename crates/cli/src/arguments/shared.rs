@@ -11,6 +11,14 @@ use super::quantity::Unit;
 use super::values::{self, WeldDistance};
 use crate::failure::usage;
 
+/// Whether a result may take the place of an input.
+#[derive(Args, Debug, Clone, Copy)]
+pub(crate) struct OverwriteArguments {
+    /// Let the result replace a file that is also an input
+    #[arg(long)]
+    pub(crate) overwrite: bool,
+}
+
 /// Which subdivision scheme defines the smooth surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]

@@ -225,11 +225,7 @@ fn describe_mesh(mesh: &MeshInformation) -> String {
             mesh.min_angle_degrees, mesh.mean_min_angle_degrees
         ),
     ];
-    let turned = (mesh.inside_out_components > 0).then(|| {
-        let parts = counted(mesh.inside_out_components, "component is", "components are");
-        format!("{parts} inside out: all normals point inwards")
-    });
-    let text: String = lines.iter().chain(&turned).map(|line| format!("  {line}\n")).collect();
+    let text: String = lines.iter().map(|line| format!("  {line}\n")).collect();
     text + &dihedrals_in_words(&mesh.dihedrals)
 }
 

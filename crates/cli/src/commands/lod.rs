@@ -153,7 +153,7 @@ fn check_files(arguments: &LodArguments, format: Format) -> anyhow::Result<()> {
     written.extend(arguments.report.clone());
     written.iter().try_for_each(|path| output::check_writable(path))?;
     let written: Vec<&Path> = written.iter().map(PathBuf::as_path).collect();
-    output::check_replaced(&written, &[&arguments.input], "levels of detail or their report")?;
+    output::check_replaced(&written, &[&arguments.input], Some(arguments.overwrite))?;
     output::check_once(&written)
 }
 

@@ -1,6 +1,6 @@
 //! `limitmesh measure`: the distance between two surfaces, or between a mesh and a limit surface.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use limitmesh::measure::{CertifiedHausdorff, Hausdorff, SamplingOptions, hausdorff_observed};
@@ -263,5 +263,9 @@ fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
     let given = [Some(&arguments.surface), arguments.reference.as_ref(), arguments.limit_of.as_ref()];
     input::check_once(given.into_iter().flatten())?;
     certified::check(arguments)?;
+    if let Some(heatmap) = &arguments.heatmap {
+        let inputs: Vec<&Path> = given.into_iter().flatten().map(PathBuf::as_path).collect();
+        output::check_replaced(&[heatmap], &inputs, None)?;
+    }
     arguments.heatmap.as_deref().map_or(Ok(()), heatmap::check_name)
 }

@@ -26,6 +26,9 @@ use crate::vector::{dot, minus};
 pub(crate) fn run(arguments: &ProjectArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     input::check_once([&arguments.points, &arguments.onto].into_iter())?;
     let kind = arguments.output.as_deref().map(Kind::of).transpose()?;
+    if let Some(output) = &arguments.output {
+        output::check_replaced(&[output], &[&arguments.points, &arguments.onto], Some(arguments.overwrite))?;
+    }
     let start = Instant::now();
     let points = points::read(&arguments.points, &arguments.limit.build, progress)?;
     let control = input::load(&arguments.onto, &arguments.limit.build, progress)?;

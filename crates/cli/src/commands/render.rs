@@ -22,6 +22,8 @@ const UNSEEN: [&str; 3] = ["normals", "tangents", "colours and textures of mater
 /// Reads a mesh and draws it.
 pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     picture::check_name(&arguments.output)?;
+    let texture = arguments.texture.as_deref();
+    output::check_replaced(&[&arguments.output], texture.as_slice(), None)?;
     check_scheme(arguments)?;
     if arguments.exact {
         return exact(arguments, progress);

@@ -204,8 +204,6 @@ pub(crate) struct MeshInformation {
     pub(crate) bounding_box: BoundingBox,
     #[serde(flatten)]
     pub(crate) bulk: Bulk,
-    /// Closed components whose normals point inwards, but for cavities of others.
-    pub(crate) inside_out_components: usize,
     /// Edges by the angle between their faces.
     pub(crate) dihedrals: Dihedrals,
     /// The least angle of a triangle.

@@ -150,7 +150,7 @@ fn frames_of_other_meshes_are_refused_by_what_differs() {
     run(command, &[first, &none, out.path()]).expect(2).saying("sqrt3");
     let command = "refine {} {} -o {} --shared-topology --report {}";
     let before = std::fs::read(first).expect("a frame");
-    run(command, &[first, &inputs[1], out.path(), first]).expect(2).saying("box_0.obj is the input");
+    run(command, &[first, &inputs[1], out.path(), first]).expect(2).saying("box_0.obj is an input");
     assert_eq!(std::fs::read(first).expect("a frame"), before);
     let own = out.path().join("box_1.obj");
     run(command, &[first, &inputs[1], out.path(), &own]).expect(2).saying("would be written twice");

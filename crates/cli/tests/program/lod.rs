@@ -204,11 +204,11 @@ fn files_in_the_way_and_options_without_effect_are_refused() {
     let folder = folder();
     let input = file(&folder, "rock_LOD0.obj", PAINTED);
     let rock = folder.path().join("rock.obj");
-    run("lod {} -o {}", &[&input, &rock]).expect(2).saying("rock_LOD0.obj is the input; levels of detail");
+    run("lod {} -o {}", &[&input, &rock]).expect(2).saying("rock_LOD0.obj is an input");
     assert_eq!(std::fs::read_to_string(&input).expect("the input"), PAINTED);
     run("lod {} -o {} --report {}", &[&input, &folder.path().join("a.glb"), &input])
         .expect(2)
-        .saying("rock_LOD0.obj is the input");
+        .saying("rock_LOD0.obj is an input");
     let own = folder.path().join("a_LOD1.obj");
     run("lod {} -o {} --report {}", &[&input, &folder.path().join("a.obj"), &own])
         .expect(2)

@@ -25,6 +25,7 @@ mod kept;
 mod limits;
 mod lod;
 mod measure;
+mod naming;
 mod package;
 mod pages;
 mod project;

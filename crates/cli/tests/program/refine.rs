@@ -375,7 +375,7 @@ fn the_input_is_not_replaced_by_a_report_or_picture() {
     for (name, option) in [("in.obj", "--report"), ("in.png", "--picture")] {
         let input = file(&folder, name, NEARLY_CLOSED);
         let run = run(&format!("refine {{}} -o {{}} {option} {{}}"), &[&input, &output, &input]).expect(2);
-        assert!(run.stderr.contains("is the input"), "{}", run.stderr);
+        assert!(run.stderr.contains("is an input"), "{}", run.stderr);
         assert_eq!(std::fs::read_to_string(&input).expect("a file"), NEARLY_CLOSED);
     }
 }

@@ -1,5 +1,5 @@
 //! What several rooms need of triangles and sets of numbers, once: edges and their triangles, disjoint sets, the closest
-//! point of a triangle, a tree of boxes, coordinates in which a surface is about as large as 1. Knows no mesh.
+//! point of a triangle and its solid angle, a tree of boxes, coordinates in which a surface is about as large as 1. Knows no mesh.
 
 pub(crate) mod box_tree;
 mod disjoint_sets;
@@ -10,7 +10,7 @@ mod triangle;
 pub(crate) use disjoint_sets::DisjointSets;
 pub(crate) use edges::{EdgeSide, every_edge, for_each_edge};
 pub(crate) use surface_frame::SurfaceFrame;
-pub(crate) use triangle::{Foot, closest_to_origin, nearer};
+pub(crate) use triangle::{Foot, closest_to_origin, nearer, solid_angle};
 
 /// Stands for "no element" among indices.
 pub(crate) const NONE: u32 = u32::MAX;

@@ -123,3 +123,12 @@ fn along_segment(from: DVec3, to: DVec3) -> f64 {
     let (numerator, denominator) = (-from.dot(along), along.length_squared());
     if numerator > 0.0 && denominator > 0.0 { (numerator / denominator).min(1.0) } else { 0.0 }
 }
+/// The solid angle of a triangle as seen from a point (Van Oosterom and Strackee 1983): above 0 where its corners run clockwise
+/// from there, as those of a closed surface around the point do, whose angles add up to 4π.
+pub(crate) fn solid_angle(corners: [DVec3; 3], from: DVec3) -> f64 {
+    let [a, b, c] = corners.map(|corner| corner - from);
+    let [la, lb, lc] = [a, b, c].map(DVec3::length);
+    let across = a.dot(b.cross(c));
+    let along = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    2.0 * across.atan2(along)
+}

@@ -65,6 +65,8 @@ pub struct Diagnosis {
     pub isolated_vertices: Finding,
     /// Faces turned round to agree with their neighbours.
     pub flipped_faces: Finding,
+    /// Closed components whose normals pointed inwards, turned round: named by their lowest face.
+    pub inside_out_components: Finding,
     /// Faces that were cut apart since they run against each other: along a one-sided (non-orientable) component, or where none was to be
     /// turned.
     pub non_orientable_faces: Finding,
@@ -103,7 +105,7 @@ const fn wording(
 }
 
 /// In the order of the struct's fields.
-const WORDINGS: [Wording; 13] = [
+const WORDINGS: [Wording; 14] = [
     wording(
         "polygons",
         false,
@@ -145,6 +147,13 @@ const WORDINGS: [Wording; 13] = [
         "flipped_faces",
         true,
         ["face turned against its neighbours", "faces turned against their neighbours"],
+        "turned round",
+        "face",
+    ),
+    wording(
+        "inside_out_components",
+        true,
+        ["closed component that is inside out", "closed components that are inside out"],
         "turned round",
         "face",
     ),
@@ -199,6 +208,7 @@ impl Diagnosis {
             &self.repeated_faces,
             &self.isolated_vertices,
             &self.flipped_faces,
+            &self.inside_out_components,
             &self.non_orientable_faces,
             &self.non_manifold_edges,
             &self.bow_tie_vertices,

@@ -12,7 +12,7 @@ use core::f64::consts::PI;
 use super::pieces::{Piece, closing};
 use super::{NEAR, Proximity, ProximityError};
 use crate::geometry::box_tree::{BoxTree, distance_to};
-use crate::geometry::{SurfaceFrame, closest_to_origin};
+use crate::geometry::{SurfaceFrame, closest_to_origin, solid_angle};
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit_surface::LimitSurface;
 use crate::vector::{DVec3, vector};
@@ -114,7 +114,7 @@ impl Chains {
     fn of_cone(&self, node: usize, tip: DVec3, from: DVec3) -> f64 {
         let edges = &self.edges[self.starts[node]..self.starts[node + 1]];
         let of_edge =
-            |&[a, b]: &[u32; 2]| of_triangle([tip, self.corners[a as usize], self.corners[b as usize]], from);
+            |&[a, b]: &[u32; 2]| solid_angle([tip, self.corners[a as usize], self.corners[b as usize]], from);
         edges.iter().map(of_edge).sum()
     }
 }
@@ -124,7 +124,7 @@ fn of_piece(proximity: &Proximity<'_>, piece: &Piece, from: DVec3) -> Result<f64
     if distance_to(&piece.bounds, from) > 0.0
         || closest_to_origin(a, b, c).squared > piece.deviation * piece.deviation
     {
-        return Ok(of_triangle(piece.corners, from));
+        return Ok(solid_angle(piece.corners, from));
     }
     if piece.deviation <= NEAR {
         return Err(Doubt::Near);
@@ -137,14 +137,5 @@ fn of_piece(proximity: &Proximity<'_>, piece: &Piece, from: DVec3) -> Result<f64
 fn of_closing(corners: [DVec3; 3], from: DVec3) -> Result<f64, Doubt> {
     let [a, b, c] = corners.map(|corner| corner - from);
     let is_on = closest_to_origin(a, b, c).squared <= ON_CLOSING * ON_CLOSING;
-    if is_on { Err(Doubt::OnClosing) } else { Ok(of_triangle(corners, from)) }
-}
-
-/// Above 0 where the corners run clockwise as seen from the point, as those of a surface around it do.
-fn of_triangle(corners: [DVec3; 3], from: DVec3) -> f64 {
-    let [a, b, c] = corners.map(|corner| corner - from);
-    let [la, lb, lc] = [a, b, c].map(DVec3::length);
-    let across = a.dot(b.cross(c));
-    let along = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-    2.0 * across.atan2(along)
+    if is_on { Err(Doubt::OnClosing) } else { Ok(solid_angle(corners, from)) }
 }

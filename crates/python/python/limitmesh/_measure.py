@@ -227,7 +227,7 @@ def info(
     dict
         ``vertices``, ``edges``, ``triangles``, ``components``, ``genus``, ``euler_characteristic``, ``boundary_loops``,
         ``boundary_edges``, ``watertight``, ``min_valence``, ``max_valence``, ``irregular_vertices``, ``bounding_box`` (``low``,
-        ``high``, ``diagonal``), ``area``, ``volume`` (None where open), ``inside_out_components``, ``dihedrals`` (``histogram``
+        ``high``, ``diagonal``), ``area``, ``volume`` (None where open), ``dihedrals`` (``histogram``
         of edges in steps of 10°, ``suggested_crease_angle_degrees``, ``sharp_edges``), ``min_angle_degrees``,
         ``mean_min_angle_degrees``, ``angle_histogram`` (steps of 5°), and ``diagnosis``, a `Diagnosis`.
 

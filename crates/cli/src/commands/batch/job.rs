@@ -8,6 +8,7 @@ use clap::CommandFactory;
 use serde_json::value::RawValue;
 
 use crate::arguments::Arguments;
+use crate::input::full_path;
 
 /// Options of `refine` that are no matter of a job: the report is in its result, and the batch has the others.
 const NOT_OF_JOBS: [&str; 6] = ["output", "report", "threads", "quiet", "help", "version"];
@@ -190,12 +191,12 @@ pub(super) struct Claims {
 impl Claims {
     /// The batch itself has this file.
     pub(super) fn take(&mut self, path: &Path) {
-        self.written.insert(whole(path), None);
+        self.written.insert(full_path(path), None);
     }
 
     /// A job reads this file.
     pub(super) fn read(&mut self, path: &Path) {
-        self.read.insert(whole(path));
+        self.read.insert(full_path(path));
     }
 
     /// The job on that line writes its files, when all jobs have said what they read.
@@ -203,7 +204,7 @@ impl Claims {
     /// # Errors
     /// One of them is another's, in words.
     pub(super) fn write(&mut self, job: &Job, line: usize) -> Result<(), String> {
-        let files: Vec<(PathBuf, &Path)> = job.written().map(|path| (whole(path), path)).collect();
+        let files: Vec<(PathBuf, &Path)> = job.written().map(|path| (full_path(path), path)).collect();
         for (i, (file, path)) in files.iter().enumerate() {
             let name = path.display();
             if files[..i].iter().any(|(earlier, _)| earlier == file) {
@@ -222,18 +223,6 @@ impl Claims {
         }
         self.written.extend(files.into_iter().map(|(file, _)| (file, Some(line))));
         Ok(())
-    }
-}
-
-/// One name for one file, as far as can be told without making it.
-fn whole(path: &Path) -> PathBuf {
-    if let Ok(there) = path.canonicalize() {
-        return there;
-    }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    match (folder.canonicalize(), path.file_name()) {
-        (Ok(folder), Some(name)) => folder.join(name),
-        _ => std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),
     }
 }
 

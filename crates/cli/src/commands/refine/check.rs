@@ -62,15 +62,15 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
     Ok(format)
 }
 
-/// Refuses two jobs that would write one file.
-pub(super) fn together(jobs: &[RefineArguments]) -> anyhow::Result<()> {
-    for (i, job) in jobs.iter().enumerate() {
-        let twice = jobs[..i].iter().any(|earlier| earlier.output.is_some() && earlier.output == job.output);
-        if twice {
-            return usage(format!("{} would be written twice, for inputs of one name", job.output_name()));
-        }
+/// Refuses two jobs that would write one file, and one that would replace an input of any of them.
+pub(super) fn together(arguments: &RefineArguments, jobs: &[RefineArguments]) -> anyhow::Result<()> {
+    if arguments.exact.dry_run {
+        return Ok(());
     }
-    Ok(())
+    let written: Vec<&Path> = jobs.iter().filter_map(|job| job.output.as_deref()).collect();
+    let inputs: Vec<&Path> = jobs.iter().map(RefineArguments::input).collect();
+    output::check_replaced(&written, &inputs, Some(arguments.overwrite))?;
+    output::check_once(&written)
 }
 
 /// Refuses glTF assets and 3MF packages, which are edited mesh by mesh, where that cannot be.
@@ -255,6 +255,6 @@ pub(super) fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
         output::check_writable(report)?;
         written.push(report);
     }
-    output::check_replaced(&written[beside_mesh..], &[arguments.input()], "a report or picture")?;
+    output::check_replaced(&written[beside_mesh..], &[arguments.input()], None)?;
     output::check_once(&written)
 }

@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     // The report is about all of them.
     let each = RefineArguments { report: None, ..arguments.clone() };
     let jobs = jobs::jobs(&each)?;
-    check::together(&jobs)?;
+    check::together(arguments, &jobs)?;
     let formats = jobs.iter().map(check::options).collect::<anyhow::Result<Vec<_>>>()?;
     if let Some(Some(format)) = formats.iter().find(|format| format.is_none_or(is_scene)) {
         return usage(format!("--shared-topology is for OBJ, PLY, OFF and STL files, not {format:?}"));
@@ -147,7 +147,7 @@ fn check_report(arguments: &RefineArguments, jobs: &[RefineArguments]) -> anyhow
     let Some(report) = arguments.report.as_deref() else { return Ok(()) };
     output::check_writable(report)?;
     let inputs: Vec<&Path> = jobs.iter().map(RefineArguments::input).collect();
-    output::check_replaced(&[report], &inputs, "a report")?;
+    output::check_replaced(&[report], &inputs, None)?;
     let outputs = jobs.iter().filter_map(|job| job.output.as_deref());
     output::check_once(&outputs.chain([report]).collect::<Vec<_>>())
 }

@@ -1,6 +1,6 @@
 //! Several inputs of one command: where each is written, and how they end together.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf, is_separator};
 
 use anyhow::Context;
@@ -38,9 +38,13 @@ fn job(arguments: &RefineArguments, input: &Path) -> anyhow::Result<RefineArgume
         path.as_deref()
             .map(|path| if is_folder(path) { file_in(path, input, extension()?) } else { Ok(path.into()) })
     };
+    let output = match place(&arguments.output, &extension).transpose()? {
+        None if !arguments.exact.dry_run => Some(smooth_file(input, extension()?)?),
+        given => given,
+    };
     Ok(RefineArguments {
         inputs: vec![input.to_owned()],
-        output: place(&arguments.output, &extension).transpose()?,
+        output,
         report: place(&arguments.report, &|| Ok("json")).transpose()?,
         picture: place(&arguments.picture, &|| Ok("png")).transpose()?,
         ..arguments.clone()
@@ -58,21 +62,35 @@ fn ends_with_separator(path: &Path) -> bool {
 
 /// The file in a folder that is called as the input is.
 fn file_in(folder: &Path, input: &Path, extension: &str) -> anyhow::Result<PathBuf> {
+    Ok(folder.join(named(stem(input)?, ".", extension)))
+}
+
+/// The file in the input's folder that is called as the input is, with `-smooth` behind: where a result goes without `--output`.
+fn smooth_file(input: &Path, extension: &str) -> anyhow::Result<PathBuf> {
+    let folder = match input::builtin_name(input) {
+        Some(_) => Path::new(""),
+        None => input.parent().unwrap_or(Path::new("")),
+    };
+    Ok(folder.join(named(stem(input)?, "-smooth.", extension)))
+}
+
+fn named(stem: &OsStr, middle: &str, extension: &str) -> OsString {
+    [stem, OsStr::new(middle), OsStr::new(extension)].into_iter().collect()
+}
+
+/// The input's name without its folder and its extension.
+fn stem(input: &Path) -> anyhow::Result<&OsStr> {
     let stem = match input::builtin_name(input) {
         Some(model) => Some(OsStr::new(model)),
         None => input.file_stem().filter(|&stem| stem != "-"),
     };
-    let Some(stem) = stem else {
-        return usage(format!(
-            "{} has no name for a file in {}; name the file to write",
-            input::display_name(input),
-            folder.display()
-        ));
-    };
-    let mut name = stem.to_owned();
-    name.push(".");
-    name.push(extension);
-    Ok(folder.join(name))
+    match stem {
+        Some(stem) => Ok(stem),
+        None => usage(format!(
+            "{} has no name that a file could have; --output FILE names it",
+            input::display_name(input)
+        )),
+    }
 }
 
 /// Makes the folders that are named with a slash at the end.

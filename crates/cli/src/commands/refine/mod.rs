@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         return frames::run(arguments, progress);
     }
     let jobs = jobs::jobs(arguments)?;
-    check::together(&jobs)?;
+    check::together(arguments, &jobs)?;
     let formats = jobs.iter().map(check::options).collect::<anyhow::Result<Vec<_>>>()?;
     jobs::make_folders(arguments)?;
     jobs.iter().try_for_each(check::files)?;

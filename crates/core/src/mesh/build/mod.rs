@@ -1,11 +1,12 @@
 //! From a polygon soup to a manifold, oriented triangle mesh.
 //!
 //! In this order: weld vertices, cut polygons into triangles, drop repeated faces and those of zero area,
-//! connect and orient the faces, cut where more than a manifold meets, carry the tags over. Each step counts
+//! connect and orient the faces, turn what is inside out, cut where more than a manifold meets, carry the tags over. Each step counts
 //! what it found in the [`Diagnosis`]. All of them take time proportional to the input, or n log n,
 //! but for polygons of tens of thousands of corners, which may take n^1.5.
 
 mod cut;
+mod inside_out;
 mod orient;
 mod repeated;
 mod retag;
@@ -49,7 +50,7 @@ options! {
         /// Refuse instead of repairing.
         pub strict: bool = false,
         /// Leave all faces the way round that they are, where that says which side is seen: neighbours that disagree are cut apart instead of
-        /// turned.
+        /// turned, and closed components whose normals point inwards are left so.
         pub keep_windings: bool = false,
     }
 }
@@ -143,10 +144,12 @@ fn assemble(
     let name = |v: u32| names[v as usize];
     let vertex_count = names.len();
     let mut neighbours = orient::connect(&faces.triangles, vertex_count, name, diagnosis);
-    if !keeps_windings {
-        orient::orient(&mut faces, &mut neighbours, diagnosis);
-    }
+    let components = (!keeps_windings).then(|| orient::orient(&mut faces, &mut neighbours, diagnosis));
     orient::cut_opposed(&faces, &mut neighbours, diagnosis);
+    if let Some(components) = components {
+        let position = |v: u32| soup.positions[names[v as usize] as usize];
+        inside_out::turn_inside_out(&mut faces, &mut neighbours, &components, position, diagnosis);
+    }
     let Sheets { topology, inputs, copied, middles, junctions, corners } =
         cut::cut(faces, neighbours, vertex_count, name, diagnosis);
     let mut positions = limitmesh_pages::with_capacity(vertex_count + copied.len());

@@ -39,10 +39,30 @@ pub(super) fn connect(
     Neighbours { twins, cuts }
 }
 
+/// Faces that are joined through edges.
+pub(super) struct Components {
+    /// All faces, those of a component next to each other.
+    faces: Vec<u32>,
+    /// Where each component begins.
+    starts: Vec<usize>,
+}
+
+impl Components {
+    /// The faces of each component.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &[u32]> {
+        let ends = self.starts.iter().skip(1).copied().chain([self.faces.len()]);
+        self.starts.iter().zip(ends).map(|(&start, end)| &self.faces[start..end])
+    }
+}
+
 /// Turns faces so that neighbours run opposite ways along their edge. In each component the smaller part is
 /// turned; of two equal ones that without the lowest face.
-pub(super) fn orient(faces: &mut Faces, neighbours: &mut Neighbours, diagnosis: &mut Diagnosis) {
-    let turned = faces_to_turn(&faces.triangles, &neighbours.twins);
+pub(super) fn orient(
+    faces: &mut Faces,
+    neighbours: &mut Neighbours,
+    diagnosis: &mut Diagnosis,
+) -> Components {
+    let (components, turned) = faces_to_turn(&faces.triangles, &neighbours.twins);
     if turned.contains(&true) {
         let named = faces.inputs.iter().zip(&turned).filter(|(_, turned)| **turned);
         let mut named: Vec<u32> = named.map(|(&input, _)| input).collect();
@@ -51,20 +71,23 @@ pub(super) fn orient(faces: &mut Faces, neighbours: &mut Neighbours, diagnosis: 
         diagnosis.flipped_faces.add_all(named);
         turn(&mut faces.triangles, neighbours, &turned);
     }
+    components
 }
 
 /// Breadth-first from the lowest face of each component.
-fn faces_to_turn(triangles: &[[u32; 3]], twins: &[u32]) -> Vec<bool> {
+fn faces_to_turn(triangles: &[[u32; 3]], twins: &[u32]) -> (Components, Vec<bool>) {
     let origins = triangles.as_flattened();
     let mut visited = vec![false; triangles.len()];
     let mut turned = vec![false; triangles.len()];
     let mut order: Vec<u32> = Vec::with_capacity(triangles.len());
+    let mut starts = Vec::new();
     for root in 0..triangles.len() {
         if visited[root] {
             continue;
         }
         visited[root] = true;
         let start = order.len();
+        starts.push(start);
         let mut next = start;
         let mut turned_here = 0;
         order.push(root as u32);
@@ -89,11 +112,11 @@ fn faces_to_turn(triangles: &[[u32; 3]], twins: &[u32]) -> Vec<bool> {
             component.iter().for_each(|&face| turned[face as usize] ^= true);
         }
     }
-    turned
+    (Components { faces: order, starts }, turned)
 }
 
 /// Swaps the last two corners of the marked faces, and renames their half-edges.
-fn turn(triangles: &mut [[u32; 3]], neighbours: &mut Neighbours, turned: &[bool]) {
+pub(super) fn turn(triangles: &mut [[u32; 3]], neighbours: &mut Neighbours, turned: &[bool]) {
     // Half-edge 0 ran from corner 0 to corner 1, which is now corner 2.
     let renamed = |h: u32| {
         if turned[(h / 3) as usize] { h - h % 3 + (2 - h % 3) } else { h }

@@ -1,6 +1,7 @@
 //! What the tests of the building share: small soups, and a count of what a mesh is made of.
 
 mod cuts;
+mod inside_out;
 mod polygons;
 mod random;
 mod repairs;
