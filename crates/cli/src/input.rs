@@ -372,11 +372,6 @@ pub(crate) fn describe(name: &str, error: MeshError) -> anyhow::Error {
     anyhow::Error::new(error).context(format!("{name} gives no control mesh"))
 }
 
-/// Whether both paths name one file, as far as can be known without reading it.
-pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
-    full_path(a) == full_path(b)
-}
-
 /// One name for one file, as far as can be known without making it: links are followed.
 pub(crate) fn full_path(path: &Path) -> PathBuf {
     if let Ok(there) = path.canonicalize() {
