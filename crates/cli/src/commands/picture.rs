@@ -20,7 +20,7 @@ pub(super) fn check_name(path: &Path) -> anyhow::Result<()> {
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
         return output::check_writable(path);
     }
-    usage(format!("{}: pictures are PNG files, expected a name that ends with .png", path.display()))
+    usage(format!("{}: pictures are PNG files; give a name that ends with .png", path.display()))
 }
 
 /// The view of a picture: along a direction of sight, or from the front, a little from the side and above.

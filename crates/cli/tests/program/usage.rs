@@ -23,6 +23,25 @@ fn help_and_version_are_printed() {
     assert_eq!(version.trim(), concat!("limitmesh ", env!("CARGO_PKG_VERSION")));
 }
 
+/// A line on how commands are written helps who wrote an option wrong, and nobody who asked for what makes no sense.
+#[test]
+fn usage_is_shown_for_what_is_written_wrong_alone() {
+    let shown = |words: &str| run(words, &[]).expect(2).stderr.contains("Usage:");
+    for written_wrong in ["refine", "refine builtin:cup -o x.ply --tolerence 1", "measure builtin:cup"] {
+        assert!(shown(written_wrong), "{written_wrong}");
+    }
+    for makes_no_sense in [
+        "refine builtin:cup -o x.ply --levels 3",
+        "refine builtin:cup -o x.vtk",
+        "refine builtin:cup -o x.ply --tolerance 0",
+        "refine builtin:cup -o x.ply --view 0,0,1 --eye 0,0,1",
+        "render builtin:cup -o x.png --flat --smooth",
+        "lod builtin:cup -o -",
+    ] {
+        assert!(!shown(makes_no_sense), "{makes_no_sense}");
+    }
+}
+
 #[test]
 fn options_out_of_range_are_refused_before_any_work() {
     let folder = folder();

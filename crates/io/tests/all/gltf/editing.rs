@@ -192,7 +192,9 @@ fn morph_targets_are_replaced_and_counted() {
         let mut asset = Asset::from_bytes(&glb(&odd(), &floats(&[0.0; 9])), None).unwrap();
         asset.replace(0, 0, &Geometry { targets, ..geometry() }).expect_err("a flaw").to_string()
     };
-    assert!(refused(&[vec![]]).contains("meshes[0].primitives[0].targets[0]: met nothing"));
+    assert!(refused(&[vec![]]).contains("meshes[0].primitives[0].targets[0]: the target has no attribute"));
     let short = VertexAttribute { values: vec![0.0; 9], ..added("POSITION", 3) };
-    assert!(refused(&[vec![short]]).contains("meshes[0].primitives[0].targets[0].POSITION: met 9 numbers"));
+    assert!(refused(&[vec![short]]).contains(
+        "meshes[0].primitives[0].targets[0].POSITION: expected 3 numbers for each vertex, found 9"
+    ));
 }
