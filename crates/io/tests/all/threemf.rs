@@ -194,7 +194,7 @@ fn volumes_are_numbered_anew() {
     let nothing = |_: usize| Source { face: 1, corners: None };
     let new = NewTriangles { source: &nothing, ..new };
     let flaw = package.replace(0, &new).unwrap_err().to_string();
-    assert!(flaw.contains("no triangles left of the volume from 0 to 0"), "{flaw}");
+    assert!(flaw.contains("the volume from triangle 0 to 0 has no triangle left"), "{flaw}");
 }
 
 #[test]
@@ -293,7 +293,7 @@ fn flaws_name_their_place() {
                 "<object id=\"1\"><components><component objectid=\"1\"/></components></object>",
                 "<item objectid=\"1\"/>",
             ),
-            "more than 64 components within each other",
+            "more than 64 components are within each other",
         ),
         (
             model(
@@ -303,7 +303,7 @@ fn flaws_name_their_place() {
                 }),
                 "<item objectid=\"39\"/>",
             ),
-            "more than 1000000 objects with all components",
+            "with all components there are more than 1000000 objects",
         ),
     ];
     for (model, words) in cases {
@@ -321,7 +321,7 @@ fn flaws_name_their_place() {
         (Vec::new(), "the file is empty"),
         (
             package("\u{fffd}", &[]).iter().map(|&b| if b == 0xBF { 0xFF } else { b }).collect(),
-            "a part that can be unpacked",
+            "it cannot be unpacked",
         ),
     ] {
         let said = refused(bytes);

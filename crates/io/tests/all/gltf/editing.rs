@@ -90,8 +90,11 @@ fn geometry_that_does_not_fit_is_refused() {
     let mut refused =
         |geometry: &Geometry<'_>| asset.replace(0, 0, geometry).expect_err("a flaw").to_string();
     let good = geometry();
-    assert!(refused(&Geometry { triangles: &[[0, 1, 4]], ..good }).contains("a triangle with vertex 4"));
-    assert!(refused(&Geometry { triangles: &[], ..good }).contains("at least one triangle"));
+    assert!(
+        refused(&Geometry { triangles: &[[0, 1, 4]], ..good })
+            .contains("a triangle names vertex 4, but there are 4")
+    );
+    assert!(refused(&Geometry { triangles: &[], ..good }).contains("a primitive needs triangles"));
     assert!(refused(&Geometry { positions: &[[1e39, 0.0, 0.0]; 4], ..good }).contains("32-bit floats"));
     assert!(refused(&Geometry { normals: Some(&[]), ..good }).contains("0 normals"));
 }
