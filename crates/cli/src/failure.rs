@@ -36,6 +36,11 @@ pub(crate) fn is_broken_pipe(error: &anyhow::Error) -> bool {
         .any(|cause| cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe))
 }
 
+/// Prints why the command line makes no sense. What it means is at fault, not how it is written: a line on its usage would not help.
+pub(crate) fn print_usage_error(what: &str) {
+    eprintln!("error: {what}");
+}
+
 /// Prints why a result is less than what was asked for.
 pub(crate) fn print_stopped_short(why: &str) {
     eprintln!("stopped short: {why}");

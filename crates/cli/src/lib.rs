@@ -31,7 +31,8 @@ mod written_unit;
 
 use std::ffi::OsString;
 
-use clap::{CommandFactory, Parser, error::ErrorKind};
+use clap::Parser;
+use clap::error::{ContextKind, ErrorKind};
 
 use arguments::{Arguments, Command};
 use failure::{Outcome, UsageError, is_broken_pipe};
@@ -42,7 +43,7 @@ pub use embedded::{Failure, Host, Refined, examined, refine_files};
 /// The program with a command line, whose first word is the program's name; gives its exit code. Where the command line makes no sense, or
 /// asks for help, the process ends here. `again` starts this program in another process: its file, and what comes before the arguments.
 pub fn program(words: impl IntoIterator<Item = OsString>, again: &[OsString]) -> u8 {
-    let arguments = Arguments::parse_from(words);
+    let arguments = parse(words);
     let progress = Progress::new(arguments.global.quiet);
     let result = prepare(&arguments).and_then(|()| run(&arguments, again, &progress));
     progress.clear();
@@ -54,7 +55,10 @@ pub fn program(words: impl IntoIterator<Item = OsString>, again: &[OsString]) ->
         }
         Err(error) if is_broken_pipe(&error) => 0,
         Err(error) => match error.downcast_ref::<UsageError>() {
-            Some(UsageError(what)) => exit_with_usage(&arguments.command, what),
+            Some(UsageError(what)) => {
+                failure::print_usage_error(what);
+                2
+            }
             None => {
                 failure::print(&error);
                 1
@@ -63,15 +67,15 @@ pub fn program(words: impl IntoIterator<Item = OsString>, again: &[OsString]) ->
     }
 }
 
-/// Has clap word and format a usage error like those that it finds itself, and exit with code 2.
-fn exit_with_usage(command: &Command, what: &str) -> ! {
-    let mut whole = Arguments::command();
-    // Gives the commands their whole names.
-    whole.build();
-    match whole.find_subcommand_mut(command.name()) {
-        Some(own) => own.error(ErrorKind::ValueValidation, what).exit(),
-        None => whole.error(ErrorKind::ValueValidation, what).exit(),
-    }
+/// The arguments of a command line; ends the process where they make no sense or ask for help.
+fn parse(words: impl IntoIterator<Item = OsString>) -> Arguments {
+    Arguments::try_parse_from(words).unwrap_or_else(|mut error| {
+        // Both options are written as they should be: it is their meaning that clashes.
+        if error.kind() == ErrorKind::ArgumentConflict {
+            error.remove(ContextKind::Usage);
+        }
+        error.exit()
+    })
 }
 
 /// Sets up what holds for the whole process: the thread pool and what Ctrl-C does.

@@ -107,16 +107,16 @@ fn coordinates(text: &str, has_count: bool) -> anyhow::Result<Vec<[f64; 3]>> {
         match <[f64; 3]>::try_from(numbers) {
             Ok(_) if may_have_decimal_commas(line) => {
                 bail!(
-                    "line {row}: commas in '{line}' may be decimal ones; three numbers with decimal points are expected"
+                    "line {row}: commas in '{line}' may be decimal ones; write three numbers with decimal points"
                 )
             }
             Ok(point) if point.iter().all(|x| x.is_finite()) => found.push(point),
             Err(_) if row == 1 && !words.iter().any(|word| is_like_number(word)) => {}
-            _ => bail!("line {row}: three coordinates are expected, not '{}'", words.join(" ")),
+            _ => bail!("line {row}: expected three coordinates, found '{}'", words.join(" ")),
         }
     }
     if let Some(count) = count.filter(|&count| count != found.len()) {
-        bail!("line 1: {count} points are expected, there are {}", found.len());
+        bail!("line 1 promises {count} points, but there are {}", found.len());
     }
     Ok(found)
 }
@@ -216,7 +216,7 @@ mod tests {
             assert_eq!(coordinates(&text, true).expect("points"), expected);
         }
         let error = coordinates(&format!("3\n{points}"), true).expect_err("too few").to_string();
-        assert_eq!(error, "line 1: 3 points are expected, there are 2");
+        assert_eq!(error, "line 1 promises 3 points, but there are 2");
         let error = coordinates(&format!("{points}2\n"), true).expect_err("another count").to_string();
         assert!(error.starts_with("line 3: "), "{error}");
     }

@@ -23,7 +23,7 @@ pub enum ReadError {
         reason: io::Error,
     },
     /// There is not a single byte.
-    #[error("{}the file is empty, expected {format} content", prefix(path))]
+    #[error("{}the file is empty", prefix(path))]
     Empty {
         /// The file, if it was one.
         path: Option<PathBuf>,
@@ -121,15 +121,24 @@ pub struct Flaw {
     pub place: Place,
     /// The element there, such as `vertex 5`, counted from 0; empty outside elements.
     pub element: String,
-    /// What was met.
-    pub met: String,
-    /// What the format asks for.
-    pub expected: String,
+    /// What is wrong, in words.
+    pub problem: String,
+}
+
+/// What is wrong where something else was found than a format asks for.
+pub(crate) fn expected_but_found(expected: &str, found: &str) -> String {
+    format!("expected {expected}, found {found}")
 }
 
 impl Flaw {
-    pub(crate) fn new(place: Place, met: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self { place, element: String::new(), met: met.into(), expected: expected.into() }
+    /// Something was found where the format asks for something else.
+    pub(crate) fn new(place: Place, found: impl AsRef<str>, expected: impl AsRef<str>) -> Self {
+        Self::saying(place, expected_but_found(expected.as_ref(), found.as_ref()))
+    }
+
+    /// A problem in words.
+    pub(crate) fn saying(place: Place, problem: impl Into<String>) -> Self {
+        Self { place, element: String::new(), problem: problem.into() }
     }
 
     /// The same flaw with the element it is in.
@@ -149,7 +158,7 @@ impl fmt::Display for Flaw {
         if !self.element.is_empty() {
             write!(out, ", {}", self.element)?;
         }
-        write!(out, ": met {}, expected {}", self.met, self.expected)
+        write!(out, ": {}", self.problem)
     }
 }
 
@@ -175,7 +184,7 @@ pub enum WriteError {
         reason: io::Error,
     },
     /// There is not one attribute for each vertex.
-    #[error("{count} {what} for {vertices} vertices, expected one for each")]
+    #[error("there are {count} {what} for {vertices} vertices: each vertex needs one")]
     AttributeCount {
         /// Which attribute.
         what: &'static str,
@@ -185,13 +194,13 @@ pub enum WriteError {
         vertices: usize,
     },
     /// A channel has no value at all, and there are vertices.
-    #[error("channel {name} has no values, expected one at least")]
+    #[error("channel {name} has no values")]
     NoValues {
         /// The channel.
         name: String,
     },
     /// A name would end its line in an OBJ file.
-    #[error("the name {name:?} has a line break, expected one line")]
+    #[error("the name {name:?} has a line break, which OBJ files cannot hold")]
     LineBreak {
         /// The name.
         name: String,
@@ -200,7 +209,7 @@ pub enum WriteError {
     #[error(transparent)]
     Channel(#[from] limitmesh::mesh::ChannelError),
     /// There are not three corner normals for each triangle.
-    #[error("corner normals of {count} triangles for {triangles}, expected three for each")]
+    #[error("there are corner normals of {count} triangles for {triangles}: each triangle needs three")]
     CornerNormals {
         /// Triangles that have some.
         count: usize,
@@ -218,13 +227,13 @@ pub enum WriteError {
         normals: usize,
     },
     /// A property's name is empty, has other than visible ASCII characters, or is there twice.
-    #[error("property '{name}': expected a name of visible ASCII characters that nothing else has")]
+    #[error("property '{name}' needs a name of visible ASCII characters that nothing else has")]
     PropertyName {
         /// The name.
         name: String,
     },
     /// A property does not have one number for each element.
-    #[error("property '{name}' has {count} numbers for {elements} {what}, expected one for each")]
+    #[error("property '{name}' has {count} numbers for {elements} {what}: each needs one")]
     PropertyCount {
         /// The property's name.
         name: String,
@@ -236,9 +245,7 @@ pub enum WriteError {
         what: &'static str,
     },
     /// A property is NaN or infinite somewhere.
-    #[error(
-        "property '{name}' of element {element} is {value}, which {format} files cannot hold, expected a finite number"
-    )]
+    #[error("property '{name}' of element {element} is {value}: {format} files hold finite numbers only")]
     PropertyNotFinite {
         /// The property's name.
         name: String,
@@ -262,9 +269,7 @@ pub enum WriteError {
         vertices: usize,
     },
     /// A number is NaN or infinite, or too large for the format's `f32`.
-    #[error(
-        "{what} of vertex {vertex} is {value}, which {format} files cannot hold, expected a finite number"
-    )]
+    #[error("{what} of vertex {vertex} is {value}: {format} files hold finite numbers only")]
     NotFinite {
         /// Which number: `position`, `normal` or `quality`.
         what: &'static str,
@@ -277,8 +282,8 @@ pub enum WriteError {
     },
     /// Rounded to the format's `f32`, no triangle is left.
     #[error(
-        "as {format} files round coordinates none of {triangles} triangles has three different corners any more, expected coordinates \
-         that differ by more than a ten millionth of the greatest, and than 1e-45; PLY, OBJ and OFF files hold them as they are"
+        "{format} files round coordinates so much that none of {triangles} triangles keeps three different corners: coordinates must \
+         differ by more than a ten millionth of the greatest, and by more than 1e-45; PLY, OBJ and OFF files hold them as they are"
     )]
     Rounded {
         /// Number of triangles.

@@ -36,12 +36,12 @@ impl fmt::Display for UnknownFormat {
         match self.path.extension() {
             Some(extension) => write!(
                 out,
-                "{path}: the extension '{}' is not one that is known, expected .obj, .ply, .stl, .off, .gltf, .glb or .3mf",
+                "{path}: the extension '{}' is unknown; known are .obj, .ply, .stl, .off, .gltf, .glb and .3mf",
                 extension.display()
             ),
             None => write!(
                 out,
-                "{path}: the name has no extension, expected .obj, .ply, .stl, .off, .gltf, .glb or .3mf"
+                "{path}: the name has no extension; known are .obj, .ply, .stl, .off, .gltf, .glb and .3mf"
             ),
         }
     }

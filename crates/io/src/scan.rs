@@ -148,13 +148,13 @@ impl<'a> Scanner<'a> {
 
     /// A flaw here: `word` (or the end of the line or text) where `expected` should stand.
     #[cold]
-    pub(crate) fn unexpected(&self, word: Option<&[u8]>, expected: impl Into<String>) -> Flaw {
-        let met = match word {
+    pub(crate) fn unexpected(&self, word: Option<&[u8]>, expected: impl AsRef<str>) -> Flaw {
+        let found = match word {
             Some(word) => quoted(word),
             None if self.is_at_end() => "the end of the file".to_owned(),
             None => "the end of the line".to_owned(),
         };
-        Flaw::new(self.place(), met, expected)
+        Flaw::new(self.place(), found, expected)
     }
 
     /// The next word of this line as a finite number; `what` names it for the error.

@@ -28,7 +28,7 @@ pub enum RenderError {
         count: usize,
     },
     /// A number that must be finite is NaN or infinite.
-    #[error("{what} {index} holds {value}, expected a finite number")]
+    #[error("{what} {index} holds {value}, which is no finite number")]
     NotFinite {
         /// What the number belongs to.
         what: &'static str,
@@ -38,7 +38,7 @@ pub enum RenderError {
         value: f64,
     },
     /// An array given for each vertex, triangle or corner has the wrong length.
-    #[error("{met} {what}, expected {expected}: one for each is needed")]
+    #[error("there are {met} {what}, but {expected} are needed: one for each")]
     Count {
         /// What is counted.
         what: &'static str,
@@ -56,7 +56,7 @@ pub enum RenderError {
         limit: usize,
     },
     /// A setting is out of range.
-    #[error("{name} is {value}, expected {expected}")]
+    #[error("{name} must be {expected}, but is {value}")]
     BadOption {
         /// The setting's name.
         name: &'static str,

@@ -10,8 +10,8 @@
 use crate::camera::Homogeneous;
 use crate::parallel;
 
-/// Triangles smaller than this many line widths show no line at all …
-const FADE_FROM: f32 = 1.5;
+/// Triangles smaller than this many pixels, or line widths where lines are wider, show no line at all …
+const FADE_FROM: f32 = 4.0;
 /// … and from this many on the full one. In between, lines would cover more than a third of the surface.
 const FADE_TO: f32 = 7.0;
 
@@ -104,8 +104,10 @@ pub(crate) fn ink(triangles: &[[u32; 3]], points: &[Homogeneous], width: f32) ->
         let corners = triangles[face].map(|v| points[v as usize]);
         (Lines::new(corners).front, size(corners))
     });
-    let mut inks: Vec<Ink> =
-        looks.iter().map(|(_, size)| Ink { reach: [width; 3], opacity: fade(size / width) }).collect();
+    let mut inks: Vec<Ink> = looks
+        .iter()
+        .map(|(_, size)| Ink { reach: [width; 3], opacity: fade(size / width.max(1.0)) })
+        .collect();
     let (starts, mut sides) = edges_by_lower_end(triangles, points.len());
     for vertex in 0..points.len() {
         let here = &mut sides[starts[vertex]..starts[vertex + 1]];
@@ -122,8 +124,8 @@ pub(crate) fn ink(triangles: &[[u32; 3]], points: &[Homogeneous], width: f32) ->
     inks
 }
 
-fn fade(widths: f32) -> f32 {
-    let t = ((widths - FADE_FROM) / (FADE_TO - FADE_FROM)).clamp(0.0, 1.0);
+fn fade(size: f32) -> f32 {
+    let t = ((size - FADE_FROM) / (FADE_TO - FADE_FROM)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
@@ -184,6 +186,25 @@ mod tests {
     fn smaller_triangles_fade_more() {
         let opacities = [1.0, 2.0, 4.0, 8.0, 12.0].map(|high| slanted_grid(high)[0].opacity);
         assert!(opacities.is_sorted(), "{opacities:?}");
-        assert!(opacities[0] < 0.2 && opacities[4] > 0.9, "{opacities:?}");
+        assert!(opacities[0] == 0.0 && opacities[4] > 0.9, "{opacities:?}");
+    }
+
+    /// An equilateral triangle by its altitude in pixels, drawn with lines of a width.
+    fn opacity(altitude: f64, width: f32) -> f32 {
+        let point = |x: f64, y: f64| Homogeneous { x, y, w: 1.0, distance: 1.0 };
+        let half = altitude / 3f64.sqrt();
+        let corners = [point(-half, 0.0), point(half, 0.0), point(0.0, altitude)];
+        ink(&[[0, 1, 2]], &corners, width)[0].opacity
+    }
+
+    #[test]
+    fn triangles_below_four_pixels_have_no_edges() {
+        for altitude in [0.5, 2.0, 3.9] {
+            assert_eq!(opacity(altitude, 0.9), 0.0, "{altitude}");
+        }
+        assert!(opacity(4.5, 0.9) > 0.0 && opacity(4.5, 0.9) < 1.0);
+        assert_eq!(opacity(7.1, 0.9), 1.0);
+        // Of wide lines four times their width.
+        assert_eq!((opacity(11.0, 3.0), opacity(21.3, 3.0)), (0.0, 1.0));
     }
 }

@@ -15,11 +15,11 @@ const FORM: &str = "eye, target and up (three numbers each), the vertical angle 
 /// A camera as an option has it.
 pub(super) fn camera(text: &str) -> Result<Camera, String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
-    let [numbers @ .., fov, size] = parts.as_slice() else { return Err(format!("expected {FORM}")) };
+    let [numbers @ .., fov, size] = parts.as_slice() else { return Err(format!("give {FORM}")) };
     let numbers = numbers.iter().map(|part| finite(part)).collect::<Result<Vec<f64>, String>>()?;
     let [a, b, c, d, e, f, g, h, i] = numbers[..] else {
         return Err(format!(
-            "{} numbers before the angle of view and the size; expected {FORM}",
+            "it has {} numbers before the angle of view and the size; give {FORM}",
             numbers.len()
         ));
     };
@@ -47,7 +47,7 @@ pub(crate) fn cameras_in(path: &Path) -> anyhow::Result<Vec<Camera>> {
             Err(what) => anyhow::bail!("{}, line {}: {what}", path.display(), i + 1),
         }
     }
-    anyhow::ensure!(!cameras.is_empty(), "{}: no camera in it; expected {FORM}", path.display());
+    anyhow::ensure!(!cameras.is_empty(), "{} has no camera; give {FORM}", path.display());
     Ok(cameras)
 }
 
@@ -71,7 +71,7 @@ mod tests {
     #[test]
     fn cameras_that_look_nowhere_are_refused() {
         let bad = [
-            ("", "expected eye"),
+            ("", "give eye"),
             ("1,2", "0 numbers"),
             ("0,0,5,0,0,0,0,1,0,1920x1080", "8 numbers"),
             ("0,0,5,0,0,0,0,1,0,1,45,1920x1080", "10 numbers"),

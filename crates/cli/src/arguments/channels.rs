@@ -62,7 +62,7 @@ impl FromStr for Choice {
     fn from_str(text: &str) -> Result<Self, String> {
         // Names may have an equals sign, modes have none.
         let Some((name, mode)) = text.rsplit_once('=') else {
-            return Err(format!("'{text}' has no =; expected NAME=smooth, linear, nearest or drop"));
+            return Err(format!("'{text}' has no =; give NAME=smooth, linear, nearest or drop"));
         };
         let mode = match mode {
             "smooth" => Mode::Smooth,

@@ -89,11 +89,11 @@ impl FromStr for Place {
         let words: Vec<&str> = words(text).collect();
         let text = &shortened(text);
         let [face, weights @ ..] = &words[..] else {
-            return Err("FACE,W0,W1,W2 is expected".to_owned());
+            return Err("it is empty; give FACE,W0,W1,W2".to_owned());
         };
         let weights = weights.iter().map(|weight| finite(weight)).collect::<Result<Vec<_>, _>>()?;
         let weights = <[f64; 3]>::try_from(weights).map_err(|weights| {
-            format!("{} weights in '{text}', three are expected: FACE,W0,W1,W2", weights.len())
+            format!("'{text}' has {} weights; give three: FACE,W0,W1,W2", weights.len())
         })?;
         let face = face
             .parse()

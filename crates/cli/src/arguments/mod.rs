@@ -117,23 +117,3 @@ pub(crate) enum Command {
     #[command(hide = true)]
     BatchJob(BatchJobArguments),
 }
-
-impl Command {
-    /// As it is called on the command line.
-    pub(crate) fn name(&self) -> &'static str {
-        match self {
-            Self::Refine(_) => "refine",
-            Self::Measure(_) => "measure",
-            Self::Compare(_) => "compare",
-            Self::Render(_) => "render",
-            Self::Reproduce(_) => "reproduce",
-            Self::Info(_) => "info",
-            Self::Evaluate(_) => "evaluate",
-            Self::Project(_) => "project",
-            Self::Lod(_) => "lod",
-            Self::Models(_) => "models",
-            Self::Batch(_) => "batch",
-            Self::BatchJob(_) => "batch-job",
-        }
-    }
-}

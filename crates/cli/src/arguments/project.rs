@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::shared::loop_family;
 use super::values::{self, Extent};
 use super::{LimitArguments, OverwriteArguments};
 
@@ -23,7 +24,7 @@ Examples:
 /// Distances are below 0 inside of a closed surface; where it is open, behind it, as its normal at the closest point tells.
 #[derive(Args, Debug, Clone)]
 #[command(after_help = EXAMPLES)]
-#[command(mut_arg("scheme", |scheme| scheme.help("Scheme of the limit surface: loop or loop-warren [default: loop]")))]
+#[command(mut_arg("scheme", |scheme| scheme.value_parser(loop_family())))]
 pub(crate) struct ProjectArguments {
     /// Points: a mesh or text file, - for standard input, or builtin:NAME
     #[arg(value_name = "POINTS")]

@@ -169,8 +169,7 @@ pub(super) fn bytes(text: &str) -> Result<f64, String> {
     };
     let power =
         rest.char_indices().next_back().and_then(|(i, unit)| Some((i, "KMGT".find(unit)? as i32 + 1)));
-    let wrong =
-        || format!("'{text}': expected bytes, or a number with K, M, G or T, such as 500M, 500MB or 500MiB");
+    let wrong = || format!("'{text}' is no number of bytes, such as 500M, 500MB or 500MiB (K, M, G or T)");
     match power {
         Some((i, power)) => Ok(finite(&rest[..i]).map_err(|_| wrong())? * base.unwrap_or(1024.0).powi(power)),
         // `500B` are bytes, `500iB` is nothing.

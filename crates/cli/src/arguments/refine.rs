@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::{Arg, Args, ValueEnum};
 use limitmesh::scheme::Scheme;
 use limitmesh_io::{Format, WriteOptions};
 use serde::Serialize;
@@ -94,6 +94,38 @@ Examples:
 
 Exit code 3 means that a cap was reached before what was asked for; the mesh is written, and free of cracks.";
 
+const FIRST_EXAMPLES: &str = "\
+Examples:
+  limitmesh refine scan.stl -o smooth.obj --tolerance 0.05 --report smooth.json
+  limitmesh refine builtin:head -o head.ply --triangles 20000 --picture head.png
+  limitmesh refine *.stl -o smooth/ --triangles 20k";
+
+/// What most people need, which `-h` shows; `--help` shows all.
+const USUAL: [&str; 16] = [
+    "output",
+    "to",
+    "within",
+    "tolerance",
+    "triangles",
+    "angle",
+    "optimize",
+    "crease_angle",
+    "interpolate",
+    "boundary",
+    "unit",
+    "strict",
+    "overwrite",
+    "dry_run",
+    "report",
+    "picture",
+];
+
+/// Keeps what few people need out of the short help.
+fn in_short_help(argument: Arg) -> Arg {
+    let is_usual = argument.is_positional() || USUAL.contains(&argument.get_id().as_str());
+    argument.hide_short_help(!is_usual)
+}
+
 /// Triangles at most where no number is given: as many as take about 10 gigabytes.
 pub(crate) const MOST_EXACT: usize = 30_000_000;
 const MOST_STEPWISE: usize = 50_000_000;
@@ -109,7 +141,7 @@ const STEPWISE: &str = "Options of the other methods";
 /// vertices on it. The other methods refine step by step: each step marks faces, splits them in four, and closes
 /// the gaps to their neighbours. No method leaves cracks.
 #[derive(Args, Clone, Debug)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = FIRST_EXAMPLES, after_long_help = EXAMPLES, mut_args(in_short_help))]
 pub(crate) struct RefineArguments {
     /// Mesh files (.obj, .ply, .stl, .off, .gltf, .glb, .3mf), - for standard input, or builtin:NAME
     ///
@@ -215,7 +247,7 @@ pub(crate) struct RefineArguments {
     #[arg(long, value_name = "FILE.json")]
     pub(crate) report: Option<PathBuf>,
 
-    /// Draw the refined mesh with its edges (or FOLDER/)
+    /// Draw the refined mesh with its edges, but for those of triangles smaller than 4 pixels (or FOLDER/)
     #[arg(long, value_name = "FILE.png")]
     pub(crate) picture: Option<PathBuf>,
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::shared::loop_family;
 use super::values;
 use super::{BuildArguments, SchemeName, Size};
 
@@ -27,7 +28,7 @@ pub(crate) struct RenderArguments {
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) output: PathBuf,
 
-    /// Draw the edges of the triangles over the shaded surface
+    /// Draw the edges of the triangles over the shaded surface, but of those smaller than 4 pixels
     #[arg(long)]
     pub(crate) wireframe: bool,
 
@@ -37,7 +38,7 @@ pub(crate) struct RenderArguments {
 
     /// Shade smoothly, by means of the faces' normals around each vertex, whatever normals the file has
     ///
-    /// Default for files without normals; others are shaded by theirs.
+    /// Without this and --flat, files are shaded by their normals; those that have none as with --crease-angle 30.
     #[arg(long)]
     pub(crate) smooth: bool,
 
@@ -45,8 +46,8 @@ pub(crate) struct RenderArguments {
     #[arg(long, conflicts_with_all = ["wireframe", "flat", "smooth", "texture"])]
     pub(crate) exact: bool,
 
-    /// Scheme of the limit surface that --exact draws: loop or loop-warren [default: loop]
-    #[arg(long, value_enum)]
+    /// Scheme of the limit surface that --exact draws [default: loop]
+    #[arg(long, value_parser = loop_family())]
     pub(crate) scheme: Option<SchemeName>,
 
     /// Shade both sides of edges by themselves where the faces meet at more than this angle [degrees, above 0 to 180]

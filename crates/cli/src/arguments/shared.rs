@@ -1,5 +1,6 @@
 //! Options that several commands have.
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use limitmesh::mesh::{BuildOptions, Weld};
 use limitmesh::refine::SeamRule;
@@ -156,6 +157,13 @@ impl BuildArguments {
         };
         Ok(BuildOptions::default().weld(weld).strict(self.strict))
     }
+}
+
+/// The schemes whose limit surfaces are polynomials, as rays and projections need them.
+pub(super) fn loop_family() -> impl TypedValueParser<Value = SchemeName> {
+    let own = SchemeName::value_variants().iter().filter(|name| name.scheme().loop_family().is_some());
+    PossibleValuesParser::new(own.filter_map(ValueEnum::to_possible_value))
+        .try_map(|name| SchemeName::from_str(&name, false))
 }
 
 /// A format of mesh files.

@@ -30,7 +30,7 @@ impl FromStr for AttributeTolerance {
     fn from_str(text: &str) -> Result<Self, String> {
         // Names may have an equals sign, numbers have none.
         let Some((name, tolerance)) = text.rsplit_once('=') else {
-            return Err(format!("'{text}' has no =; expected NAME=NUMBER"));
+            return Err(format!("'{text}' has no =; give NAME=NUMBER"));
         };
         Ok(Self { name: name.to_owned(), tolerance: values::above_zero(tolerance)? })
     }

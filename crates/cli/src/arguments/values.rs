@@ -40,8 +40,7 @@ pub(super) fn weld(text: &str) -> Result<WeldDistance, String> {
     if text == "none" {
         return Ok(WeldDistance::None);
     }
-    let distance =
-        quantity::length(text).map_err(|what| format!("{what}; a distance or 'none' is expected"))?;
+    let distance = quantity::length(text).map_err(|what| format!("{what}; give a distance or 'none'"))?;
     if distance.value < 0.0 {
         return Err(format!("{text} is out of range: a distance is at least 0"));
     }
@@ -94,7 +93,7 @@ fn signed_extent(text: &str) -> Result<Extent, String> {
         Some(number) => finite(number).map(Extent::Percent),
         None => quantity::length(text).map(Extent::Length),
     };
-    parsed.map_err(|what| format!("{what}; a length or per cent such as 0.01% is expected"))
+    parsed.map_err(|what| format!("{what}; give a length or per cent such as 0.01%"))
 }
 
 fn is_below_zero(extent: Extent) -> bool {
@@ -119,7 +118,7 @@ pub(super) fn tolerance(text: &str) -> Result<Extent, String> {
 pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
     let numbers = text.split(',').map(finite).collect::<Result<Vec<_>, _>>()?;
     <[f64; 3]>::try_from(numbers)
-        .map_err(|numbers| format!("{} numbers, expected three with commas: X,Y,Z", numbers.len()))
+        .map_err(|numbers| format!("it has {} numbers; give three with commas: X,Y,Z", numbers.len()))
 }
 
 /// A direction: a point that is not the origin.
@@ -228,9 +227,9 @@ impl FromStr for Size {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let expected = || format!("'{text}' is no size; expected WxH in pixels, such as 1600x1200");
-        let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(expected)?;
-        let side = |side: &str| u32::from_str(side.trim()).map_err(|_| expected());
+        let wrong = || format!("'{text}' is no size; give WxH in pixels, such as 1600x1200");
+        let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
+        let side = |side: &str| u32::from_str(side.trim()).map_err(|_| wrong());
         let size = Self { width: side(width)?, height: side(height)? };
         let fits = |side: u32| (1..=MAX_SIDE).contains(&side);
         if fits(size.width) && fits(size.height) {

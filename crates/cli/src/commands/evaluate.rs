@@ -79,7 +79,7 @@ fn places(given: &Places) -> anyhow::Result<Vec<Place>> {
     });
     let places = places.collect::<anyhow::Result<Vec<Place>>>()?;
     if places.is_empty() {
-        bail!("{}: no places, one a line is expected: FACE W0 W1 W2", path.display());
+        bail!("{} has no places; give one a line: FACE W0 W1 W2", path.display());
     }
     Ok(places)
 }

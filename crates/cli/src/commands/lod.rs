@@ -55,7 +55,7 @@ impl Written {
 pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     if output::is_standard_output(&arguments.output) {
         return usage(
-            "levels of detail are written to files, not to standard output; expected a name such as levels.glb",
+            "levels of detail are written to files, not to standard output; give a name such as levels.glb",
         );
     }
     let format = Format::from_path(&arguments.output).or_else(|unknown| usage(unknown.to_string()))?;

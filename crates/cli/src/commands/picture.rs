@@ -7,6 +7,7 @@ use limitmesh_render::{Camera, Covering, Style, ViewDirection, render, render_te
 
 use crate::arguments::Size;
 use crate::failure::usage;
+use crate::format::counted;
 use crate::output;
 
 /// Size of pictures that are drawn beside other work.
@@ -20,12 +21,17 @@ pub(super) fn check_name(path: &Path) -> anyhow::Result<()> {
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
         return output::check_writable(path);
     }
-    usage(format!("{}: pictures are PNG files, expected a name that ends with .png", path.display()))
+    usage(format!("{}: pictures are PNG files; give a name that ends with .png", path.display()))
 }
 
 /// The view of a picture: along a direction of sight, or from the front, a little from the side and above.
 pub(super) fn view_direction(sight: Option<[f64; 3]>) -> ViewDirection {
     sight.map_or_else(ViewDirection::default, ViewDirection::along)
+}
+
+/// Says what a picture shows.
+pub(super) fn drawn(path: &Path, triangles: usize) -> String {
+    format!("{}: {} drawn", path.display(), counted(triangles, "triangle", "triangles"))
 }
 
 /// Draws a surface and writes the picture.

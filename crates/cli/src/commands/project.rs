@@ -84,7 +84,7 @@ impl Kind {
             Some("ply") => Self::Ply,
             Some("csv") => Self::Csv,
             Some("png") => Self::Picture,
-            _ => return usage(format!("{}: a .ply, .csv or .png file is expected", path.display())),
+            _ => return usage(format!("{}: -o writes .ply, .csv or .png files", path.display())),
         };
         output::check_writable(path)?;
         Ok(kind)

@@ -1,20 +1,19 @@
 //! `limitmesh render`: a picture of a mesh.
 
 use anyhow::{Context, bail};
-use limitmesh::mesh::{Channel, SplitSurface};
-use limitmesh::refine::{is_certified, limit_reference};
+use limitmesh::mesh::SplitSurface;
+use limitmesh::refine::limit_reference;
 use limitmesh::{LimitSurface, Mesh, RayCaster};
 use limitmesh_render::{Camera, Shading, Style, render_exact_observed};
 
 use super::covering::Cover;
-use super::picture;
+use super::{picture, shading};
 use crate::arguments::RenderArguments;
 use crate::failure::{Outcome, usage};
 use crate::format::counted;
 use crate::input;
 use crate::output;
 use crate::progress::Progress;
-use crate::vector::{cross, minus};
 
 /// What pictures do without, or have by other ways.
 const UNSEEN: [&str; 3] = ["normals", "tangents", "colours and textures of materials"];
@@ -24,7 +23,11 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
     picture::check_name(&arguments.output)?;
     let texture = arguments.texture.as_deref();
     output::check_replaced(&[&arguments.output], texture.as_slice(), None)?;
-    check_scheme(arguments)?;
+    if arguments.scheme.is_some() && !arguments.exact {
+        return usage(
+            "--scheme is that of a limit surface; it needs --exact, without which the mesh itself is drawn",
+        );
+    }
     if arguments.exact {
         return exact(arguments, progress);
     }
@@ -39,10 +42,13 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
     let style = Style::default().shading(shading).wireframe(arguments.wireframe);
     let view = picture::view_direction(arguments.view);
     let normals = input.normals.filter(|_| !arguments.smooth && arguments.crease_angle.is_none());
-    let split = (!arguments.flat).then(|| match &normals {
-        Some(normals) => by_normals(&mesh, normals),
-        None => SplitSurface::by_faces(&mesh),
-    });
+    let is_free = !arguments.smooth && arguments.crease_angle.is_none();
+    let split = match &normals {
+        _ if arguments.flat => None,
+        Some(normals) => Some(shading::by_normals(&mesh, normals)),
+        None if is_free => Some(shading::without_normals(&mesh)?),
+        None => Some(SplitSurface::by_faces(&mesh)),
+    };
     let (surface, normals) = match &split {
         Some(split) => (split.as_triangles(), Some(&split.normals[..])),
         None => (mesh.as_triangles(), None),
@@ -54,50 +60,8 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
         }
         None => picture::draw(&arguments.output, surface, normals, view, &style, arguments.size)?,
     }
-    let drawn = counted(mesh.face_count(), "triangle", "triangles");
-    progress.note(format!("{}: {drawn} drawn", arguments.output.display()));
+    progress.note(picture::drawn(&arguments.output, mesh.face_count()));
     Ok(Outcome::Done)
-}
-
-/// Refuses a scheme whose limit surface is not drawn.
-fn check_scheme(arguments: &RenderArguments) -> anyhow::Result<()> {
-    let Some(name) = arguments.scheme else { return Ok(()) };
-    if !arguments.exact {
-        return usage(
-            "--scheme is that of a limit surface; it needs --exact, without which the mesh itself is drawn",
-        );
-    }
-    if !is_certified(name.scheme()) {
-        return usage(format!(
-            "--scheme {}: rays are followed to limit surfaces of loop and loop-warren alone",
-            name.scheme().name()
-        ));
-    }
-    Ok(())
-}
-
-/// A mesh with the normals that its file has; with those of its faces where it has none.
-fn by_normals(mesh: &Mesh, normals: &Channel) -> SplitSurface {
-    let by_faces = SplitSurface::by_faces(mesh);
-    let number = |corner: usize, i: usize| normals.value(corner).get(i).copied().unwrap_or(0.0);
-    // The way round says which side is drawn, and may have been mended: normals are those of that side.
-    let faces_against = |face: usize| {
-        let [a, b, c] = mesh.triangles()[face].map(|v| mesh.positions()[v as usize]);
-        let own = cross(minus(b, a), minus(c, a));
-        (3 * face..3 * face + 3).flat_map(|corner| [0, 1, 2].map(|i| own[i] * number(corner, i))).sum::<f64>()
-            < 0.0
-    };
-    let is_against: Vec<bool> = (0..mesh.face_count()).map(faces_against).collect();
-    SplitSurface::new(mesh, |h| {
-        let (corner, face) = (h.index(), h.face().index());
-        let own = [0, 1, 2].map(|i| number(corner, i));
-        let length = own.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if length > 0.0 && length.is_finite() {
-            let length = if is_against[face] { -length } else { length };
-            return own.map(|x| x / length);
-        }
-        by_faces.normals[by_faces.triangles[face][corner % 3] as usize]
-    })
 }
 
 /// Triangles of the mesh by which a limit surface is framed.

@@ -243,7 +243,7 @@ fn what_has_no_meaning_for_a_scene_is_refused() {
     refused("--provenance", "PLY");
     assert!(!output.exists());
     let broken = file(&folder, "broken.gltf", r#"{"asset":{"version":"2.0"},"nodes":[{"children":[0]}]}"#);
-    run("refine {} -o {}", &[&broken, &output]).expect(1).saying("nodes[0]: met a circle of children");
+    run("refine {} -o {}", &[&broken, &output]).expect(1).saying("nodes[0]: the node is below itself");
     let empty = file(&folder, "empty.gltf", r#"{"asset":{"version":"2.0"}}"#);
     run("refine {} -o {}", &[&empty, &output]).expect(1).saying("shows no triangles");
 }

@@ -95,7 +95,9 @@ fn what_cannot_be_is_told() {
     let error = run("project {} --onto {}", &[&decimal, &control]).expect(1).stderr;
     assert!(error.contains("decimal.csv") && error.contains("line 2") && error.contains("1,5"), "{error}");
     let short = file(&folder, "short.pts", "3\n1 2 3\n2 3 4\n");
-    run("project {} --onto {}", &[&short, &control]).expect(1).saying("3 points are expected, there are 2");
+    run("project {} --onto {}", &[&short, &control])
+        .expect(1)
+        .saying("line 1 promises 3 points, but there are 2");
     let none = file(&folder, "none.xyz", "# none\n");
     assert!(run("project {} --onto {}", &[&none, &control]).expect(1).stderr.contains("no points"));
     let points = file(&folder, "points.txt", "1 2 3\n");

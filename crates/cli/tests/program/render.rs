@@ -112,6 +112,70 @@ fn limit_surfaces_are_drawn_by_rays() {
     run("render builtin:cube -o {} --scheme loop", &[&path]).expect(2).saying("it needs --exact");
     run("render builtin:cube -o {} --exact --scheme butterfly", &[&path])
         .expect(2)
-        .saying("--scheme butterfly")
-        .saying("loop and loop-warren");
+        .saying("loop, loop-warren]");
+}
+
+/// A cube without normals looks as one whose file has the normal of its side at each corner; a ball of many faces as one that is smooth all
+/// over.
+#[test]
+fn files_without_normals_are_shaded_apart_at_sharp_edges() {
+    let folder = folder();
+    let path = folder.path().join("out.png");
+    let drawn = |input: &std::path::Path, options: &str| {
+        run(&format!("render {{}} -o {{}} --size 120x90 {options}"), &[input, &path]).expect(0);
+        pixels(&std::fs::read(&path).expect("a picture"))
+    };
+    let corners: String = (0..8).map(|i| format!("v {} {} {}\n", i & 1, i >> 1 & 1, i >> 2)).collect();
+    let normals = "vn 0 0 -1\nvn 0 0 1\nvn 0 -1 0\nvn 0 1 0\nvn -1 0 0\nvn 1 0 0\n";
+    let sides = [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]];
+    let faces = |has_normals: bool| -> String {
+        let corner =
+            |side: usize, v: u32| if has_normals { format!(" {v}//{}", side + 1) } else { format!(" {v}") };
+        let face = |(side, corners): (usize, &[u32; 4])| {
+            format!("f{}\n", corners.iter().map(|&v| corner(side, v)).collect::<String>())
+        };
+        sides.iter().enumerate().map(face).collect()
+    };
+    let file = |name: &str, text: String| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("written");
+        path
+    };
+    let bare = file("bare.obj", format!("{corners}{}", faces(false)));
+    let sided = file("sided.obj", format!("{corners}{normals}{}", faces(true)));
+    let plain = drawn(&bare, "");
+    assert!(plain == drawn(&sided, "") && plain == drawn(&bare, "--flat"));
+    assert!(plain != drawn(&bare, "--smooth"));
+    let ball = folder.path().join("ball.stl");
+    run("refine builtin:sphere -o {} --triangles 5000", &[&ball]).expect(0);
+    assert!(drawn(&ball, "") == drawn(&ball, "--smooth") && drawn(&ball, "") != drawn(&ball, "--flat"));
+}
+
+/// A dense mesh is not blackened by edges that nobody could tell apart; a coarse one shows them.
+#[test]
+fn edges_of_small_triangles_are_left_out() {
+    let folder = folder();
+    let (mesh, path) = (folder.path().join("ball.stl"), folder.path().join("out.png"));
+    let differ = |triangles: usize| {
+        run(&format!("refine builtin:sphere -o {{}} --triangles {triangles}"), &[&mesh]).expect(0);
+        let drawn = |options: &str| {
+            run(&format!("render {{}} -o {{}} --size 160x120 {options}"), &[&mesh, &path]).expect(0);
+            std::fs::read(&path).expect("a picture")
+        };
+        drawn("") != drawn("--wireframe")
+    };
+    assert!(differ(400));
+    // A hemisphere of about 100 pixels across with 20,000 triangles: less than a pixel each.
+    assert!(!differ(40_000));
+}
+
+/// A picture is named where results are told, and a distance is told once though a cap ended the refinement.
+#[test]
+fn results_name_their_pictures_and_say_distances_once() {
+    let folder = folder();
+    let (mesh, picture) = (folder.path().join("cup.ply"), folder.path().join("cup.png"));
+    let run = run("refine builtin:cup -o {} --picture {} --max-triangles 2000", &[&mesh, &picture]).expect(3);
+    let run = run.saying(&format!("{}: ", picture.display())).saying("triangles drawn");
+    let within = run.stderr.matches("of the limit surface, certified").count();
+    assert_eq!(within, 1, "{}", run.stderr);
 }

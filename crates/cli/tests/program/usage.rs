@@ -24,6 +24,51 @@ fn help_and_version_are_printed() {
 }
 
 #[test]
+fn the_short_help_shows_what_most_people_need() {
+    let help = run("refine -h", &[]).expect(0).stdout;
+    let is_option = |line: &&str| line.trim_start().starts_with('-') && line.starts_with("  ");
+    let options: Vec<&str> = help.lines().filter(is_option).collect();
+    assert!(options.len() <= 20 && options.len() > 12, "{} in:\n{help}", options.len());
+    for option in ["--output", "--tolerance", "--triangles", "--crease-angle", "--picture"] {
+        assert!(options.iter().any(|line| line.contains(option)), "{option} in:\n{help}");
+    }
+    let whole = run("refine --help", &[]).expect(0).stdout;
+    for option in ["--provenance", "--uv-tolerance", "--seam", "--max-memory", "--weld-ignores"] {
+        assert!(whole.contains(option) && !help.contains(option), "{option}");
+    }
+}
+
+/// A command offers the schemes that it takes, and no others.
+#[test]
+fn help_offers_the_schemes_that_there_are() {
+    for command in ["render builtin:cube -o x.png --exact", "project builtin:cube --onto builtin:cube"] {
+        let name = command.split(' ').next().expect("a command");
+        let help = run(&format!("{name} --help"), &[]).expect(0).stdout;
+        assert!(help.contains("loop-warren") && !help.contains("butterfly"), "{help}");
+        run(&format!("{command} --scheme butterfly"), &[]).expect(2).saying("loop, loop-warren]");
+    }
+}
+
+/// A line on how commands are written helps who wrote an option wrong, and nobody who asked for what makes no sense.
+#[test]
+fn usage_is_shown_for_what_is_written_wrong_alone() {
+    let shown = |words: &str| run(words, &[]).expect(2).stderr.contains("Usage:");
+    for written_wrong in ["refine", "refine builtin:cup -o x.ply --tolerence 1", "measure builtin:cup"] {
+        assert!(shown(written_wrong), "{written_wrong}");
+    }
+    for makes_no_sense in [
+        "refine builtin:cup -o x.ply --levels 3",
+        "refine builtin:cup -o x.vtk",
+        "refine builtin:cup -o x.ply --tolerance 0",
+        "refine builtin:cup -o x.ply --view 0,0,1 --eye 0,0,1",
+        "render builtin:cup -o x.png --flat --smooth",
+        "lod builtin:cup -o -",
+    ] {
+        assert!(!shown(makes_no_sense), "{makes_no_sense}");
+    }
+}
+
+#[test]
 fn options_out_of_range_are_refused_before_any_work() {
     let folder = folder();
     let output = folder.path().join("out.ply");

@@ -34,7 +34,7 @@ pub enum CriterionError {
     #[error(transparent)]
     Limit(#[from] LimitError),
     /// One of its parameters is out of range.
-    #[error("{name} is {value}, expected {expected}")]
+    #[error("{name} must be {expected}, but is {value}")]
     BadParameter {
         /// The parameter's name.
         name: &'static str,

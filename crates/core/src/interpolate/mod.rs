@@ -93,7 +93,7 @@ pub enum InterpolateError {
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// No limits that are near enough were found.
-    #[error("the limit of vertex {vertex} is {distance} from it at least, expected at most {within}")]
+    #[error("the limit of vertex {vertex} is at least {distance} from it, but may be at most {within}")]
     TooFar {
         /// The vertex at fault.
         vertex: VertexId,

@@ -20,7 +20,7 @@ pub enum BarycentricError {
         weight: f64,
     },
     /// The weights do not add up to 1, or are no numbers.
-    #[error("the weights add up to {sum:?}, expected 1 (to {OF_SUMS:?})")]
+    #[error("the weights add up to {sum:?} rather than 1 (to {OF_SUMS:?})")]
     Sum {
         /// What they add up to.
         sum: f64,
@@ -34,7 +34,7 @@ pub enum BarycentricError {
 /// let middle = limitmesh::barycentric([0.3333, 0.3333, 0.3333])?;
 /// assert_eq!(middle, [1.0 / 3.0; 3]);
 /// let why = limitmesh::barycentric([0.5, 0.25, 0.0]).unwrap_err();
-/// assert_eq!(why.to_string(), "the weights add up to 0.75, expected 1 (to 0.0002)");
+/// assert_eq!(why.to_string(), "the weights add up to 0.75 rather than 1 (to 0.0002)");
 /// # Ok::<(), limitmesh::BarycentricError>(())
 /// ```
 ///

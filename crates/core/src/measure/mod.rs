@@ -59,7 +59,9 @@ pub enum MeasureError {
         count: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("vertex {vertex} of the {which} surface: coordinate {axis} is {value}, expected a finite number")]
+    #[error(
+        "vertex {vertex} of the {which} surface: coordinate {axis} is {value}, which is no finite number"
+    )]
     NotFinite {
         /// Which of the two surfaces.
         which: &'static str,

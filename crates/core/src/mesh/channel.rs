@@ -133,7 +133,7 @@ pub struct Channel {
 #[non_exhaustive]
 pub enum ChannelError {
     /// There are more or fewer indices than elements.
-    #[error("channel {name}: {count} indices, expected one for each of {expected} {elements}")]
+    #[error("channel {name} has {count} indices for {expected} {elements}: each needs one")]
     Count {
         /// The channel.
         name: String,
@@ -145,9 +145,7 @@ pub enum ChannelError {
         elements: &'static str,
     },
     /// An index leads beyond the values.
-    #[error(
-        "channel {name}: index {index} at element {element}, expected less than {count}, the number of values"
-    )]
+    #[error("channel {name} has index {index} at element {element}, but there are {count} values")]
     Index {
         /// The channel.
         name: String,
@@ -159,7 +157,7 @@ pub enum ChannelError {
         count: usize,
     },
     /// A value is not finite, or the table ends within one.
-    #[error("channel {name}: value {value} is {what}, expected {arity} finite numbers")]
+    #[error("value {value} of channel {name} is {what}; it must be {arity} finite numbers")]
     Value {
         /// The channel.
         name: String,

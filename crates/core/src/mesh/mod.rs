@@ -66,7 +66,7 @@ pub enum MeshError {
         count: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("vertex {vertex}: coordinate {} is {value}, expected a finite number", ["x", "y", "z"][*axis])]
+    #[error("coordinate {} of vertex {vertex} is {value}, which is no finite number", ["x", "y", "z"][*axis])]
     NotFinite {
         /// The vertex at fault.
         vertex: usize,
@@ -96,7 +96,7 @@ pub enum MeshError {
         face: usize,
     },
     /// The faces at a vertex do not form one fan.
-    #[error("the faces at vertex {vertex} form {fans} fans, expected one")]
+    #[error("the faces at vertex {vertex} form {fans} fans rather than one")]
     BowTie {
         /// The vertex at fault.
         vertex: usize,
@@ -122,7 +122,7 @@ pub enum MeshError {
         summary: String,
     },
     /// An option is out of range.
-    #[error("{name} is {value}, expected {expected}")]
+    #[error("{name} must be {expected}, but is {value}")]
     BadOption {
         /// The option's name.
         name: &'static str,

@@ -80,7 +80,7 @@ pub enum ProximityError {
         point: [f64; 3],
     },
     /// A tolerance that is none.
-    #[error("the tolerance is {tolerance}, a length above 0 is expected")]
+    #[error("the tolerance must be a length above 0, but is {tolerance}")]
     Tolerance {
         /// What was given.
         tolerance: f64,

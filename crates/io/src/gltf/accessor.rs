@@ -28,17 +28,13 @@ impl Numbers {
     pub(super) fn points(&self, at: &At<'_>) -> Result<Vec<[f64; 3]>> {
         let (points, rest) = self.values.as_chunks::<3>();
         if self.components != 3 || !rest.is_empty() {
-            return Err(GltfFlaw::new(
-                at.place(),
-                format!("{} numbers for each vertex", self.components),
-                "3",
-            ));
+            return Err(GltfFlaw::new(at.place(), self.components.to_string(), "3 numbers for each vertex"));
         }
         match self.values.iter().position(|x| !x.is_finite()) {
             None => Ok(points.to_vec()),
             Some(i) => {
-                let met = format!("{} in element {}", self.values[i], i / 3);
-                Err(GltfFlaw::new(at.place(), met, "a finite number"))
+                let found = format!("{} in element {}", self.values[i], i / 3);
+                Err(GltfFlaw::new(at.place(), found, "a finite number"))
             }
         }
     }
@@ -99,15 +95,16 @@ impl Source {
         let layout = layout(&accessor)?;
         let Layout { count, components, .. } = layout;
         if let Some(expected) = expected.filter(|&expected| expected != count) {
-            let met = format!("{count} elements, from {}", accessor.place());
-            return Err(GltfFlaw::new(at.place(), met, format!("{expected}, as many as there are vertices")));
+            let found = format!("{count}, from {}", accessor.place());
+            let expected = format!("{expected} elements (as many as there are vertices)");
+            return Err(GltfFlaw::new(at.place(), found, expected));
         }
         let place = |flaw: GltfFlaw| GltfFlaw { place: format!("{} ({})", at.place(), flaw.place), ..flaw };
         let values = match accessor.get("bufferView") {
             Some(view) => self.elements(&accessor, &view, layout).map_err(place)?,
             None if expected.is_none() && count > MOST_ZEROS => {
-                let met = format!("{count} elements without a buffer view");
-                return Err(place(GltfFlaw::new(accessor.place(), met, format!("at most {MOST_ZEROS}"))));
+                let expected = format!("at most {MOST_ZEROS} elements without a buffer view");
+                return Err(place(GltfFlaw::new(accessor.place(), count.to_string(), expected)));
             }
             None => vec![0.0; count * components],
         };
@@ -125,7 +122,10 @@ impl Source {
         let layout = layout(&accessor)?;
         let is_index = matches!(layout.component, Component::U8 | Component::U16 | Component::U32);
         if !is_index || layout.components != 1 {
-            return Err(accessor.unexpected("unsigned whole numbers, one an element"));
+            return Err(GltfFlaw::saying(
+                accessor.place(),
+                "indices are unsigned whole numbers, one an element",
+            ));
         }
         Ok(self.numbers(at, None)?.values.into_iter().map(|x| x as u32).collect())
     }
@@ -137,20 +137,19 @@ impl Source {
         let size = components * component.size();
         let stride = found.stride.unwrap_or(size);
         if stride < size {
-            let met = format!("elements of {size} bytes in a view with a stride of {stride}");
-            return Err(GltfFlaw::new(owner.place(), met, "a stride no smaller"));
+            let problem = format!("its elements of {size} bytes overlap: the view has a stride of {stride}");
+            return Err(GltfFlaw::saying(owner.place(), problem));
         }
         let start = owner.count_or("byteOffset", 0)?;
         let end = count
             .checked_sub(1)
             .map_or(Some(start), |last| last.checked_mul(stride)?.checked_add(size)?.checked_add(start));
         let bytes = end.and_then(|end| found.bytes.get(start..end)).ok_or_else(|| {
-            let met = format!("{count} elements of {size} bytes, {stride} apart, from byte {start}");
-            GltfFlaw::new(
-                owner.place(),
-                met,
-                format!("elements within the view's {} bytes", found.bytes.len()),
-            )
+            let problem = format!(
+                "it has {count} elements of {size} bytes, {stride} apart, from byte {start} on, but the view has {} bytes",
+                found.bytes.len()
+            );
+            GltfFlaw::saying(owner.place(), problem)
         })?;
         Ok(decode(bytes, count, components, stride, (component, is_normalized)))
     }
@@ -160,7 +159,7 @@ impl Source {
         let count = sparse.require("count")?;
         let many = count.count()?;
         if many > layout.count {
-            return Err(count.unexpected(format!("at most {}, the accessor's count", layout.count)));
+            return Err(count.unexpected(format!("at most {} (the accessor's count)", layout.count)));
         }
         let (places, values) = (sparse.require("indices")?, sparse.require("values")?);
         let kind = component(&places)?;
@@ -175,8 +174,8 @@ impl Source {
         for (i, index) in indices.into_iter().enumerate() {
             let index = index as usize;
             let Some(old) = numbers.values.get_mut(index * width..(index + 1) * width) else {
-                let met = format!("index {index} in element {i}");
-                return Err(GltfFlaw::new(places.place(), met, format!("indices below {}", layout.count)));
+                let found = format!("{index} in element {i}");
+                return Err(GltfFlaw::new(places.place(), found, format!("indices below {}", layout.count)));
             };
             old.copy_from_slice(&new[i * width..(i + 1) * width]);
         }

@@ -108,8 +108,12 @@ impl Changes {
     ) -> Result<()> {
         let meshes = top.get("meshes").map_or_else(|| Ok(Vec::new()), items_of)?;
         for (&(mesh, primitive), new) in &self.primitives {
-            let missing =
-                || GltfFlaw::new(format!("meshes[{mesh}].primitives[{primitive}]"), "nothing", "a primitive");
+            let missing = || {
+                GltfFlaw::saying(
+                    format!("meshes[{mesh}].primitives[{primitive}]"),
+                    "there is no such primitive",
+                )
+            };
             let primitives = Members::of(meshes.get(mesh).ok_or_else(missing)?)?;
             let primitives = items_of(primitives.get("primitives").ok_or_else(missing)?)?;
             let old = primitives.get(primitive).copied().ok_or_else(missing)?;

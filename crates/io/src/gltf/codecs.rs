@@ -27,11 +27,10 @@ pub(super) fn meshopt(
     let (count, stride) = (at.require("count")?.count()?, at.require("byteStride")?.count()?);
     let mode = at.require("mode")?;
     let filter = at.get("filter");
-    let known = |at: &At<'_>| at.unexpected("one that is known");
-    let kind = MeshoptMode::from_name(mode.text()?).map_err(|_| known(&mode))?;
+    let kind = MeshoptMode::from_name(mode.text()?).map_err(|_| mode.unexpected("a known mode"))?;
     let filter = match &filter {
         None => MeshoptFilter::None,
-        Some(at) => MeshoptFilter::from_name(at.text()?).map_err(|_| known(at))?,
+        Some(at) => MeshoptFilter::from_name(at.text()?).map_err(|_| at.unexpected("a known filter"))?,
     };
     let strides_fit = match kind {
         MeshoptMode::Attributes => (1..=64).contains(&(stride / 4)) && stride.is_multiple_of(4),
@@ -47,13 +46,14 @@ pub(super) fn meshopt(
     }
     let most = source.len().saturating_mul(MOST_RATIO);
     let size = count.checked_mul(stride).filter(|&size| size <= most).ok_or_else(|| {
-        let met = format!("{count} elements of {stride} bytes in a stream of {}", source.len());
-        GltfFlaw::new(at.place(), met, "no more than such a stream can hold")
+        let there = source.len();
+        let problem = format!("a stream of {there} bytes cannot hold {count} elements of {stride} bytes");
+        GltfFlaw::saying(at.place(), problem)
     })?;
     take_room(size)?;
     let mut bytes = vec![0; size];
     draco_gltf::meshopt::decode_buffer_view(&mut bytes, source, kind, filter, count, stride)
-        .map_err(|error| GltfFlaw::new(at.place(), error.to_string(), "a whole meshopt stream"))?;
+        .map_err(|error| GltfFlaw::saying(at.place(), format!("the meshopt stream is damaged: {error}")))?;
     Ok(bytes)
 }
 
@@ -72,8 +72,9 @@ pub(super) fn draco(
     normalized: &[(String, bool)],
     room: usize,
 ) -> Result<Compressed> {
-    let failed =
-        |error: &dyn std::fmt::Display| GltfFlaw::new(at.place(), error.to_string(), "a whole Draco stream");
+    let failed = |error: &dyn std::fmt::Display| {
+        GltfFlaw::saying(at.place(), format!("the Draco stream is damaged: {error}"))
+    };
     let value = JsonValue::parse(at.to_string().as_bytes()).map_err(|error| failed(&error))?;
     let extension = DracoPrimitiveExtension::from_json(&value).map_err(|error| failed(&error))?;
     let mut limits = DecodeLimits::default();

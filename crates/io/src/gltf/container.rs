@@ -32,15 +32,12 @@ impl Container {
         }
         let version = word(bytes, 4)?;
         if version != 2 {
-            return Err(GltfFlaw::new("the GLB header", format!("version {version}"), "2"));
+            return Err(GltfFlaw::new("the GLB header", version.to_string(), "version 2"));
         }
         let length = word(bytes, 8)? as usize;
         if length > bytes.len() || length < 12 {
-            return Err(GltfFlaw::new(
-                "the GLB header",
-                format!("a length of {length} bytes in a file of {}", bytes.len()),
-                "the file's length",
-            ));
+            let problem = format!("it names a length of {length} bytes, but the file has {}", bytes.len());
+            return Err(GltfFlaw::saying("the GLB header", problem));
         }
         let mut found = Self { is_glb: true, ..Self::default() };
         let mut rest = &bytes[12..length];
@@ -52,16 +49,20 @@ impl Container {
             let name = format!("chunk {number} of the GLB, at byte {place}");
             let (size, kind) = match (word(rest, 0), word(rest, 4)) {
                 (Ok(size), Ok(kind)) => (size as usize, kind),
-                _ => return Err(GltfFlaw::new(name, format!("{} bytes", rest.len()), "a header of 8")),
+                _ => return Err(GltfFlaw::new(name, rest.len().to_string(), "a header of 8 bytes")),
             };
             let Some(content) = rest[8..].get(..size) else {
-                let met = format!("a length of {size} bytes with {} left", rest.len() - 8);
-                return Err(GltfFlaw::new(name, met, "a chunk within the file"));
+                let problem = format!("it names a length of {size} bytes, but {} are left", rest.len() - 8);
+                return Err(GltfFlaw::saying(name, problem));
             };
             match kind {
                 JSON if number == 0 => found.text = text_of(content)?,
                 _ if number == 0 => {
-                    return Err(GltfFlaw::new(name, format!("the kind {kind:#010x}"), "JSON first"));
+                    return Err(GltfFlaw::new(
+                        name,
+                        format!("the kind {kind:#010x}"),
+                        "JSON in the first chunk",
+                    ));
                 }
                 BIN if found.bin.is_none() => found.bin = Some(content.to_vec()),
                 _ => found.others.push((kind, content.to_vec())),
@@ -72,7 +73,7 @@ impl Container {
             place += step;
         }
         if found.text.is_empty() {
-            return Err(GltfFlaw::new("the GLB", "no chunk of JSON", "one"));
+            return Err(GltfFlaw::saying("the GLB", "it has no chunk of JSON"));
         }
         Ok(found)
     }
@@ -107,8 +108,8 @@ fn text_of(bytes: &[u8]) -> Result<String> {
     match std::str::from_utf8(bytes) {
         Ok(text) => Ok(text.to_owned()),
         Err(error) => {
-            let met = format!("byte {} that is not UTF-8", error.valid_up_to());
-            Err(GltfFlaw::new("the JSON text", met, "UTF-8"))
+            let problem = format!("byte {} is not UTF-8", error.valid_up_to());
+            Err(GltfFlaw::saying("the JSON text", problem))
         }
     }
 }
@@ -116,5 +117,5 @@ fn text_of(bytes: &[u8]) -> Result<String> {
 fn word(bytes: &[u8], at: usize) -> Result<u32> {
     let four = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
     four.map(u32::from_le_bytes)
-        .ok_or_else(|| GltfFlaw::new("the GLB", format!("{} bytes", bytes.len()), "at least 12"))
+        .ok_or_else(|| GltfFlaw::new("the GLB", bytes.len().to_string(), "at least 12 bytes"))
 }

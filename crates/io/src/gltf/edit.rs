@@ -159,7 +159,7 @@ pub(super) fn quoted(text: &str) -> String {
 }
 
 fn broken(error: &serde_json::Error) -> GltfFlaw {
-    GltfFlaw::new("the JSON text", error.to_string(), "an array or object that can be edited")
+    GltfFlaw::saying("the JSON text", format!("it cannot be edited: {error}"))
 }
 
 #[cfg(test)]

@@ -3,27 +3,33 @@
 
 use std::fmt;
 
+use crate::error::expected_but_found;
+
 /// Something that breaks the rules of glTF, or that is not supported.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct GltfFlaw {
     /// Where, such as `accessors[3].count`.
     pub place: String,
-    /// What was met.
-    pub met: String,
-    /// What was expected.
-    pub expected: String,
+    /// What is wrong, in words.
+    pub problem: String,
 }
 
 impl GltfFlaw {
-    pub(super) fn new(place: impl Into<String>, met: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self { place: place.into(), met: met.into(), expected: expected.into() }
+    /// Something was found where glTF asks for something else.
+    pub(super) fn new(place: impl Into<String>, found: impl AsRef<str>, expected: impl AsRef<str>) -> Self {
+        Self::saying(place, expected_but_found(expected.as_ref(), found.as_ref()))
+    }
+
+    /// A problem in words.
+    pub(super) fn saying(place: impl Into<String>, problem: impl Into<String>) -> Self {
+        Self { place: place.into(), problem: problem.into() }
     }
 }
 
 impl fmt::Display for GltfFlaw {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "{}: met {}, expected {}", self.place, self.met, self.expected)
+        write!(out, "{}: {}", self.place, self.problem)
     }
 }
 

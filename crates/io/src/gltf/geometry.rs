@@ -78,17 +78,24 @@ impl Appended {
         let normal_count = normals.map_or(positions.len(), <[_]>::len);
         if positions.is_empty() || triangles.is_empty() || normal_count != positions.len() {
             let (points, faces) = (positions.len(), triangles.len());
-            let met = format!("{points} positions, {normal_count} normals, {faces} triangles");
-            return Err(GltfFlaw::new(place, met, "at least one triangle, and a normal for each position"));
+            let problem = format!(
+                "a primitive needs triangles and a normal for each position; it has {points} positions, {normal_count} normals and {faces} \
+                 triangles"
+            );
+            return Err(GltfFlaw::saying(place, problem));
         }
         if let Some(v) = triangles.as_flattened().iter().find(|&&v| v as usize >= positions.len()) {
-            let expected = format!("vertices below {}", positions.len());
-            return Err(GltfFlaw::new(place, format!("a triangle with vertex {v}"), expected));
+            let count = positions.len();
+            return Err(GltfFlaw::saying(
+                place,
+                format!("a triangle names vertex {v}, but there are {count}"),
+            ));
         }
         let rounded: Vec<[f32; 3]> = positions.iter().map(|p| p.map(|x| x as f32)).collect();
         if let Some(v) = rounded.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
-            let met = format!("vertex {v} at {:?}", positions[v]);
-            return Err(GltfFlaw::new(place, met, "coordinates that 32-bit floats can hold"));
+            let problem =
+                format!("32-bit floats cannot hold the coordinates of vertex {v}: {:?}", positions[v]);
+            return Err(GltfFlaw::saying(place, problem));
         }
         let (low, high) = bounds(positions.as_flattened(), 3);
         let bounded =
@@ -109,7 +116,7 @@ impl Appended {
         let targets = targets.iter().enumerate().map(|(number, target)| {
             let place = format!("{place}.targets[{number}]");
             if target.is_empty() {
-                return Err(GltfFlaw::new(place, "nothing", "at least one attribute"));
+                return Err(GltfFlaw::saying(place, "the target has no attribute"));
             }
             add(target, &place)
         });
@@ -132,11 +139,11 @@ impl Appended {
         let place = || format!("{place}.{name}");
         let Some(kind) = width.checked_sub(1).and_then(|at| ["SCALAR", "VEC2", "VEC3", "VEC4"].get(at))
         else {
-            return Err(GltfFlaw::new(place(), format!("{width} numbers a value"), "1 to 4"));
+            return Err(GltfFlaw::new(place(), width.to_string(), "1 to 4 numbers a value"));
         };
         if values.len() != vertices * width {
-            let met = format!("{} numbers for {vertices} vertices", values.len());
-            return Err(GltfFlaw::new(place(), met, format!("{width} for each")));
+            let found = format!("{} for {vertices} vertices", values.len());
+            return Err(GltfFlaw::new(place(), found, format!("{width} numbers for each vertex")));
         }
         if let Some(x) = values.iter().find(|&&x| !(x as f32).is_finite()) {
             return Err(GltfFlaw::new(place(), x.to_string(), "a number that 32-bit floats can hold"));

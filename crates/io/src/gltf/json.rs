@@ -40,7 +40,7 @@ impl<'a> At<'a> {
 
     /// A member that has to be there.
     pub(super) fn require(&self, key: &str) -> Result<Self> {
-        self.get(key).ok_or_else(|| GltfFlaw::new(self.place(), format!("no '{key}'"), "one, which it needs"))
+        self.get(key).ok_or_else(|| GltfFlaw::saying(self.place(), format!("'{key}' is missing")))
     }
 
     /// A value on the way through objects; `None` where the way ends.
@@ -79,7 +79,7 @@ impl<'a> At<'a> {
             None => Err(GltfFlaw::new(
                 self.place(),
                 index.to_string(),
-                format!("an index below {}, the number of {array}", items.map_or(0, Vec::len)),
+                format!("an index below {} (the number of {array})", items.map_or(0, Vec::len)),
             )),
         }
     }
@@ -128,13 +128,13 @@ impl<'a> At<'a> {
     }
 
     /// A flaw here.
-    pub(super) fn unexpected(&self, expected: impl Into<String>) -> GltfFlaw {
-        let met = match self.value {
+    pub(super) fn unexpected(&self, expected: impl AsRef<str>) -> GltfFlaw {
+        let found = match self.value {
             Value::Array(items) => format!("an array of {}", items.len()),
             Value::Object(_) => "an object".to_owned(),
             other => shortened(&other.to_string()),
         };
-        GltfFlaw::new(self.place(), met, expected)
+        GltfFlaw::new(self.place(), found, expected)
     }
 }
 

@@ -216,11 +216,8 @@ impl Asset {
     ) -> Flawed<MeshSoup> {
         let meshes = self.source.root().list("meshes")?;
         let Some(at) = meshes.get(mesh) else {
-            return Err(GltfFlaw::new(
-                "meshes",
-                format!("number {mesh}"),
-                format!("one below {}", meshes.len()),
-            ));
+            let expected = format!("a number below {}", meshes.len());
+            return Err(GltfFlaw::new("meshes", mesh.to_string(), expected));
         };
         let mut primitives = Vec::new();
         for (i, primitive) in at.require("primitives")?.items()?.enumerate() {
@@ -264,8 +261,9 @@ impl Asset {
         if p.iter().all(|x| x.is_finite()) {
             return Ok(p);
         }
-        let met = format!("vertex {v} of {}, which it shows at {p:?}", self.mesh_name(mesh));
-        Err(self.told(GltfFlaw::new("the scene", met, "finite coordinates")))
+        let name = self.mesh_name(mesh);
+        let problem = format!("vertex {v} of {name} is at {p:?}, which are no finite coordinates");
+        Err(self.told(GltfFlaw::saying("the scene", problem)))
     }
 
     /// Everything that the scene shows as one soup in the scene's coordinates, with texture coordinates, colours, names of materials
@@ -286,8 +284,9 @@ impl Asset {
             for placement in self.scene.shown(mesh) {
                 let (first, is_mirrored) = (all.positions.len(), placement.mirrors());
                 if own.soup.positions.len() + first > MOST || own.soup.faces.len() + all.faces.len() > MOST {
-                    let met = format!("more than {MOST} vertices or triangles with all instances");
-                    return Err(self.told(GltfFlaw::new("the scene", met, "fewer")));
+                    let problem =
+                        format!("with all instances there are more than {MOST} vertices or triangles");
+                    return Err(self.told(GltfFlaw::saying("the scene", problem)));
                 }
                 for v in 0..own.soup.positions.len() {
                     all.positions.push(self.shown(mesh, placement, &own, v)?);

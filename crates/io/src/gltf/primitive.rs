@@ -228,8 +228,8 @@ fn checked(corners: Vec<u32>, count: usize, at: &At<'_>) -> Result<Vec<u32>> {
     match corners.iter().position(|&v| v as usize >= count) {
         None => Ok(corners),
         Some(i) => {
-            let met = format!("index {} in element {i}", corners[i]);
-            Err(GltfFlaw::new(at.place(), met, format!("indices below {count}, the number of vertices")))
+            let found = format!("{} in element {i}", corners[i]);
+            Err(GltfFlaw::new(at.place(), found, format!("indices below {count} (the number of vertices)")))
         }
     }
 }

@@ -180,7 +180,7 @@ impl Source {
             None => Ok(tree),
             Some(node) => {
                 let at = nodes[node].place();
-                Err(GltfFlaw::new(at, "a circle of children", "a node that is not below itself"))
+                Err(GltfFlaw::saying(at, "the node is below itself"))
             }
         }
     }
@@ -220,8 +220,8 @@ impl Source {
                     let columns =
                         numbers.values.as_chunks::<16>().0.get(i).filter(|_| numbers.components == 16);
                     affine::of_columns(columns.ok_or_else(|| {
-                        let met = format!("no matrix for joint {i}");
-                        GltfFlaw::new(skin.place(), met, "an inverse bind matrix for each joint")
+                        let problem = format!("joint {i} has no inverse bind matrix");
+                        GltfFlaw::saying(skin.place(), problem)
                     })?)
                 }
             };
@@ -238,7 +238,8 @@ impl Source {
             let Some(accessor) = attributes.get(name) else { return Ok(None) };
             let numbers = self.numbers(&accessor, count)?;
             if numbers.components != width {
-                return Err(accessor.unexpected(format!("an accessor of {width} numbers an element")));
+                let problem = format!("{name} needs {width} numbers an element");
+                return Err(GltfFlaw::saying(accessor.place(), problem));
             }
             count = Some(numbers.len());
             Ok(Some(numbers.values))

@@ -48,7 +48,7 @@ impl Source {
     pub(super) fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Self> {
         let container = Container::parse(bytes)?;
         let json: Value = serde_json::from_str(&container.text)
-            .map_err(|error| GltfFlaw::new("the JSON text", error.to_string(), "JSON"))?;
+            .map_err(|error| GltfFlaw::saying("the JSON text", format!("it cannot be read: {error}")))?;
         let root = At::root(&json);
         if !json.is_object() {
             return Err(root.unexpected("an object"));
@@ -81,7 +81,7 @@ impl Source {
         if buffer.get("uri").is_none() && index == 0 && self.container.bin.is_some() {
             let bin = self.container.bin.as_deref().unwrap_or_default();
             return bin.get(..size).ok_or_else(|| {
-                length.unexpected(format!("at most {}, the length of the GLB's binary chunk", bin.len()))
+                length.unexpected(format!("at most {} (the length of the GLB's binary chunk)", bin.len()))
             });
         }
         let loaded = self.buffers[index].get_or_init(|| self.load(&buffer, &length, size));
@@ -90,13 +90,10 @@ impl Source {
 
     fn load(&self, buffer: &At<'_>, length: &At<'_>, size: usize) -> Result<Vec<u8>> {
         let Some(uri) = buffer.get("uri") else {
-            return Err(GltfFlaw::new(
-                buffer.place(),
-                "no 'uri' and no binary chunk",
-                "bytes that geometry is in",
-            ));
+            return Err(GltfFlaw::saying(buffer.place(), "it has neither a 'uri' nor a binary chunk"));
         };
-        let too_short = |met: usize| length.unexpected(format!("at most {met}, the bytes there are"));
+        let too_short =
+            |there: usize| length.unexpected(format!("at most {there} (the bytes that there are)"));
         match self.parse_uri(&uri)? {
             Uri::Base64(data) => {
                 // Before any room is made for it.
@@ -129,8 +126,8 @@ impl Source {
     /// The first bytes of a file below the folder.
     fn file_bytes(&self, at: &At<'_>, file: &Path, most: usize) -> Result<Vec<u8>> {
         let refused = |why: &dyn std::fmt::Display| {
-            let met = format!("'{}', which cannot be read: {why}", shortened(&file.display().to_string()));
-            GltfFlaw::new(at.place(), met, "a file beside the document")
+            let name = shortened(&file.display().to_string());
+            GltfFlaw::saying(at.place(), format!("the file '{name}' cannot be read: {why}"))
         };
         let path = self.file(file).map_err(|why| refused(&why))?;
         let opened = std::fs::File::open(path).and_then(|file| {
@@ -183,8 +180,9 @@ impl Source {
         let buffer = self.buffer(&view.require("buffer")?)?;
         let (start, length) = (view.count_or("byteOffset", 0)?, view.require("byteLength")?.count()?);
         start.checked_add(length).and_then(|end| buffer.get(start..end)).ok_or_else(|| {
-            let met = format!("{length} bytes from byte {start}");
-            GltfFlaw::new(view.place(), met, format!("bytes within its buffer of {}", buffer.len()))
+            let there = buffer.len();
+            let problem = format!("it names {length} bytes from byte {start} on, but its buffer has {there}");
+            GltfFlaw::saying(view.place(), problem)
         })
     }
 
@@ -196,8 +194,9 @@ impl Source {
     /// Notes that so many bytes will be decoded.
     pub(super) fn take_room(&self, at: &At<'_>, bytes: usize) -> Result<()> {
         let Some(left) = self.room.get().checked_sub(bytes) else {
-            let met = format!("compressed data of {bytes} bytes");
-            return Err(GltfFlaw::new(at.place(), met, "at most 2 GiB of these together"));
+            let problem =
+                format!("with these {bytes} bytes the document has more than 2 GiB of compressed data");
+            return Err(GltfFlaw::saying(at.place(), problem));
         };
         self.room.set(left);
         Ok(())

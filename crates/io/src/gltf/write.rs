@@ -108,7 +108,8 @@ impl Asset {
 
 fn glb(container: &super::container::Container) -> Result<Vec<u8>, WriteError> {
     container.to_glb().ok_or_else(|| {
-        let flaw = GltfFlaw::new("the GLB", "more bytes than its 32-bit length can tell", "less than 4 GiB");
+        let flaw =
+            GltfFlaw::saying("the GLB", "it would have 4 GiB or more, which its 32-bit length cannot count");
         WriteError::Gltf { flaw }
     })
 }

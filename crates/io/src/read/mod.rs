@@ -50,7 +50,7 @@ pub(crate) fn read_all(path: &Path) -> io::Result<Vec<u8>> {
         use std::os::unix::fs::FileTypeExt;
         let kind = std::fs::metadata(path)?.file_type();
         if kind.is_char_device() || kind.is_block_device() {
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a device, expected a file"));
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a device, not a file"));
         }
     }
     std::fs::read(path)
@@ -91,7 +91,7 @@ const MOST: usize = u32::MAX as usize;
 fn check_count(count: u64, what: &str, place: Place) -> Result<usize, Flaw> {
     match usize::try_from(count) {
         Ok(count) if count <= MOST => Ok(count),
-        _ => Err(Flaw::new(place, format!("{count} {what}"), format!("at most {MOST}"))),
+        _ => Err(Flaw::new(place, count.to_string(), format!("at most {MOST} {what}"))),
     }
 }
 
@@ -99,8 +99,8 @@ fn check_count(count: u64, what: &str, place: Place) -> Result<usize, Flaw> {
 #[inline]
 fn push_face(faces: &mut PolygonFaces, corners: &[u32], place: impl Fn() -> Place) -> Result<(), Flaw> {
     if corners.len() > MOST - faces.corner_count() {
-        let met = format!("more than {MOST} face corners");
-        return Err(Flaw::new(place(), met, format!("at most {MOST}")));
+        let found = format!("more than {MOST}");
+        return Err(Flaw::new(place(), found, format!("at most {MOST} face corners")));
     }
     faces.push(corners);
     Ok(())

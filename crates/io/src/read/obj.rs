@@ -278,9 +278,11 @@ impl Reader<'_> {
         let (vertices, sharpness) = (self.tag_vertices(integers)?, self.tag_sharpness(floats)?);
         let tags = vertices.len() / ends;
         if vertices.len() % ends != 0 || sharpness.len() != 1 && sharpness.len() != tags {
-            let met = format!("a tag of {integers} integers and {floats} floats");
-            let expected = format!("{ends} for each tagged place, and one sharpness for all or for each");
-            return Err(Flaw::new(self.scanner.place(), met, expected));
+            let problem = format!(
+                "the tag has {integers} vertices and {floats} sharpnesses; each tagged place needs {ends} of the former, and one of \
+                 the latter for all or for each"
+            );
+            return Err(Flaw::saying(self.scanner.place(), problem));
         }
         for (i, place) in vertices.chunks_exact(ends).enumerate() {
             let sharpness = sharpness[if sharpness.len() == 1 { 0 } else { i }];
@@ -336,14 +338,16 @@ impl Reader<'_> {
             return Err(self.scanner.unexpected(None, "at least one vertex (v X Y Z)"));
         }
         if self.highest_corner.count_needed > count {
-            let met = format!("vertex index {} in a face", self.highest_corner.count_needed);
-            let expected = format!("at most {count}, the number of vertices");
-            return Err(Flaw::new(crate::Place::Line(self.highest_corner.line), met, expected));
+            let named = self.highest_corner.count_needed;
+            let problem =
+                format!("a face names vertex {named}, but the last vertex is {count} (faces count from 1)");
+            return Err(Flaw::saying(crate::Place::Line(self.highest_corner.line), problem));
         }
         if self.highest_tag.count_needed > count {
-            let met = format!("vertex index {} in a tag", self.highest_tag.count_needed - 1);
-            let expected = format!("at most {} (tags count vertices from 0)", count - 1);
-            return Err(Flaw::new(crate::Place::Line(self.highest_tag.line), met, expected));
+            let (named, last) = (self.highest_tag.count_needed - 1, count - 1);
+            let problem =
+                format!("a tag names vertex {named}, but the last vertex is {last} (tags count from 0)");
+            return Err(Flaw::saying(crate::Place::Line(self.highest_tag.line), problem));
         }
         Ok(())
     }

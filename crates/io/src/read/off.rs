@@ -72,7 +72,7 @@ fn read_header<'a>(scanner: &mut Scanner<'a>) -> Result<(&'a [u8], usize, usize)
         letters = prefix;
         vertices = scanner.first_word();
         if vertices == Some(b"BINARY") {
-            return Err(scanner.unexpected(vertices, "an OFF file in text; binary ones are not read"));
+            return Err(Flaw::saying(scanner.place(), "binary OFF files are not read"));
         }
     } else if first.and_then(integer).is_none() {
         return Err(scanner.unexpected(first, "the keyword OFF"));
@@ -153,7 +153,7 @@ fn read_face(scanner: &mut Scanner<'_>, vertices: usize, polygon: &mut Vec<u32>)
         match (word, index.and_then(|i| u32::try_from(i).ok())) {
             (_, Some(index)) => polygon.push(index),
             (Some(word), None) if integer(word).is_some() => {
-                let expected = format!("a vertex index below {vertices}, the number of vertices");
+                let expected = format!("a vertex index below {vertices} (the number of vertices)");
                 return Err(Flaw::new(scanner.place(), quoted(word), expected));
             }
             (word, None) => {

@@ -34,8 +34,8 @@ fn read_binary(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
             .element("facet", facets.len() / FACET));
     }
     if count == 0 && !facets.is_empty() {
-        let met = format!("no facet promised, but {} bytes after the count", facets.len());
-        return Err(Flaw::new(Place::Byte(80), met, "the number of facets"));
+        let problem = format!("the file promises no facet, but {} bytes follow", facets.len());
+        return Err(Flaw::saying(Place::Byte(80), problem));
     }
     check_count(3 * u64::from(promised), "vertices", Place::Byte(80))?;
     let mut soup = with_room(count);

@@ -34,8 +34,8 @@ impl Container {
     pub(super) fn parse(bytes: Vec<u8>) -> flaw::Result<Self> {
         let archive = ZipArchive::new(Cursor::new(bytes.as_slice())).map_err(broken)?;
         if archive.len() > MOST_PARTS {
-            let met = format!("{} parts", archive.len());
-            return Err(PackageFlaw::of_archive(met, format!("at most {MOST_PARTS}")));
+            let problem = format!("it has {} parts; at most {MOST_PARTS} are read", archive.len());
+            return Err(PackageFlaw::of_archive(problem));
         }
         // A part whose name cannot be read is copied, and never asked for.
         let name =
@@ -61,39 +61,39 @@ impl Container {
     pub(super) fn text(&self, part: usize, read: &mut u64) -> flaw::Result<String> {
         let name = &self.names[part];
         let mut archive = ZipArchive::new(Cursor::new(self.bytes.as_slice())).map_err(broken)?;
-        let flaw = |met: String| PackageFlaw::new(name, met, "a part that can be unpacked");
-        let file = archive.by_index(part).map_err(|why| flaw(why.to_string()))?;
+        let flaw =
+            |why: &dyn std::fmt::Display| PackageFlaw::new(name, format!("it cannot be unpacked: {why}"));
+        let file = archive.by_index(part).map_err(|why| flaw(&why))?;
         let most = MOST_BYTES - *read;
         let mut bytes = Vec::new();
-        file.take(most + 1).read_to_end(&mut bytes).map_err(|why| flaw(why.to_string()))?;
+        file.take(most + 1).read_to_end(&mut bytes).map_err(|why| flaw(&why))?;
         *read += bytes.len() as u64;
         if *read > MOST_BYTES {
-            let met = "more than 2 GiB with the parts before it";
-            return Err(PackageFlaw::new(name, met, "less in all models together"));
+            return Err(PackageFlaw::new(name, "with this part the models have more than 2 GiB"));
         }
         // What some programs put before text in UTF-8 stays: it is part of what is edited.
         String::from_utf8(bytes).map_err(|error| {
-            let met = format!("byte {} that is not UTF-8", error.utf8_error().valid_up_to());
-            PackageFlaw::new(name, met, "text in UTF-8")
+            let byte = error.utf8_error().valid_up_to();
+            PackageFlaw::new(name, format!("byte {byte} is not UTF-8"))
         })
     }
 
     /// The part that is the model, by the package's relationships.
     pub(super) fn root(&self, read: &mut u64) -> flaw::Result<usize> {
         let Some(relationships) = self.find(RELATIONSHIPS) else {
-            return Err(PackageFlaw::of_archive(format!("no part {RELATIONSHIPS}"), "a 3MF package"));
+            return Err(PackageFlaw::of_archive(format!(
+                "it has no part {RELATIONSHIPS}, as 3MF packages have"
+            )));
         };
         let text = self.text(relationships, read)?;
         let name = self.name(relationships);
         let mut reader = quick_xml::Reader::from_str(&text);
         loop {
             let at = reader.buffer_position() as usize;
-            let event = reader
-                .read_event()
-                .map_err(|why| PackageFlaw::new(name, why.to_string(), "well-formed XML").at(&text, at))?;
+            let event = reader.read_event().map_err(|why| PackageFlaw::not_xml(name, &why).at(&text, at))?;
             let (Event::Start(tag) | Event::Empty(tag)) = event else {
                 if event == Event::Eof {
-                    return Err(PackageFlaw::new(name, "no relationship to a 3D model", "one"));
+                    return Err(PackageFlaw::new(name, "it names no 3D model"));
                 }
                 continue;
             };
@@ -103,7 +103,8 @@ impl Container {
             }
             let target = attribute(element.attributes, "Target").unwrap_or_default();
             return self.find(target).ok_or_else(|| {
-                PackageFlaw::new(name, format!("the model '{target}'"), "a part of the package").at(&text, at)
+                let problem = format!("it names the model '{target}', which is no part of the package");
+                PackageFlaw::new(name, problem).at(&text, at)
             });
         }
     }
@@ -168,5 +169,5 @@ fn options(length: usize) -> SimpleFileOptions {
 }
 
 fn broken(why: zip::result::ZipError) -> PackageFlaw {
-    PackageFlaw::of_archive(format!("an archive that cannot be read ({why})"), "a ZIP archive, as 3MF is")
+    PackageFlaw::of_archive(format!("it cannot be read as a ZIP archive: {why}"))
 }

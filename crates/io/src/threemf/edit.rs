@@ -36,13 +36,14 @@ impl Replacement {
         volumes: &[&Volume],
         new: &NewTriangles<'_>,
     ) -> Result<(Self, Inherited)> {
-        let flaw = |met: String, expected: &str| PackageFlaw::new(&model.name, met, expected);
+        let flaw = |problem: String| PackageFlaw::new(&model.name, problem);
         let beyond = |&&v: &&u32| v as usize >= new.positions.len();
         if let Some(vertex) = new.triangles.as_flattened().iter().find(beyond) {
-            return Err(flaw(format!("vertex {vertex} of {}", new.positions.len()), "one that there is"));
+            let count = new.positions.len();
+            return Err(flaw(format!("a triangle names vertex {vertex}, but there are {count}")));
         }
         if let Some(x) = new.positions.as_flattened().iter().find(|x| !x.is_finite()) {
-            return Err(flaw(format!("the coordinate {x}"), "a finite number"));
+            return Err(flaw(format!("a coordinate is {x}, which is no finite number")));
         }
         let needs_sources = !mesh.attributes.is_empty() || !volumes.is_empty();
         let sources: Vec<Source> = match needs_sources {
@@ -50,8 +51,8 @@ impl Replacement {
             false => Vec::new(),
         };
         if let Some(source) = sources.iter().find(|source| source.face >= mesh.triangles.len()) {
-            let met = format!("triangle {} of {}", source.face, mesh.triangles.len());
-            return Err(flaw(met, "one that there is"));
+            let count = mesh.triangles.len();
+            return Err(flaw(format!("triangle {} is named, but there are {count}", source.face)));
         }
         // Volumes are ranges: triangles stand in the order of those that they came from.
         let mut order: Vec<u32> = (0..new.triangles.len() as u32).collect();
@@ -64,8 +65,8 @@ impl Replacement {
                 |face: u32| order.partition_point(|&t| (sources[t as usize].face as u32) < face) as u32;
             let (first, end) = (before(volume.first), before(volume.last.saturating_add(1)));
             if first >= end {
-                let met = format!("no triangles left of the volume from {} to {}", volume.first, volume.last);
-                return Err(flaw(met, "one at least"));
+                let (first, last) = (volume.first, volume.last);
+                return Err(flaw(format!("the volume from triangle {first} to {last} has no triangle left")));
             }
             ranges.insert([volume.first, volume.last], [first, end - 1]);
         }

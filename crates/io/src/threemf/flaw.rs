@@ -12,21 +12,24 @@ pub struct PackageFlaw {
     pub place: Option<(usize, usize)>,
     /// The element there, such as `object 3`; empty outside elements.
     pub element: String,
-    /// What was met.
-    pub met: String,
-    /// What was expected.
-    pub expected: String,
+    /// What is wrong, in words.
+    pub problem: String,
 }
 
 impl PackageFlaw {
-    pub(super) fn new(part: &str, met: impl Into<String>, expected: impl Into<String>) -> Self {
-        let (part, met, expected) = (part.to_owned(), met.into(), expected.into());
-        Self { part, place: None, element: String::new(), met, expected }
+    /// A problem of a part, in words.
+    pub(super) fn new(part: &str, problem: impl Into<String>) -> Self {
+        Self { part: part.to_owned(), place: None, element: String::new(), problem: problem.into() }
     }
 
-    /// Of the archive itself.
-    pub(super) fn of_archive(met: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self::new("the package", met, expected)
+    /// A problem of the archive itself, in words.
+    pub(super) fn of_archive(problem: impl Into<String>) -> Self {
+        Self::new("the package", problem)
+    }
+
+    /// Of text that is no XML.
+    pub(super) fn not_xml(part: &str, why: &quick_xml::Error) -> Self {
+        Self::new(part, format!("the text is not well-formed XML: {why}"))
     }
 
     /// The same at a byte of the part's text.
@@ -54,7 +57,7 @@ impl fmt::Display for PackageFlaw {
         if !self.element.is_empty() {
             write!(out, ", {}", self.element)?;
         }
-        write!(out, ": met {}, expected {}", self.met, self.expected)
+        write!(out, ": {}", self.problem)
     }
 }
 

@@ -290,8 +290,8 @@ impl Package {
         if sizes.fold(0, usize::saturating_add) <= MOST {
             return Ok(());
         }
-        let met = format!("more than {MOST} vertices or triangles with all items");
-        let flaw = Box::new(PackageFlaw::of_archive(met, "fewer"));
+        let problem = format!("with all items there are more than {MOST} vertices or triangles");
+        let flaw = Box::new(PackageFlaw::of_archive(problem));
         Err(ReadError::Package { path: self.path.clone(), flaw })
     }
 
@@ -346,8 +346,10 @@ impl Package {
     /// There is no such object, the triangles do not fit together, or nothing is left of a volume.
     pub fn replace(&mut self, object: usize, new: &NewTriangles<'_>) -> Result<Inherited, PackageFlaw> {
         let Some((model, _, mesh)) = self.mesh(object) else {
-            let met = format!("object number {object}");
-            return Err(PackageFlaw::of_archive(met, format!("one below {}", self.object_count())));
+            let count = self.object_count();
+            return Err(PackageFlaw::of_archive(format!(
+                "object number {object} is named, but there are {count}"
+            )));
         };
         let volumes = self.volumes_of(object);
         let (replacement, told) = Replacement::new(model, mesh, &volumes, new)?;

@@ -5,6 +5,7 @@
 use super::flaw::{PackageFlaw, Result};
 use super::xml::{Element, attribute};
 use crate::affine::{Affine, IDENTITY};
+use crate::error::expected_but_found;
 use crate::scan::number;
 use quick_xml::Reader;
 use quick_xml::events::Event;
@@ -153,7 +154,7 @@ impl<'a> Parser<'a> {
         loop {
             let at = start + reader.buffer_position() as usize;
             let event =
-                reader.read_event().map_err(|why| self.flaw(at, why.to_string(), "well-formed XML"))?;
+                reader.read_event().map_err(|why| self.within(PackageFlaw::not_xml(self.name, &why), at))?;
             let end = start + reader.buffer_position() as usize;
             match event {
                 Event::Start(element) => {
@@ -167,22 +168,27 @@ impl<'a> Parser<'a> {
                     let place = self.places.pop();
                     self.close(place, at);
                 }
-                Event::DocType(_) => return Err(self.flaw(at, "a document type", "none, as 3MF asks")),
+                Event::DocType(_) => return Err(self.flaw(at, "3MF allows no document type")),
                 Event::Eof => break,
                 _ => {}
             }
         }
         if self.places.len() > 1 {
-            return Err(self.flaw(self.text.len(), "the end of the text within an element", "its end tag"));
+            return Err(self.flaw(self.text.len(), "the text ends within an element"));
         }
         if !self.found.has_model {
-            return Err(PackageFlaw::new(self.name, "no element model", "one"));
+            return Err(PackageFlaw::new(self.name, "it has no element model"));
         }
         Ok(())
     }
 
-    fn flaw(&self, at: usize, met: impl Into<String>, expected: impl Into<String>) -> PackageFlaw {
-        let flaw = PackageFlaw::new(self.name, met, expected).at(self.text, at);
+    fn flaw(&self, at: usize, problem: impl Into<String>) -> PackageFlaw {
+        self.within(PackageFlaw::new(self.name, problem), at)
+    }
+
+    /// The flaw at a byte of the text, within the object there.
+    fn within(&self, flaw: PackageFlaw, at: usize) -> PackageFlaw {
+        let flaw = flaw.at(self.text, at);
         let is_within = self.places.contains(&Place::Object);
         match self.found.objects.last().filter(|_| is_within) {
             Some(object) => flaw.element(format!("object {}", object.id)),
@@ -195,14 +201,19 @@ impl<'a> Parser<'a> {
         let place = *self.places.last().unwrap_or(&Place::Top);
         if place == Place::Top {
             if element.local != "model" || self.found.has_model {
-                return Err(self.flaw(at, format!("the element {}", element.name), "one model"));
+                let problem =
+                    expected_but_found("one element model", &format!("the element {}", element.name));
+                return Err(self.flaw(at, problem));
             }
             self.found.has_model = true;
             self.found.prefix = element.prefix().to_owned();
             if let Some(unit) = attribute(element.attributes, "unit") {
                 let own = UNITS.iter().find(|(name, _)| *name == unit);
                 let names: Vec<&str> = UNITS.iter().map(|(name, _)| *name).collect();
-                let flaw = || self.flaw(at, format!("the unit '{unit}'"), names.join(", "));
+                let flaw = || {
+                    let problem = format!("the unit '{unit}' is unknown; known are {}", names.join(", "));
+                    self.flaw(at, problem)
+                };
                 self.found.unit = own.ok_or_else(flaw)?.1;
             }
             return Ok(Place::Model);
@@ -214,7 +225,7 @@ impl<'a> Parser<'a> {
             (Place::Resources, "object") if is_core => self.object(element, at),
             (Place::Object, "mesh") if is_core => {
                 if self.object_mut().is_some_and(|object| object.mesh.is_some()) {
-                    return Err(self.flaw(at, "a second mesh", "one"));
+                    return Err(self.flaw(at, "the object has a second mesh"));
                 }
                 if let Some(object) = self.object_mut() {
                     object.mesh = Some(MeshText::default());
@@ -273,7 +284,7 @@ impl<'a> Parser<'a> {
     /// Refuses a list that a mesh has already.
     fn once(&mut self, is_first: impl Fn(&MeshText) -> bool, element: &Element<'a>, at: usize) -> Result<()> {
         if self.mesh_mut().is_some_and(|mesh| !is_first(mesh)) {
-            return Err(self.flaw(at, format!("a second list of {}", element.local), "one"));
+            return Err(self.flaw(at, format!("the mesh has a second list of {}", element.local)));
         }
         Ok(())
     }
@@ -299,7 +310,7 @@ impl<'a> Parser<'a> {
         let id = self.id(element, "id", at)?;
         let name = attribute(element.attributes, "name").map(super::xml::plain);
         if self.found.of_id.insert(id, self.found.objects.len()).is_some() {
-            return Err(self.flaw(at, format!("a second object {id}"), "one of each id"));
+            return Err(self.flaw(at, format!("there is a second object {id}")));
         }
         self.found.objects.push(Object { id, name, mesh: None, components: Vec::new() });
         Ok(Place::Object)
@@ -308,14 +319,14 @@ impl<'a> Parser<'a> {
     fn id(&self, element: &Element<'a>, key: &str, at: usize) -> Result<u32> {
         let text = attribute(element.attributes, key);
         let id = text.and_then(|text| text.trim().parse::<u32>().ok());
-        id.ok_or_else(|| self.flaw(at, of_attribute(key, text), "a whole number"))
+        id.ok_or_else(|| self.flaw(at, of_attribute(key, text, "a whole number")))
     }
 
     fn used(&self, element: &Element<'a>, at: usize) -> Result<Use> {
         let transform = match attribute(element.attributes, "transform") {
             None => IDENTITY,
             Some(text) => transform(text).ok_or_else(|| {
-                self.flaw(at, of_attribute("transform", Some(text)), "twelve finite numbers")
+                self.flaw(at, of_attribute("transform", Some(text), "twelve finite numbers"))
             })?,
         };
         let part = element.local_attribute("path").map(str::to_owned);
@@ -327,7 +338,7 @@ impl<'a> Parser<'a> {
         for (x, key) in point.iter_mut().zip(["x", "y", "z"]) {
             let text = attribute(element.attributes, key);
             let value = text.and_then(|text| number(text.trim().as_bytes())).filter(|x| x.is_finite());
-            *x = value.ok_or_else(|| self.flaw(at, of_attribute(key, text), "a finite number"))?;
+            *x = value.ok_or_else(|| self.flaw(at, of_attribute(key, text, "a finite number")))?;
         }
         Ok(point)
     }
@@ -339,11 +350,8 @@ impl<'a> Parser<'a> {
             let text = attribute(element.attributes, key);
             let index = text.and_then(|text| text.trim().parse::<u32>().ok());
             *corner = index.filter(|&index| (index as usize) < vertices).ok_or_else(|| {
-                self.flaw(
-                    at,
-                    of_attribute(key, text),
-                    format!("a vertex below {vertices}, their number so far"),
-                )
+                let expected = format!("a vertex below {vertices} (their number so far)");
+                self.flaw(at, of_attribute(key, text, &expected))
             })?;
         }
         let has_more = super::xml::attributes(element.attributes).count() > 3;
@@ -360,8 +368,14 @@ impl<'a> Parser<'a> {
     }
 }
 
-fn of_attribute(key: &str, text: Option<&str>) -> String {
-    text.map_or_else(|| format!("no {key}"), |text| format!("{key}={}", crate::scan::quoted(text.as_bytes())))
+/// What is wrong with an attribute that is missing or not as expected.
+fn of_attribute(key: &str, text: Option<&str>, expected: &str) -> String {
+    match text {
+        None => format!("{key} is missing: expected {expected}"),
+        Some(text) => {
+            expected_but_found(expected, &format!("{key}={}", crate::scan::quoted(text.as_bytes())))
+        }
+    }
 }
 
 /// Twelve numbers: where the axes go, and the origin; points are rows, (x, y, z, 1) times the matrix.

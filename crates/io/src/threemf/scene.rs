@@ -37,21 +37,21 @@ struct Walk<'a> {
 impl Walk<'_> {
     /// An object that is used in a model which stands by `outer`.
     fn step(&mut self, model: usize, own: &Use, outer: &Affine, depth: usize) -> Result<()> {
-        let flaw = |met: String, expected: &str| {
+        let flaw = |problem: String| {
             let name = self.models[model].name.as_str();
-            PackageFlaw::new(name, met, expected).at(&self.models[model].text, own.at)
+            PackageFlaw::new(name, problem).at(&self.models[model].text, own.at)
         };
         self.uses += 1;
         if self.uses > MOST_USES {
-            return Err(flaw(format!("more than {MOST_USES} objects with all components"), "fewer"));
+            return Err(flaw(format!("with all components there are more than {MOST_USES} objects")));
         }
         if depth > DEEPEST {
-            let met = format!("more than {DEEPEST} components within each other");
-            return Err(flaw(met, "fewer, and none that uses itself"));
+            let problem = format!("more than {DEEPEST} components are within each other, or one uses itself");
+            return Err(flaw(problem));
         }
         let Some(place) = (self.find)(model, own) else {
             let part = own.part.as_ref().map_or(String::new(), |part| format!(" of {part}"));
-            return Err(flaw(format!("object {}{part}", own.object), "one that there is"));
+            return Err(flaw(format!("there is no object {}{part}", own.object)));
         };
         let here = product(outer, &own.transform);
         (self.visit)(place, &here);

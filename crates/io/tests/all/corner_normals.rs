@@ -40,6 +40,9 @@ fn corners_without_a_normal_are_refused() {
             .unwrap_err()
             .to_string()
     };
-    assert_eq!(refused(&CORNERS[..1]), "corner normals of 1 triangles for 2, expected three for each");
+    assert_eq!(
+        refused(&CORNERS[..1]),
+        "there are corner normals of 1 triangles for 2: each triangle needs three"
+    );
     assert_eq!(refused(&[[0; 3], [0, 2, 0]]), "triangle 1 has normal 2, but there are 2");
 }

@@ -1,4 +1,4 @@
-//! Damaged files: each error names the place, what was met and what was expected, and none makes room for
+//! Damaged files: each error names the place, what was expected and what was found, and none makes room for
 //! what the file does not hold.
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
@@ -16,28 +16,31 @@ fn refuses(format: Format, bytes: impl AsRef<[u8]>, message: &str) {
 #[test]
 fn obj() {
     let refuses = |text: &str, message: &str| refuses(Format::Obj, text, message);
-    refuses("v 0 0\n", "OBJ line 1, vertex 0: met the end of the line, expected a finite number for z");
-    refuses("v 0 0 0\nv 1", "OBJ line 2, vertex 1: met the end of the file, expected a finite number for y");
-    refuses("v 0 0 0\n\nv 1 x 2\n", "OBJ line 3, vertex 1: met 'x', expected a finite number for y");
-    refuses("v inf 0 0\n", "OBJ line 1, vertex 0: met 'inf', expected a finite number for x");
-    refuses("v 0 -NaN 0\n", "OBJ line 1, vertex 0: met '-NaN', expected a finite number for y");
-    refuses("v 0 0 1e999\n", "OBJ line 1, vertex 0: met '1e999', expected a finite number for z");
-    refuses("v 0 0,5 1\n", "OBJ line 1, vertex 0: met '0,5', expected a finite number for y");
+    refuses("v 0 0\n", "OBJ line 1, vertex 0: expected a finite number for z, found the end of the line");
+    refuses(
+        "v 0 0 0\nv 1",
+        "OBJ line 2, vertex 1: expected a finite number for y, found the end of the file",
+    );
+    refuses("v 0 0 0\n\nv 1 x 2\n", "OBJ line 3, vertex 1: expected a finite number for y, found 'x'");
+    refuses("v inf 0 0\n", "OBJ line 1, vertex 0: expected a finite number for x, found 'inf'");
+    refuses("v 0 -NaN 0\n", "OBJ line 1, vertex 0: expected a finite number for y, found '-NaN'");
+    refuses("v 0 0 1e999\n", "OBJ line 1, vertex 0: expected a finite number for z, found '1e999'");
+    refuses("v 0 0,5 1\n", "OBJ line 1, vertex 0: expected a finite number for y, found '0,5'");
     let form = "expected a vertex index from 1, or one from -1 to -1, counting back from the latest vertex";
     for word in ["0", "-2", "x", "1.5", "/1", "99999999999999999999", "4294967296", "-9223372036854775808"] {
-        refuses(&format!("v 0 0 0\nf 1 {word} 1\n"), &format!("OBJ line 2, face 0: met '{word}', {form}"));
+        refuses(&format!("v 0 0 0\nf 1 {word} 1\n"), &format!("OBJ line 2, face 0: {form}, found '{word}'"));
     }
     refuses(
         "v 0 0 0\nf 1 1 1\nf 1 3 2\nv 0 0 0\n",
-        "OBJ line 3: met vertex index 3 in a face, expected at most 2, the number of vertices",
+        "OBJ line 3: a face names vertex 3, but the last vertex is 2 (faces count from 1)",
     );
     refuses(
         "v 0 0 0\nf 1 1 1\nf 1 1 \\\n4294967295\n",
-        "OBJ line 4: met vertex index 4294967295 in a face, expected at most 1, the number of vertices",
+        "OBJ line 4: a face names vertex 4294967295, but the last vertex is 1 (faces count from 1)",
     );
     refuses(
         "# nothing\nf 1 2 3\n",
-        "OBJ line 3: met the end of the file, expected at least one vertex (v X Y Z)",
+        "OBJ line 3: expected at least one vertex (v X Y Z), found the end of the file",
     );
 }
 
@@ -48,22 +51,25 @@ fn obj_tags() {
     };
     refuses(
         "t crease 2/1/0 1 3 10",
-        "OBJ line 5: met vertex index 3 in a tag, expected at most 2 (tags count vertices from 0)",
+        "OBJ line 5: a tag names vertex 3, but the last vertex is 2 (tags count from 0)",
     );
-    refuses("t crease 2/1/0 1 -1 10", "OBJ line 5: met '-1', expected a vertex index from 0 in a tag");
-    refuses("t crease 2/1/0 1 2", "OBJ line 5: met the end of the line, expected a sharpness of at least 0");
-    refuses("t corner 1/1/0 1 -2", "OBJ line 5: met '-2', expected a sharpness of at least 0");
-    refuses("t corner 1/1/0 1 nan", "OBJ line 5: met 'nan', expected a sharpness of at least 0");
-    refuses("t corner x", "OBJ line 5: met 'x', expected the tag's counts, as in 2/1/0");
-    refuses("t corner 1", "OBJ line 5: met '1', expected the tag's counts, as in 2/1/0");
+    refuses("t crease 2/1/0 1 -1 10", "OBJ line 5: expected a vertex index from 0 in a tag, found '-1'");
+    refuses(
+        "t crease 2/1/0 1 2",
+        "OBJ line 5: expected a sharpness of at least 0, found the end of the line",
+    );
+    refuses("t corner 1/1/0 1 -2", "OBJ line 5: expected a sharpness of at least 0, found '-2'");
+    refuses("t corner 1/1/0 1 nan", "OBJ line 5: expected a sharpness of at least 0, found 'nan'");
+    refuses("t corner x", "OBJ line 5: expected the tag's counts, as in 2/1/0, found 'x'");
+    refuses("t corner 1", "OBJ line 5: expected the tag's counts, as in 2/1/0, found '1'");
     refuses(
         "t crease 3/1/0 0 1 2 10",
-        "OBJ line 5: met a tag of 3 integers and 1 floats, expected 2 for each tagged place, and one sharpness for \
-         all or for each",
+        "OBJ line 5: the tag has 3 vertices and 1 sharpnesses; each tagged place needs 2 of the former, \
+         and one of the latter for all or for each",
     );
     refuses(
         "t crease 999999999999/1/0 0 1 2 10",
-        "OBJ line 5: met the end of the line, expected a vertex index from 0 in a tag",
+        "OBJ line 5: expected a vertex index from 0 in a tag, found the end of the line",
     );
 }
 
@@ -73,68 +79,62 @@ const FACE: &str = "property list uchar int vertex_indices\n";
 #[test]
 fn ply_headers() {
     let refuses = |text: &str, message: &str| refuses(Format::Ply, text, message);
-    refuses("ply\n", "PLY line 2: met the end of the file within the header, expected end_header");
-    refuses("plx\n", "PLY line 1: met 'plx', expected the word ply alone on the first line");
-    refuses("ply\nformat ascii 2.0\nend_header\n", "PLY line 2: met version '2.0', expected version 1.0");
+    refuses("ply\n", "PLY line 2: expected end_header, found the end of the file");
+    refuses("plx\n", "PLY line 1: expected the word ply alone on the first line, found 'plx'");
+    refuses("ply\nformat ascii 2.0\nend_header\n", "PLY line 2: expected version 1.0, found '2.0'");
     refuses(
         "ply\nformat binary 1.0\n",
-        "PLY line 2: met 'binary', expected ascii, binary_little_endian or binary_big_endian",
+        "PLY line 2: expected ascii, binary_little_endian or binary_big_endian, found 'binary'",
     );
-    refuses(
-        "ply\nend_header\n",
-        "PLY line 2: met a header without a format, expected format ascii 1.0 or a binary one",
-    );
-    refuses(
-        "ply\nformat ascii 1.0\nend_header\n",
-        "PLY line 3: met a header without element vertex, expected one",
-    );
+    refuses("ply\nend_header\n", "PLY line 2: the header names no format, such as ascii 1.0");
+    refuses("ply\nformat ascii 1.0\nend_header\n", "PLY line 3: the header has no element vertex");
     refuses(
         "ply\nformat ascii 1.0\nelement vertex -1\n",
-        "PLY line 3: met '-1', expected the number of elements",
+        "PLY line 3: expected the number of elements, found '-1'",
     );
     refuses(
         "ply\nformat ascii 1.0\nelement vertex 4294967296\n",
-        "PLY line 3: met 4294967296 elements 'vertex', expected at most 4294967295",
+        "PLY line 3: expected at most 4294967295 elements 'vertex', found 4294967296",
     );
     refuses(
         "ply\nformat ascii 1.0\nproperty float x\n",
-        "PLY line 3: met a property before any element, expected an element",
+        "PLY line 3: a property stands before the first element",
     );
     refuses(
         "ply\nformat ascii 1.0\nelement vertex 0\nproperty half x\n",
-        "PLY line 4: met type 'half', expected char, uchar, short, ushort, int, uint, float or double, or int8 to \
-         uint32, float32 or float64",
+        "PLY line 4: expected a type: char, uchar, short, ushort, int, uint, float or double, or int8 to \
+         uint32, float32 or float64, found 'half'",
     );
     refuses(
         "ply\nformat ascii 1.0\nelement vertex 0\nproperty list float int l\n",
-        "PLY line 4: met a list whose length is no integer, expected an integer type",
+        "PLY line 4: expected an integer type for the length of a list, found 'float'",
     );
     refuses(
         "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float x\n",
-        "PLY line 5: met a second property 'x', expected one of each name",
+        "PLY line 5: the element has a second property 'x'",
     );
     refuses(
         "ply\nformat ascii 1.0\nelement vertex 0\nelement vertex 0\n",
-        "PLY line 4: met a second element 'vertex', expected one of each name",
+        "PLY line 4: the header has a second element 'vertex'",
     );
     refuses(
         "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float z\nend_header\n",
-        "PLY line 3: met element vertex without property y, expected x, y and z, each one number",
+        "PLY line 3: element vertex has no number y",
     );
     refuses(
         &format!(
             "ply\nformat ascii 1.0\nelement vertex 0\n{XYZ}element face 0\nproperty int vertex_index\nend_header\n"
         ),
-        "PLY line 7: met property vertex_index of element face, expected a list of integers",
+        "PLY line 7: property vertex_index of element face is no list of integers",
     );
     refuses(
         &format!("ply\nformat ascii 1.0\nelement vertex 0\n{XYZ}element face 0\nend_header\n"),
-        "PLY line 7: met element face without a list vertex_indices, expected one",
+        "PLY line 7: element face has no list vertex_indices",
     );
     refuses(
         "ply\nformat ascii 1.0\nvertices 7\n",
-        "PLY line 3: met 'vertices 7', expected format NAME 1.0, element NAME COUNT, property TYPE NAME, comment or \
-         end_header",
+        "PLY line 3: expected format NAME 1.0, element NAME COUNT, property TYPE NAME, comment or \
+         end_header, found 'vertices 7'",
     );
 }
 
@@ -142,28 +142,28 @@ fn ply_headers() {
 fn ply_text() {
     let header = format!("ply\nformat ascii 1.0\nelement vertex 3\n{XYZ}element face 2\n{FACE}end_header\n");
     let refuses = |body: &str, message: &str| refuses(Format::Ply, format!("{header}{body}"), message);
-    refuses("0 0 0\n1 0\n0 1 0\n", "PLY line 11, vertex 1: met the end of the line, expected a number");
+    refuses("0 0 0\n1 0\n0 1 0\n", "PLY line 11, vertex 1: expected a number, found the end of the line");
     refuses(
         "0 0 0\n1 0 0 5\n0 1 0\n",
-        "PLY line 11, vertex 1: met '5', expected the end of the line after the last property",
+        "PLY line 11, vertex 1: expected the end of the line after the last property, found '5'",
     );
-    refuses("0 0 0\n1 0 nan\n0 1 0\n", "PLY line 11, vertex 1: met NaN, expected a finite number for z");
-    refuses("0 0 0\n1 0 0\n1 0 -\n", "PLY line 12, vertex 2: met '-', expected a number");
+    refuses("0 0 0\n1 0 nan\n0 1 0\n", "PLY line 11, vertex 1: expected a finite number for z, found NaN");
+    refuses("0 0 0\n1 0 0\n1 0 -\n", "PLY line 12, vertex 2: expected a number, found '-'");
     let vertices = "0 0 0\n1 0 0\n0 1 0\n";
     let with = |faces: &str, message: &str| refuses(&format!("{vertices}{faces}"), message);
-    with("3 0 1 2\n", "PLY line 14, face 1: met the end of the file, expected an integer");
-    with("3 0 1 2\n3 0 1", "PLY line 14, face 1: met the end of the file, expected a number");
-    with("3 0 1 2\n3 0 1 2.0\n", "PLY line 14, face 1: met '2.0', expected an integer");
-    with("3 0 1 2\n-3 0 1 2\n", "PLY line 14, face 1: met a list of length -3, expected at least 0");
+    with("3 0 1 2\n", "PLY line 14, face 1: expected an integer, found the end of the file");
+    with("3 0 1 2\n3 0 1", "PLY line 14, face 1: expected a number, found the end of the file");
+    with("3 0 1 2\n3 0 1 2.0\n", "PLY line 14, face 1: expected an integer, found '2.0'");
+    with("3 0 1 2\n-3 0 1 2\n", "PLY line 14, face 1: expected the length of a list, found -3");
     with(
         "3 0 1 3\n3 0 1 2\n",
-        "PLY line 13, face 0: met vertex index 3, expected an index below 3, the number of vertices",
+        "PLY line 13, face 0: expected a vertex index below 3 (the number of vertices), found 3",
     );
     with(
         "3 0 1 -1\n3 0 1 2\n",
-        "PLY line 13, face 0: met vertex index -1, expected an index below 3, the number of vertices",
+        "PLY line 13, face 0: expected a vertex index below 3 (the number of vertices), found -1",
     );
-    with("4000000000 0 1\n3 0 1 2\n", "PLY line 13, face 0: met the end of the line, expected a number");
+    with("4000000000 0 1\n3 0 1 2\n", "PLY line 13, face 0: expected a number, found the end of the line");
 }
 
 #[test]
@@ -178,21 +178,21 @@ fn ply_binary() {
         bytes.extend(faces);
         refuses(Format::Ply, bytes, &message);
     };
-    let promise = "expected 3 elements vertex of 12 bytes each, as line 3 promises";
+    let promise = "3 elements vertex of 12 bytes each, as line 3 promises";
     with(
         &[0.0; 5],
         &[],
-        format!("PLY byte {begin}, vertex 1: met 20 bytes up to the end of the file, {promise}"),
+        format!("PLY byte {begin}, vertex 1: expected {promise}, found 20 bytes up to the end of the file"),
     );
     let not_finite = [0.0, 0.0, 0.0, 0.0, f32::NEG_INFINITY, 0.0, 0.0, 0.0, 0.0];
     let after = begin + 20;
-    with(&not_finite, &[], format!("PLY byte {after}, vertex 1: met -inf, expected a finite number for y"));
+    with(&not_finite, &[], format!("PLY byte {after}, vertex 1: expected a finite number for y, found -inf"));
     let faces = begin + 36;
     let (end, from) = (faces + 1, faces + 1);
     with(
         &[0.0; 9],
         &[3],
-        format!("PLY byte {end}, face 0: met the end of the file, expected 12 bytes from byte {from}"),
+        format!("PLY byte {end}, face 0: expected 12 bytes from byte {from}, found the end of the file"),
     );
     let face = [3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0];
     let cut = [&face[..], &face[..10]].concat();
@@ -200,7 +200,7 @@ fn ply_binary() {
     with(
         &[0.0; 9],
         &cut,
-        format!("PLY byte {end}, face 1: met the end of the file, expected 12 bytes from byte {from}"),
+        format!("PLY byte {end}, face 1: expected 12 bytes from byte {from}, found the end of the file"),
     );
     let mut beyond = [face, face].concat();
     beyond[25] = 0xff;
@@ -211,7 +211,7 @@ fn ply_binary() {
         &[0.0; 9],
         &beyond,
         format!(
-            "PLY byte {place}, face 1: met vertex index {index}, expected an index below 3, the number of vertices"
+            "PLY byte {place}, face 1: expected a vertex index below 3 (the number of vertices), found {index}"
         ),
     );
 }
@@ -219,32 +219,32 @@ fn ply_binary() {
 #[test]
 fn stl_text() {
     let refuses = |text: &str, message: &str| refuses(Format::Stl, text, message);
-    refuses("solid x\n", "STL line 2: met the end of the file, expected facet or endsolid");
+    refuses("solid x\n", "STL line 2: expected facet or endsolid, found the end of the file");
     refuses(
         "solid\nfacet\nouter\nloop\nvertex 0 0 0\nvertex 1 0 0",
-        "STL line 6, facet 0: met the end of the file, expected vertex",
+        "STL line 6, facet 0: expected vertex, found the end of the file",
     );
     let facet =
         "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
-    refuses(&format!("solid\n{facet}"), "STL line 9: met the end of the file, expected facet or endsolid");
-    refuses(&format!("solid\n{facet}endsolid\nend"), "STL line 10: met 'end', expected solid");
+    refuses(&format!("solid\n{facet}"), "STL line 9: expected facet or endsolid, found the end of the file");
+    refuses(&format!("solid\n{facet}endsolid\nend"), "STL line 10: expected solid, found 'end'");
     let with = |from: &str, to: &str, message: &str| {
         refuses(&format!("solid\n{facet}{}endsolid\n", facet.replacen(from, to, 1)), message);
     };
     with(
         "1 0 0\nv",
         "1 0\nv",
-        "STL line 12, facet 1: met the end of the line, expected a finite number for z",
+        "STL line 12, facet 1: expected a finite number for z, found the end of the line",
     );
     with(
         "1 0 0\nv",
         "1 infinity 0\nv",
-        "STL line 12, facet 1: met 'infinity', expected a finite number for y",
+        "STL line 12, facet 1: expected a finite number for y, found 'infinity'",
     );
-    with("vertex 0 1 0\n", "", "STL line 13, facet 1: met 'endloop', expected vertex");
-    with("endloop", "vertex 1 1 0\nendloop", "STL line 14, facet 1: met 'vertex', expected endloop");
-    with("outer loop\n", "", "STL line 10, facet 1: met 'vertex', expected outer loop");
-    with("endfacet\n", "", "STL line 15, facet 1: met 'endsolid', expected endfacet");
+    with("vertex 0 1 0\n", "", "STL line 13, facet 1: expected vertex, found 'endloop'");
+    with("endloop", "vertex 1 1 0\nendloop", "STL line 14, facet 1: expected endloop, found 'vertex'");
+    with("outer loop\n", "", "STL line 10, facet 1: expected outer loop, found 'vertex'");
+    with("endfacet\n", "", "STL line 15, facet 1: expected endfacet, found 'endsolid'");
 }
 
 #[test]
@@ -258,76 +258,70 @@ fn stl_binary() {
     let refuses = |bytes: &[u8], message: &str| refuses(Format::Stl, bytes, message);
     refuses(
         b"no such thing",
-        "STL byte 13: met the end of the file, expected 'solid', or the 84 bytes that begin a binary file",
+        "STL byte 13: expected 'solid', or the 84 bytes that begin a binary file, found the end of the file",
     );
     refuses(
         &binary(3, 149),
-        "STL byte 233, facet 2: met the end of the file, expected 3 facets of 50 bytes, as byte 80 promises",
+        "STL byte 233, facet 2: expected 3 facets of 50 bytes, as byte 80 promises, found the end of the file",
     );
     refuses(
         &binary(u32::MAX, 100),
-        "STL byte 184, facet 2: met the end of the file, expected 4294967295 facets of 50 bytes, as byte 80 promises",
+        "STL byte 184, facet 2: expected 4294967295 facets of 50 bytes, as byte 80 promises, found the end of the file",
     );
-    refuses(
-        &binary(0, 100),
-        "STL byte 80: met no facet promised, but 100 bytes after the count, expected the number of facets",
-    );
+    refuses(&binary(0, 100), "STL byte 80: the file promises no facet, but 100 bytes follow");
     let mut bytes = binary(2, 100);
     bytes[84 + 50 + 12 + 8..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
-    refuses(&bytes, "STL byte 154, facet 1: met NaN, expected a finite number");
+    refuses(&bytes, "STL byte 154, facet 1: expected a finite number, found NaN");
 }
 
 #[test]
 fn off() {
     let refuses = |text: &str, message: &str| refuses(Format::Off, text, message);
-    refuses("OFX\n", "OFF line 1: met 'OFX', expected the keyword OFF");
-    refuses(
-        "OFF BINARY\n",
-        "OFF line 1: met 'BINARY', expected an OFF file in text; binary ones are not read",
-    );
+    refuses("OFX\n", "OFF line 1: expected the keyword OFF, found 'OFX'");
+    refuses("OFF BINARY\n", "OFF line 1: binary OFF files are not read");
     refuses(
         "4OFF\n1 1 0\n",
-        "OFF line 1: met '4OFF', expected three coordinates a vertex (OFF, COFF, NOFF, STOFF)",
+        "OFF line 1: expected three coordinates a vertex (OFF, COFF, NOFF, STOFF), found '4OFF'",
     );
     refuses(
         "nOFF\n3\n1 1 0\n",
-        "OFF line 1: met 'nOFF', expected three coordinates a vertex (OFF, COFF, NOFF, STOFF)",
+        "OFF line 1: expected three coordinates a vertex (OFF, COFF, NOFF, STOFF), found 'nOFF'",
     );
-    refuses("OFF\n", "OFF line 2: met the end of the file, expected the number of vertices");
-    refuses("OFF\nx 1 0\n", "OFF line 2: met 'x', expected the number of vertices");
-    refuses("OFF\n3 -1 0\n", "OFF line 2: met '-1', expected the number of faces");
-    refuses("OFF\n3\n", "OFF line 2: met the end of the line, expected the number of faces");
-    refuses("OFF\n5000000000 1 0\n", "OFF line 2: met 5000000000 vertices, expected at most 4294967295");
+    refuses("OFF\n", "OFF line 2: expected the number of vertices, found the end of the file");
+    refuses("OFF\nx 1 0\n", "OFF line 2: expected the number of vertices, found 'x'");
+    refuses("OFF\n3 -1 0\n", "OFF line 2: expected the number of faces, found '-1'");
+    refuses("OFF\n3\n", "OFF line 2: expected the number of faces, found the end of the line");
+    refuses("OFF\n5000000000 1 0\n", "OFF line 2: expected at most 4294967295 vertices, found 5000000000");
     refuses(
         "OFF\n3 1 0\n0 0 0\n1 0 0\n",
-        "OFF line 5, vertex 2: met the end of the file, expected a finite number for x",
+        "OFF line 5, vertex 2: expected a finite number for x, found the end of the file",
     );
     let with = |body: &str, message: &str| refuses(&format!("OFF\n3 2 0\n{body}"), message);
     with(
         "0.0 0 0\n1 0 0\n1.25 0.25\n3 0 1 2\n",
-        "OFF line 5, vertex 2: met the end of the line, expected a finite number for z",
+        "OFF line 5, vertex 2: expected a finite number for z, found the end of the line",
     );
     with(
         "0.0 0 0\n1 0 0\n1.25 0.25 nan\n3 0 1 2\n",
-        "OFF line 5, vertex 2: met 'nan', expected a finite number for z",
+        "OFF line 5, vertex 2: expected a finite number for z, found 'nan'",
     );
     let with = |faces: &str, message: &str| with(&format!("0 0 0\n1 0 0\n0 1 0\n{faces}"), message);
-    with("3 0 1 2\n", "OFF line 7, face 1: met the end of the file, expected the face's number of corners");
-    with("3 0 1 2\n3 0 1\n", "OFF line 7, face 1: met the end of the line, expected 3 vertex indices");
-    with("3 0 1 2\n3 0 1", "OFF line 7, face 1: met the end of the file, expected 3 vertex indices");
+    with("3 0 1 2\n", "OFF line 7, face 1: expected the face's number of corners, found the end of the file");
+    with("3 0 1 2\n3 0 1\n", "OFF line 7, face 1: expected 3 vertex indices, found the end of the line");
+    with("3 0 1 2\n3 0 1", "OFF line 7, face 1: expected 3 vertex indices, found the end of the file");
     with(
         "3 0 1 3\n3 0 1 2\n",
-        "OFF line 6, face 0: met '3', expected a vertex index below 3, the number of vertices",
+        "OFF line 6, face 0: expected a vertex index below 3 (the number of vertices), found '3'",
     );
     with(
         "3 0 1 -1\n3 0 1 2\n",
-        "OFF line 6, face 0: met '-1', expected a vertex index below 3, the number of vertices",
+        "OFF line 6, face 0: expected a vertex index below 3 (the number of vertices), found '-1'",
     );
-    with("3 0 1 x\n3 0 1 2\n", "OFF line 6, face 0: met 'x', expected 3 vertex indices");
-    with("-3 0 1 x\n3 0 1 2\n", "OFF line 6, face 0: met '-3', expected the face's number of corners");
+    with("3 0 1 x\n3 0 1 2\n", "OFF line 6, face 0: expected 3 vertex indices, found 'x'");
+    with("-3 0 1 x\n3 0 1 2\n", "OFF line 6, face 0: expected the face's number of corners, found '-3'");
     with(
         "999999999999 0 1 2\n3 0 1 2\n",
-        "OFF line 6, face 0: met the end of the line, expected 999999999999 vertex indices",
+        "OFF line 6, face 0: expected 999999999999 vertex indices, found the end of the line",
     );
 }
 
@@ -345,23 +339,23 @@ fn counts_beyond_the_file() {
     let skipped = format!(
         "ply\nformat binary_big_endian 1.0\nelement x 4294967295\n{FACE}element vertex 0\n{XYZ}end_header\n"
     );
-    refuses(Format::Ply, ply("ascii"), "PLY line 11, vertex 1: met the end of the file, expected a number");
+    refuses(Format::Ply, ply("ascii"), "PLY line 11, vertex 1: expected a number, found the end of the file");
     refuses(
         Format::Ply,
         ply("binary_big_endian"),
-        "PLY byte 184, vertex 0: met 6 bytes up to the end of the file, expected 4294967295 elements vertex of 12 \
-         bytes each, as line 3 promises",
+        "PLY byte 184, vertex 0: expected 4294967295 elements vertex of 12 \
+         bytes each, as line 3 promises, found 6 bytes up to the end of the file",
     );
-    refuses(Format::Ply, faces, "PLY line 12, face 1: met the end of the file, expected an integer");
+    refuses(Format::Ply, faces, "PLY line 12, face 1: expected an integer, found the end of the file");
     refuses(
         Format::Ply,
         skipped,
-        "PLY byte 172, x 0: met the end of the file, expected 1 bytes from byte 172",
+        "PLY byte 172, x 0: expected 1 bytes from byte 172, found the end of the file",
     );
     refuses(
         Format::Off,
         "OFF\n4294967295 4294967295 0\n0 0 0\n",
-        "OFF line 4, vertex 1: met the end of the file, expected a finite number for x",
+        "OFF line 4, vertex 1: expected a finite number for x, found the end of the file",
     );
 }
 
@@ -416,13 +410,13 @@ fn files_that_cannot_be_read() {
     let at = |rest: &str| format!("{}/{rest}", folder.path().display());
     assert!(message("missing.obj").starts_with(&format!("cannot read {}: ", at("missing.obj"))));
     assert!(message("folder.obj").starts_with(&format!("cannot read {}: ", at("folder.obj"))));
-    assert_eq!(message("empty.ply"), at("empty.ply: the file is empty, expected PLY content"));
+    assert_eq!(message("empty.ply"), at("empty.ply: the file is empty"));
     assert_eq!(message("ply.obj"), at("ply.obj: named as OBJ, but the content looks like a PLY file"));
-    assert_eq!(message("bad.off"), at("bad.off: OFF line 2: met 'x', expected the number of faces"));
+    assert_eq!(message("bad.off"), at("bad.off: OFF line 2: expected the number of faces, found 'x'"));
     assert_eq!(
         message("mesh.fbx"),
         at(
-            "mesh.fbx: the extension 'fbx' is not one that is known, expected .obj, .ply, .stl, .off, .gltf, .glb or .3mf"
+            "mesh.fbx: the extension 'fbx' is unknown; known are .obj, .ply, .stl, .off, .gltf, .glb and .3mf"
         )
     );
 }
@@ -431,7 +425,7 @@ fn files_that_cannot_be_read() {
 fn long_and_unprintable_words_are_shortened() {
     let text = format!("v 0 0 \u{7}\u{e9}{}\n", "y".repeat(1000));
     let message = read_bytes(text.as_bytes(), Format::Obj).unwrap_err().to_string();
-    assert!(message.contains("met '\\u{7}é") || message.contains("met 'é"), "{message}");
+    assert!(message.contains("found '\\u{7}é") || message.contains("found 'é"), "{message}");
     assert!(message.len() < 150, "{message}");
 }
 

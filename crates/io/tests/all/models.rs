@@ -105,7 +105,7 @@ fn damaged_files_say_where() {
     assert!(truncated.contains("sphere_truncated.ply: PLY byte 4411, face "), "{truncated}");
     let not_finite = message("defects/inf_nan.obj");
     assert!(
-        not_finite.contains("OBJ line 1, vertex 0: met 'inf', expected a finite number for x"),
+        not_finite.contains("OBJ line 1, vertex 0: expected a finite number for x, found 'inf'"),
         "{not_finite}"
     );
 }

@@ -194,7 +194,7 @@ fn volumes_are_numbered_anew() {
     let nothing = |_: usize| Source { face: 1, corners: None };
     let new = NewTriangles { source: &nothing, ..new };
     let flaw = package.replace(0, &new).unwrap_err().to_string();
-    assert!(flaw.contains("no triangles left of the volume from 0 to 0"), "{flaw}");
+    assert!(flaw.contains("the volume from triangle 0 to 0 has no triangle left"), "{flaw}");
 }
 
 #[test]
@@ -247,29 +247,35 @@ fn flaws_name_their_place() {
     let cases: [(String, &str); 24] = [
         (
             object(&mesh.replace("v3=\"1\"/>", "v3=\"9\"/>")),
-            "line 10, column 5, object 1: met v3='9', expected a vertex below 4",
+            "line 10, column 5, object 1: expected a vertex below 4 (their number so far), found v3='9'",
         ),
-        (object(&mesh.replace("v3=\"1\"/>", "/>")), "object 1: met no v3, expected a vertex below 4"),
-        (object(&mesh.replace("v3=\"1\"/>", "v3=\"-1\"/>")), "met v3='-1'"),
+        (object(&mesh.replace("v3=\"1\"/>", "/>")), "object 1: v3 is missing: expected a vertex below 4"),
+        (object(&mesh.replace("v3=\"1\"/>", "v3=\"-1\"/>")), "found v3='-1'"),
         (
             object(&mesh.replace("y=\"+2\"", "y=\"2m\"")),
-            "line 7, column 35, object 1: met y='2m', expected a finite number",
+            "line 7, column 35, object 1: expected a finite number, found y='2m'",
         ),
-        (object(&mesh.replace("y=\"+2\"", "y=\"1e999\"")), "met y='1e999'"),
-        (object(&mesh.replace("y=\"+2\"", "y=\"NaN\"")), "met y='NaN'"),
-        (object(&mesh.replace("</triangles>", "</triangle>")), "expected well-formed XML"),
+        (object(&mesh.replace("y=\"+2\"", "y=\"1e999\"")), "found y='1e999'"),
+        (object(&mesh.replace("y=\"+2\"", "y=\"NaN\"")), "found y='NaN'"),
+        (object(&mesh.replace("</triangles>", "</triangle>")), "not well-formed XML"),
         (whole.replace("</model>", ""), "3D/3dmodel.model"),
-        (whole.replace("\"inch\"", "\"furlong\""), "the unit 'furlong', expected micron, millimeter"),
-        (whole.replace("</model>", "</modell>"), "well-formed XML"),
-        (whole.replace("model", "modell"), "met the element modell, expected one model"),
-        (String::new(), "met no element model"),
         (
-            whole.replace("<!-- kept -->", "<!DOCTYPE x [<!ENTITY y \"z\">]>"),
-            "met a document type, expected none",
+            whole.replace("\"inch\"", "\"furlong\""),
+            "the unit 'furlong' is unknown; known are micron, millimeter",
         ),
-        (whole.replace("objectid=\"1\"", "objectid=\"2\""), "met object 2, expected one that there is"),
-        (whole.replace("objectid=\"1\"", "objectid=\"1\" q:path=\"/x.model\""), "met object 1 of /x.model"),
-        (whole.replace("objectid=\"1\"", "objectid=\"one\""), "met objectid='one', expected a whole number"),
+        (whole.replace("</model>", "</modell>"), "well-formed XML"),
+        (whole.replace("model", "modell"), "expected one element model, found the element modell"),
+        (String::new(), "it has no element model"),
+        (whole.replace("<!-- kept -->", "<!DOCTYPE x [<!ENTITY y \"z\">]>"), "3MF allows no document type"),
+        (whole.replace("objectid=\"1\"", "objectid=\"2\""), "there is no object 2"),
+        (
+            whole.replace("objectid=\"1\"", "objectid=\"1\" q:path=\"/x.model\""),
+            "there is no object 1 of /x.model",
+        ),
+        (
+            whole.replace("objectid=\"1\"", "objectid=\"one\""),
+            "expected a whole number, found objectid='one'",
+        ),
         (
             whole.replace("objectid=\"1\"", "objectid=\"1\" transform=\"1 0 0\""),
             "expected twelve finite numbers",
@@ -278,16 +284,16 @@ fn flaws_name_their_place() {
             whole.replace("objectid=\"1\"", "objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 inf\""),
             "twelve finite numbers",
         ),
-        (whole.replace("<object id=\"1\"", "<object"), "met no id, expected a whole number"),
-        (whole.replace("</object>", "</object><object id=\"1\"/>"), "met a second object 1"),
-        (object(&format!("{mesh}{mesh}")), "met a second mesh"),
-        (object(&mesh.replace("</mesh>", "<triangles/></mesh>")), "met a second list of triangles"),
+        (whole.replace("<object id=\"1\"", "<object"), "id is missing: expected a whole number"),
+        (whole.replace("</object>", "</object><object id=\"1\"/>"), "there is a second object 1"),
+        (object(&format!("{mesh}{mesh}")), "the object has a second mesh"),
+        (object(&mesh.replace("</mesh>", "<triangles/></mesh>")), "the mesh has a second list of triangles"),
         (
             model(
                 "<object id=\"1\"><components><component objectid=\"1\"/></components></object>",
                 "<item objectid=\"1\"/>",
             ),
-            "more than 64 components within each other",
+            "more than 64 components are within each other",
         ),
         (
             model(
@@ -297,7 +303,7 @@ fn flaws_name_their_place() {
                 }),
                 "<item objectid=\"39\"/>",
             ),
-            "more than 1000000 objects with all components",
+            "with all components there are more than 1000000 objects",
         ),
     ];
     for (model, words) in cases {
@@ -306,16 +312,16 @@ fn flaws_name_their_place() {
     }
     let rels = |text: &str| archive(&[("_rels/.rels", text.as_bytes())]);
     for (bytes, words) in [
-        (b"PK\x03\x04 and no more".to_vec(), "the package: met an archive that cannot be read"),
-        (archive(&[("a", b"b")]), "met no part _rels/.rels, expected a 3MF package"),
-        (rels("<Relationships/>"), "_rels/.rels: met no relationship to a 3D model"),
-        (rels(RELATIONSHIPS), "the model '/3D/3dmodel.model', expected a part of the package"),
-        (rels("<a><b></a>"), "expected well-formed XML"),
+        (b"PK\x03\x04 and no more".to_vec(), "the package: it cannot be read as a ZIP archive"),
+        (archive(&[("a", b"b")]), "it has no part _rels/.rels, as 3MF packages have"),
+        (rels("<Relationships/>"), "_rels/.rels: it names no 3D model"),
+        (rels(RELATIONSHIPS), "the model '/3D/3dmodel.model', which is no part of the package"),
+        (rels("<a><b></a>"), "not well-formed XML"),
         (b"solid x\nendsolid".to_vec(), "named as 3MF, but the content looks like"),
         (Vec::new(), "the file is empty"),
         (
             package("\u{fffd}", &[]).iter().map(|&b| if b == 0xBF { 0xFF } else { b }).collect(),
-            "a part that can be unpacked",
+            "it cannot be unpacked",
         ),
     ] {
         let said = refused(bytes);
@@ -334,7 +340,7 @@ fn packages_that_swell_are_refused() {
     let blanks = vec![b' '; 1 << 24];
     (0..129).for_each(|_| writer.write_all(&blanks).unwrap());
     let said = refused(writer.finish().unwrap().into_inner());
-    assert!(said.contains("3D/3dmodel.model: met more than 2 GiB"), "{said}");
+    assert!(said.contains("3D/3dmodel.model: with this part the models have more than 2 GiB"), "{said}");
 }
 
 #[test]

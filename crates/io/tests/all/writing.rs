@@ -262,15 +262,15 @@ fn what_does_not_fit_together_is_refused() {
     };
     assert_eq!(
         message(Format::Ply, &triangle().normals(&NORMALS[..2])),
-        "2 normals for 3 vertices, expected one for each"
+        "there are 2 normals for 3 vertices: each vertex needs one"
     );
     assert_eq!(
         message(Format::Stl, &triangle().colours(&[])),
-        "0 colours for 3 vertices, expected one for each"
+        "there are 0 colours for 3 vertices: each vertex needs one"
     );
     assert_eq!(
         message(Format::Obj, &triangle().quality(&[0.0; 4])),
-        "4 quality values for 3 vertices, expected one for each"
+        "there are 4 quality values for 3 vertices: each vertex needs one"
     );
     let beyond = Output::new(Triangles { positions: &POSITIONS, triangles: &[[0, 1, 2], [2, 1, 3]] });
     assert_eq!(message(Format::Stl, &beyond), "triangle 1 names vertex 3, but there are 3 vertices");
@@ -289,9 +289,7 @@ fn what_does_not_fit_together_is_refused() {
     for &format in Format::ALL {
         assert_eq!(
             message(format, &output),
-            format!(
-                "position of vertex 1 is NaN, which {format} files cannot hold, expected a finite number"
-            )
+            format!("position of vertex 1 is NaN: {format} files hold finite numbers only")
         );
     }
     let positions = [POSITIONS[0], POSITIONS[1], [0.0, 0.0, -1e39]];
@@ -303,7 +301,7 @@ fn what_does_not_fit_together_is_refused() {
     let unknown = triangle().quality(&[f64::NAN; 3]);
     assert_eq!(
         message(Format::Ply, &unknown),
-        "quality of vertex 0 is NaN, which PLY files cannot hold, expected a finite number"
+        "quality of vertex 0 is NaN: PLY files hold finite numbers only"
     );
     written(Format::Off, &unknown, false);
 }
@@ -395,7 +393,7 @@ fn channels_that_do_not_fit_are_refused() {
     for format in [Format::Obj, Format::Ply] {
         assert!(refused(lone, empty(), format).contains("no values"));
         let few = Channel::new("c", Semantic::Colour, Domain::Vertex, 3).with(vec![0.5; 3], vec![0]);
-        assert!(refused(lone, few, format).contains("expected one for each"));
+        assert!(refused(lone, few, format).contains("needs one"));
     }
     let surface = Triangles { positions: &POSITIONS, triangles: &TRIANGLES };
     let mut named = Channel::new("materials", Semantic::Label, Domain::Face, 1);
@@ -417,7 +415,7 @@ fn properties_that_do_not_fit_are_refused() {
         assert!(refused(Property::numbers(name, &zeros), false).contains("name"), "{name}");
     }
     assert!(refused(Property::numbers("again", &zeros), true).contains("again"));
-    assert!(refused(Property::numbers("few", &zeros[1..]), false).contains("expected one for each"));
+    assert!(refused(Property::numbers("few", &zeros[1..]), false).contains("needs one"));
     let mut infinite = zeros.clone();
     infinite[1] = f64::INFINITY;
     assert!(refused(Property::numbers("far", &infinite), false).contains("element 1 is inf"));

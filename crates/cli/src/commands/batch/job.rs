@@ -102,7 +102,7 @@ impl Reader {
             return Err("it has no 'output'".to_owned());
         }
         if let Some(folder) = job.written().find(|path| is_folder(path)) {
-            return Err(format!("{} is a folder, expected a file", folder.display()));
+            return Err(format!("{} is a folder; give a file", folder.display()));
         }
         Ok(job)
     }
@@ -131,7 +131,7 @@ enum Value {
 impl Value {
     fn of(value: &RawValue) -> Result<Self, &'static str> {
         let text = value.get();
-        let wrong = "an object, expected text, a number, true, false, null or a list";
+        let wrong = "an object; give text, a number, true, false, null or a list";
         match text.as_bytes().first() {
             Some(b'"') => Ok(Self::One(serde_json::from_str(text).map_err(|_| "no text")?)),
             Some(b'{') | None => Err(wrong),

@@ -66,7 +66,7 @@ pub(super) fn run(
     if let Some(moved) = &moved {
         achieved.extend(input_distance::in_words(moved, &error, control, goals, arguments));
     }
-    let outcome = outcome(&found, control, goals, &achieved, arguments);
+    let outcome = outcome(&found, control, goals, arguments);
     let inverted = found.inverted_triangles();
     let channels = channels.refined(control, &found, arguments.scheme()?)?;
     let wanted = written(arguments).is_some_and(|(format, _)| Normals::are_held(format))
@@ -195,13 +195,7 @@ pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> Paramete
 }
 
 /// Whether a cap ended the refinement before the goals were met, and what was reached.
-fn outcome(
-    found: &Exact,
-    control: &Mesh,
-    goals: &Goals,
-    achieved: &[String],
-    arguments: &RefineArguments,
-) -> Outcome {
+fn outcome(found: &Exact, control: &Mesh, goals: &Goals, arguments: &RefineArguments) -> Outcome {
     let triangles = found.mesh.face_count();
     let cap = match found.stop {
         ExactStop::TriangleCap => format!("--max-triangles {}", thousands(arguments.max_triangles())),
@@ -245,7 +239,5 @@ fn outcome(
         arguments.output_name(),
         counted(triangles, "triangle", "triangles")
     );
-    // The first sentence is the distance; the others have been told with the result.
-    let lines: Vec<String> = [why, written].into_iter().chain(achieved.first().cloned()).collect();
-    Outcome::StoppedShort(lines.join("\n  "))
+    Outcome::StoppedShort(format!("{why}\n  {written}"))
 }

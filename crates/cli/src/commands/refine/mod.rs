@@ -36,7 +36,7 @@ use limitmesh_render::Style;
 
 use super::channels::{Channels, Destination};
 use super::normals::Normals;
-use super::{interpolation, picture};
+use super::{interpolation, picture, shading};
 use crate::arguments::{CreasesFrom, RefineArguments, Unit};
 use crate::bulk::{Bulk, Shown};
 use crate::creases::Hints;
@@ -216,15 +216,18 @@ fn draw(
     progress: &Progress,
 ) -> anyhow::Result<()> {
     progress.stage(format!("drawing {}", path.display()));
+    let split;
     let (surface, normals) = match normals {
-        Some(normals) => {
-            let (surface, normals) = normals.surface(mesh);
-            (surface, Some(normals))
+        Some(normals) => normals.surface(mesh),
+        None => {
+            split = shading::without_normals(mesh)?;
+            (split.as_triangles(), &split.normals[..])
         }
-        None => (mesh.as_triangles(), None),
     };
     let view = picture::view_direction(arguments.view);
-    picture::draw(path, surface, normals, view, &Style::default().wireframe(true), picture::SIZE)
+    picture::draw(path, surface, Some(normals), view, &Style::default().wireframe(true), picture::SIZE)?;
+    progress.note(picture::drawn(path, mesh.face_count()));
+    Ok(())
 }
 
 /// How methods end that take no triangles away: where there are more than asked, so many the control mesh had.

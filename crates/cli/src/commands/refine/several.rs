@@ -5,13 +5,14 @@ use std::time::{Duration, Instant};
 
 use limitmesh::{Mesh, PolygonSoup};
 use limitmesh_io::Format;
+use limitmesh_io::channels::NORMALS;
 use limitmesh_render::Style;
 
 use super::super::channels::Channels;
 use super::control::Control;
 use super::exact;
 use super::goals::Goals;
-use super::{Refined, phases, picture, stepwise, summary, turned_over};
+use super::{Refined, phases, picture, shading, stepwise, summary, turned_over};
 use crate::arguments::{Extent, Length, RefineArguments, Way};
 use crate::bulk::Bulk;
 use crate::failure::Outcome;
@@ -164,8 +165,15 @@ pub(super) fn draw(
     progress: &Progress,
 ) -> anyhow::Result<()> {
     progress.stage(format!("drawing {}", path.display()));
-    let (mesh, _) = Mesh::from_soup(scene, &Default::default())?;
+    let (mesh, _, trace) = Mesh::from_soup_traced(scene, &Default::default())?;
+    let normals = scene.channels.iter().find(|channel| channel.name == NORMALS);
+    let split = match normals {
+        Some(normals) => shading::by_normals(&mesh, &normals.on_mesh(scene, &mesh, &trace)?),
+        None => shading::without_normals(&mesh)?,
+    };
     let style = Style::default().wireframe(true);
     let view = picture::view_direction(arguments.view);
-    picture::draw(path, mesh.as_triangles(), None, view, &style, picture::SIZE)
+    picture::draw(path, split.as_triangles(), Some(&split.normals), view, &style, picture::SIZE)?;
+    progress.note(picture::drawn(path, mesh.face_count()));
+    Ok(())
 }

@@ -180,18 +180,18 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, Flaw> {
             [b"element", name, count] => {
                 let element = read_element(&lines, name, count)?;
                 if elements.iter().any(|e| e.name == element.name) {
-                    return Err(lines.flaw(format!("a second element {}", quoted(name)), "one of each name"));
+                    return Err(lines.saying(format!("the header has a second element {}", quoted(name))));
                 }
                 elements.push(element);
             }
             [b"property", ref words @ ..] => {
                 let property = read_property(&lines, words)?;
                 let Some(element) = elements.last_mut() else {
-                    return Err(lines.flaw("a property before any element", "an element"));
+                    return Err(lines.saying("a property stands before the first element"));
                 };
                 if element.properties.iter().any(|p| p.name == property.name) {
-                    let met = format!("a second property {}", quoted(property.name.as_bytes()));
-                    return Err(lines.flaw(met, "one of each name"));
+                    let name = quoted(property.name.as_bytes());
+                    return Err(lines.saying(format!("the element has a second property {name}")));
                 }
                 element.properties.push(property);
             }
@@ -204,14 +204,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, Flaw> {
         }
     }
     let Some(encoding) = encoding else {
-        return Err(lines.flaw("a header without a format", "format ascii 1.0 or a binary one"));
+        return Err(lines.saying("the header names no format, such as ascii 1.0"));
     };
     Ok(Header { encoding, elements, texture_files, body: (lines.at, lines.line + 1) })
 }
 
 fn read_format(lines: &Lines<'_>, name: &[u8], version: &[u8]) -> Result<Encoding, Flaw> {
     if version != b"1.0" {
-        return Err(lines.flaw(format!("version {}", quoted(version)), "version 1.0"));
+        return Err(lines.flaw(quoted(version), "version 1.0"));
     }
     match name {
         b"ascii" => Ok(Encoding::Ascii),
@@ -234,8 +234,8 @@ fn read_property(lines: &Lines<'_>, words: &[&[u8]]) -> Result<Property, Flaw> {
     let scalar = |name: &[u8]| {
         Scalar::from_name(name).ok_or_else(|| {
             lines.flaw(
-                format!("type {}", quoted(name)),
-                "char, uchar, short, ushort, int, uint, float or double, or int8 to uint32, float32 or float64",
+                quoted(name),
+                "a type: char, uchar, short, ushort, int, uint, float or double, or int8 to uint32, float32 or float64",
             )
         })
     };
@@ -243,12 +243,12 @@ fn read_property(lines: &Lines<'_>, words: &[&[u8]]) -> Result<Property, Flaw> {
         [b"list", count, item, name] => {
             let (count, item) = (scalar(count)?, scalar(item)?);
             if !count.is_integer() {
-                return Err(lines.flaw("a list whose length is no integer", "an integer type"));
+                return Err(lines.flaw(quoted(words[1]), "an integer type for the length of a list"));
             }
             (name, Kind::List { count, item })
         }
         [kind, name] => (name, Kind::Scalar(scalar(kind)?)),
-        _ => return Err(lines.flaw("a property of another form", "TYPE NAME or list TYPE TYPE NAME")),
+        _ => return Err(lines.saying("a property is written as TYPE NAME or list TYPE TYPE NAME")),
     };
     Ok(Property { name: String::from_utf8_lossy(name).into_owned(), kind })
 }
@@ -276,7 +276,7 @@ impl<'a> Lines<'a> {
         self.line += 1;
         let rest = &self.bytes[self.at..];
         let Some(length) = memchr::memmem::find(rest, self.end) else {
-            return Err(self.flaw("the end of the file within the header", "end_header"));
+            return Err(self.flaw("the end of the file", "end_header"));
         };
         self.at += length + self.end.len();
         Ok(&rest[..length])
@@ -286,7 +286,11 @@ impl<'a> Lines<'a> {
         Place::Line(self.line)
     }
 
-    fn flaw(&self, met: impl Into<String>, expected: impl Into<String>) -> Flaw {
-        Flaw::new(self.place(), met, expected)
+    fn flaw(&self, found: impl AsRef<str>, expected: impl AsRef<str>) -> Flaw {
+        Flaw::new(self.place(), found, expected)
+    }
+
+    fn saying(&self, problem: impl Into<String>) -> Flaw {
+        Flaw::saying(self.place(), problem)
     }
 }

@@ -31,7 +31,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
 
 fn read_body(header: &Header, mut source: impl Source) -> Result<PolygonSoup, Flaw> {
     let Some(vertices) = header.elements.iter().find(|e| e.name == "vertex") else {
-        return Err(Flaw::new(Place::Line(header.body.1 - 1), "a header without element vertex", "one"));
+        return Err(Flaw::saying(Place::Line(header.body.1 - 1), "the header has no element vertex"));
     };
     let vertices = vertices.count;
     let mut soup = PolygonSoup {
@@ -79,8 +79,7 @@ fn read_vertices(
     for (axis, name) in axes.iter_mut().zip(["x", "y", "z"]) {
         let found = element.find(&[name]).filter(|&p| matches!(element.properties[p].kind, Kind::Scalar(_)));
         *axis = found.ok_or_else(|| {
-            let met = format!("element vertex without property {name}");
-            Flaw::new(Place::Line(element.line), met, "x, y and z, each one number")
+            Flaw::saying(Place::Line(element.line), format!("element vertex has no number {name}"))
         })?;
     }
     // No more than the rest of the file can hold; the last line of a text may lack its end.
@@ -133,14 +132,15 @@ fn read_vertex(
 /// The place of the list of vertex indices among the properties, and its types.
 fn find_index_list(element: &Element) -> Result<(usize, Scalar, Scalar), Flaw> {
     let Some(list) = element.find(&INDEX_NAMES) else {
-        let met = format!("element {} without a list vertex_indices", element.name);
-        return Err(Flaw::new(Place::Line(element.line), met, "one"));
+        let problem = format!("element {} has no list vertex_indices", element.name);
+        return Err(Flaw::saying(Place::Line(element.line), problem));
     };
     match element.properties[list].kind {
         Kind::List { count, item } if item.is_integer() => Ok((list, count, item)),
         _ => {
-            let met = format!("property {} of element {}", element.properties[list].name, element.name);
-            Err(Flaw::new(Place::Line(element.line), met, "a list of integers"))
+            let (property, element_name) = (&element.properties[list].name, &element.name);
+            let problem = format!("property {property} of element {element_name} is no list of integers");
+            Err(Flaw::saying(Place::Line(element.line), problem))
         }
     }
 }
@@ -286,15 +286,14 @@ fn vertex_index(index: i64, vertices: usize, source: &impl Source) -> Result<u32
     match u32::try_from(index) {
         Ok(i) if (i as usize) < vertices => Ok(i),
         _ => {
-            let expected = format!("an index below {vertices}, the number of vertices");
-            Err(Flaw::new(source.place(), format!("vertex index {index}"), expected))
+            let expected = format!("a vertex index below {vertices} (the number of vertices)");
+            Err(Flaw::new(source.place(), index.to_string(), expected))
         }
     }
 }
 
 fn list_length(count: i64, source: &impl Source) -> Result<usize, Flaw> {
-    usize::try_from(count)
-        .map_err(|_| Flaw::new(source.place(), format!("a list of length {count}"), "at least 0"))
+    usize::try_from(count).map_err(|_| Flaw::new(source.place(), count.to_string(), "the length of a list"))
 }
 
 fn skip_element(element: &Element, source: &mut impl Source) -> Result<(), Flaw> {

@@ -90,8 +90,11 @@ fn geometry_that_does_not_fit_is_refused() {
     let mut refused =
         |geometry: &Geometry<'_>| asset.replace(0, 0, geometry).expect_err("a flaw").to_string();
     let good = geometry();
-    assert!(refused(&Geometry { triangles: &[[0, 1, 4]], ..good }).contains("a triangle with vertex 4"));
-    assert!(refused(&Geometry { triangles: &[], ..good }).contains("at least one triangle"));
+    assert!(
+        refused(&Geometry { triangles: &[[0, 1, 4]], ..good })
+            .contains("a triangle names vertex 4, but there are 4")
+    );
+    assert!(refused(&Geometry { triangles: &[], ..good }).contains("a primitive needs triangles"));
     assert!(refused(&Geometry { positions: &[[1e39, 0.0, 0.0]; 4], ..good }).contains("32-bit floats"));
     assert!(refused(&Geometry { normals: Some(&[]), ..good }).contains("0 normals"));
 }
@@ -192,7 +195,9 @@ fn morph_targets_are_replaced_and_counted() {
         let mut asset = Asset::from_bytes(&glb(&odd(), &floats(&[0.0; 9])), None).unwrap();
         asset.replace(0, 0, &Geometry { targets, ..geometry() }).expect_err("a flaw").to_string()
     };
-    assert!(refused(&[vec![]]).contains("meshes[0].primitives[0].targets[0]: met nothing"));
+    assert!(refused(&[vec![]]).contains("meshes[0].primitives[0].targets[0]: the target has no attribute"));
     let short = VertexAttribute { values: vec![0.0; 9], ..added("POSITION", 3) };
-    assert!(refused(&[vec![short]]).contains("meshes[0].primitives[0].targets[0].POSITION: met 9 numbers"));
+    assert!(refused(&[vec![short]]).contains(
+        "meshes[0].primitives[0].targets[0].POSITION: expected 3 numbers for each vertex, found 9"
+    ));
 }

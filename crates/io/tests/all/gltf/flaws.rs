@@ -1,4 +1,4 @@
-//! Damaged documents: errors name the place as JavaScript would, the value met and what was expected, and make no room
+//! Damaged documents: errors name the place as JavaScript would, what was expected and what was found, and make no room
 //! for what the document merely claims.
 
 use super::support::{complaint, document, glb};
@@ -22,72 +22,72 @@ fn with(old: &str, new: &str) -> String {
 fn places_have_names() {
     let position = "glTF meshes[0].primitives[0].attributes.POSITION";
     let cases = [
-        ("\"POSITION\":0", "\"POSITION\":9", format!("{position}: met 9, expected an index below 2, the number of accessors")),
-        ("\"POSITION\":0", "\"POSITION\":-1", format!("{position}: met -1, expected a whole number from 0")),
-        ("\"indices\":1", "\"indices\":0", "glTF accessors[0]: met an object, expected unsigned whole numbers, one an element".to_owned()),
+        ("\"POSITION\":0", "\"POSITION\":9", format!("{position}: expected an index below 2 (the number of accessors), found 9")),
+        ("\"POSITION\":0", "\"POSITION\":-1", format!("{position}: expected a whole number from 0, found -1")),
+        ("\"indices\":1", "\"indices\":0", "glTF accessors[0]: indices are unsigned whole numbers, one an element".to_owned()),
         (
             "\"count\":3,\"type\":\"VEC3\"",
             "\"count\":4,\"type\":\"VEC3\"",
             format!(
-                "{position} (accessors[0]): met 4 elements of 12 bytes, 12 apart, from byte 0, expected elements within the view's 36 bytes"
+                "{position} (accessors[0]): it has 4 elements of 12 bytes, 12 apart, from byte 0 on, but the view has 36 bytes"
             ),
         ),
         (
             "\"count\":3,\"type\":\"VEC3\"",
             "\"count\":2147483648,\"type\":\"VEC3\"",
             format!(
-                "{position} (accessors[0]): met 2147483648 elements of 12 bytes, 12 apart, from byte 0, expected elements within the view's 36 bytes"
+                "{position} (accessors[0]): it has 2147483648 elements of 12 bytes, 12 apart, from byte 0 on, but the view has 36 bytes"
             ),
         ),
         (
             "\"count\":3,\"type\":\"VEC3\"",
             "\"count\":99999999999,\"type\":\"VEC3\"",
-            "glTF accessors[0].count: met 99999999999, expected at most 4294967295".to_owned(),
+            "glTF accessors[0].count: expected at most 4294967295, found 99999999999".to_owned(),
         ),
-        ("5126", "5124", "glTF accessors[0].componentType: met 5124, expected 5120, 5121, 5122, 5123, 5125 or 5126".to_owned()),
-        ("VEC3", "VEC9", "glTF accessors[0].type: met \"VEC9\", expected SCALAR, VEC2, VEC3, VEC4, or MAT4 of 32-bit numbers".to_owned()),
+        ("5126", "5124", "glTF accessors[0].componentType: expected 5120, 5121, 5122, 5123, 5125 or 5126, found 5124".to_owned()),
+        ("VEC3", "VEC9", "glTF accessors[0].type: expected SCALAR, VEC2, VEC3, VEC4, or MAT4 of 32-bit numbers, found \"VEC9\"".to_owned()),
         (
             "\"byteLength\":36",
             "\"byteLength\":36,\"byteStride\":0",
-            format!("{position} (bufferViews[0].byteStride): met 0, expected at least 4"),
+            format!("{position} (bufferViews[0].byteStride): expected at least 4, found 0"),
         ),
         (
             "\"byteLength\":36",
             "\"byteLength\":36,\"byteStride\":8",
-            format!("{position} (accessors[0]): met elements of 12 bytes in a view with a stride of 8, expected a stride no smaller"),
+            format!("{position} (accessors[0]): its elements of 12 bytes overlap: the view has a stride of 8"),
         ),
         (
             "\"byteOffset\":36",
             "\"byteOffset\":18446744073709551615",
-            "glTF meshes[0].primitives[0].indices (bufferViews[1]): met 3 bytes from byte 18446744073709551615, expected bytes within its buffer of 39".to_owned(),
+            "glTF meshes[0].primitives[0].indices (bufferViews[1]): it names 3 bytes from byte 18446744073709551615 on, but its buffer has 39".to_owned(),
         ),
         (
             "\"byteLength\":39",
             "\"byteLength\":41",
-            format!("{position} (buffers[0].byteLength): met 41, expected at most 40, the length of the GLB's binary chunk"),
+            format!("{position} (buffers[0].byteLength): expected at most 40 (the length of the GLB's binary chunk), found 41"),
         ),
         (
             "{\"byteLength\":39}",
             "{\"byteLength\":39,\"uri\":\"../secret.bin\"}",
-            format!("{position} (buffers[0].uri): met \"../secret.bin\", expected a path below the document's folder"),
+            format!("{position} (buffers[0].uri): expected a path below the document's folder, found \"../secret.bin\""),
         ),
         (
             "{\"byteLength\":39}",
             "{\"byteLength\":39,\"uri\":\"http://example.com/a.bin\"}",
-            format!("{position} (buffers[0].uri): met \"http://example.com/a.bin\", expected a path below the document's folder"),
+            format!("{position} (buffers[0].uri): expected a path below the document's folder, found \"http://example.com/a.bin\""),
         ),
         (
             "{\"byteLength\":39}",
             "{\"byteLength\":39,\"uri\":\"a.bin\"}",
-            format!("{position} (buffers[0].uri): met 'a.bin', which cannot be read: the document has no folder, expected a file beside the document"),
+            format!("{position} (buffers[0].uri): the file 'a.bin' cannot be read: the document has no folder"),
         ),
         (
             "{\"byteLength\":39}",
             "{\"byteLength\":1073741824,\"uri\":\"data:;base64,AAAA\"}",
-            format!("{position} (buffers[0].byteLength): met 1073741824, expected at most 3, the bytes there are"),
+            format!("{position} (buffers[0].byteLength): expected at most 3 (the bytes that there are), found 1073741824"),
         ),
-        ("\"version\":\"2.0\"", "\"version\":\"1.0\"", "glTF asset.version: met \"1.0\", expected 2.0".to_owned()),
-        ("\"indices\":1", "\"indices\":1,\"mode\":7", "glTF meshes[0].primitives[0].mode: met 7, expected 0 to 6".to_owned()),
+        ("\"version\":\"2.0\"", "\"version\":\"1.0\"", "glTF asset.version: expected 2.0, found \"1.0\"".to_owned()),
+        ("\"indices\":1", "\"indices\":1,\"mode\":7", "glTF meshes[0].primitives[0].mode: expected 0 to 6, found 7".to_owned()),
     ];
     for (old, new, expected) in cases {
         assert_eq!(with(old, new), expected, "{old} -> {new}");
@@ -105,13 +105,13 @@ fn indices_and_numbers_out_of_range() {
     bin.extend([0, 1, 3]);
     assert_eq!(
         complaint(&glb(&json, &bin)),
-        "glTF meshes[0].primitives[0].indices: met index 3 in element 2, expected indices below 3, the number of vertices"
+        "glTF meshes[0].primitives[0].indices: expected indices below 3 (the number of vertices), found 3 in element 2"
     );
     bin[38] = 2;
     bin[16..20].copy_from_slice(&f32::INFINITY.to_le_bytes());
     assert_eq!(
         complaint(&glb(&json, &bin)),
-        "glTF meshes[0].primitives[0].attributes.POSITION: met inf in element 1, expected a finite number"
+        "glTF meshes[0].primitives[0].attributes.POSITION: expected a finite number, found inf in element 1"
     );
 }
 
@@ -121,19 +121,19 @@ fn nodes_form_trees() {
         let json = format!(r#"{{"asset":{{"version":"2.0"}},"nodes":{nodes}}}"#);
         Asset::from_bytes(json.as_bytes(), None).expect_err("a flaw").to_string()
     };
-    assert_eq!(
-        refused(r#"[{"children":[1]},{"children":[0]}]"#),
-        "glTF nodes[0]: met a circle of children, expected a node that is not below itself"
-    );
+    assert_eq!(refused(r#"[{"children":[1]},{"children":[0]}]"#), "glTF nodes[0]: the node is below itself");
     assert_eq!(
         refused(r#"[{"children":[2]},{"children":[2]},{}]"#),
-        "glTF nodes[1].children[0]: met 2, expected a node that is no child of another"
+        "glTF nodes[1].children[0]: expected a node that is no child of another, found 2"
     );
     assert_eq!(
         refused(r#"[{"children":[5]}]"#),
-        "glTF nodes[0].children[0]: met 5, expected an index below 1, the number of nodes"
+        "glTF nodes[0].children[0]: expected an index below 1 (the number of nodes), found 5"
     );
-    assert_eq!(refused(r#"[{"scale":[1,2]}]"#), "glTF nodes[0].scale: met an array of 2, expected 3 numbers");
+    assert_eq!(
+        refused(r#"[{"scale":[1,2]}]"#),
+        "glTF nodes[0].scale: expected 3 numbers, found an array of 2"
+    );
     // A chain as deep as it is long is none of the stack's business.
     let chain: Vec<String> = (1..100_000).map(|child| format!(r#"{{"children":[{child}]}}"#)).collect();
     let json = format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{},{{}}]}}"#, chain.join(","));
@@ -150,26 +150,26 @@ fn containers() {
         bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
         refused(&bytes)
     };
-    assert_eq!(changed(4, 1), "glTF the GLB header: met version 1, expected 2");
+    assert_eq!(changed(4, 1), "glTF the GLB header: expected version 2, found 1");
     assert_eq!(
         changed(8, 4_000_000_000),
         format!(
-            "glTF the GLB header: met a length of 4000000000 bytes in a file of {}, expected the file's length",
+            "glTF the GLB header: it names a length of 4000000000 bytes, but the file has {}",
             sound.len()
         )
     );
     assert_eq!(
         changed(12, 4_000_000_000),
-        "glTF chunk 0 of the GLB, at byte 12: met a length of 4000000000 bytes with 40 left, expected a chunk within the file"
+        "glTF chunk 0 of the GLB, at byte 12: it names a length of 4000000000 bytes, but 40 are left"
     );
     assert_eq!(
         changed(16, 7),
-        "glTF chunk 0 of the GLB, at byte 12: met the kind 0x00000007, expected JSON first"
+        "glTF chunk 0 of the GLB, at byte 12: expected JSON in the first chunk, found the kind 0x00000007"
     );
-    assert_eq!(refused(b"glTF"), "glTF the GLB: met 4 bytes, expected at least 12");
-    assert_eq!(refused(b"[]"), "glTF the document: met an array of 0, expected an object");
-    assert_eq!(refused(b"{}"), "glTF the document: met no 'asset', expected one, which it needs");
-    assert!(refused(b"{\"asset\":").starts_with("glTF the JSON text: met EOF while parsing"));
+    assert_eq!(refused(b"glTF"), "glTF the GLB: expected at least 12 bytes, found 4");
+    assert_eq!(refused(b"[]"), "glTF the document: expected an object, found an array of 0");
+    assert_eq!(refused(b"{}"), "glTF the document: 'asset' is missing");
+    assert!(refused(b"{\"asset\":").starts_with("glTF the JSON text: it cannot be read: EOF while parsing"));
     let deep = "[".repeat(100_000);
     assert!(refused(deep.as_bytes()).contains("recursion limit"));
 }

@@ -42,7 +42,10 @@ fn document(path: &Path) -> Value {
 fn what_does_not_fit_together_is_refused() {
     let beyond = Output::new(Triangles { positions: &SQUARE, triangles: &[[0, 1, 4]] });
     assert_eq!(complaint(DetailLevel::new(beyond)), "triangle 0 names vertex 4, but there are 4 vertices");
-    assert!(complaint(DetailLevel::new(square().normals(&UP[1..]))).starts_with("3 normals for 4 vertices"));
+    assert!(
+        complaint(DetailLevel::new(square().normals(&UP[1..])))
+            .starts_with("there are 3 normals for 4 vertices")
+    );
     let places = complaint(DetailLevel::new(square()).coarser(&SQUARE[1..], &UP));
     assert!(places.starts_with("3 places on the coarser level for 4 vertices"), "{places}");
     let normals = complaint(DetailLevel::new(square().normals(&UP)).coarser(&SQUARE, &UP[..2]));

@@ -36,7 +36,7 @@ fn bad_input_is_named() {
     let mut positions = TETRAHEDRON;
     positions[1][1] = f64::NAN;
     let text = error(&soup(&positions, &SIDES), plain).to_string();
-    assert_eq!(text, "vertex 1: coordinate y is NaN, expected a finite number");
+    assert_eq!(text, "coordinate y of vertex 1 is NaN, which is no finite number");
     let text = error(&PolygonSoup::default(), plain).to_string();
     assert_eq!(text, "no face is left: the input has none");
     let text = error(&soup(&TETRAHEDRON, &[&[0, 1], &[2, 2, 3]]), plain).to_string();
