@@ -27,6 +27,7 @@ mod lod;
 mod measure;
 mod package;
 mod pages;
+mod parts;
 mod project;
 mod quantities;
 mod refine;
