@@ -8,12 +8,18 @@ use limitmesh_io::channels::{GROUP, MATERIAL, OBJECT, SMOOTHING_GROUP};
 
 use crate::arguments::CreasesFrom;
 use crate::failure::usage;
+use crate::vector::{cross, length};
 
 /// Normals are one if they differ by less: their numbers are rounded, by 4 digits and more.
 const SAME: f64 = 1e-3;
 
+/// The sine of the angle between faces that are not in one plane, 1°.
+const BENT: f64 = 0.0175;
+
 /// What a file tells of its edges, on a mesh's corners and faces.
 pub(crate) struct Hints<'a> {
+    /// Whether it tags edges or vertices.
+    pub(crate) is_tagged: bool,
     pub(crate) normals: Option<&'a Channel>,
     pub(crate) channels: &'a [Channel],
 }
@@ -53,6 +59,21 @@ impl Hints<'_> {
         Ok(inner_edges(mesh, |h, twin| is_border(h.face(), twin.face())))
     }
 
+    /// Whether it says of some edges that they are sharp, and of others that they are not: by tags, by normals that differ at some of the
+    /// edges where faces meet at an angle, or by several smoothing groups.
+    pub(crate) fn tell_edges_apart(&self, mesh: &Mesh) -> bool {
+        let mut groups = self.channels.iter().filter(|channel| channel.name == SMOOTHING_GROUP);
+        let differ = |h: HalfEdgeId, twin: HalfEdgeId, channel: &Channel| {
+            differ(channel, h.face().index(), twin.face().index())
+        };
+        self.is_tagged
+            || self.normals.is_some_and(|normals| tell_edges_apart(mesh, normals))
+            || groups.any(|channel| {
+                let is_one = channel.indices.iter().all(|&index| index == channel.indices[0]);
+                !is_one && !inner_edges(mesh, |h, twin| differ(h, twin, channel)).is_empty()
+            })
+    }
+
     /// How many edges have normals that differ between their faces.
     pub(crate) fn split_edges(&self, mesh: &Mesh) -> usize {
         self.normals.map_or(0, |normals| split_edges(mesh, normals).len())
@@ -78,6 +99,18 @@ fn split_edges(mesh: &Mesh, normals: &Channel) -> Vec<HalfEdgeId> {
         _ => false,
     };
     inner_edges(mesh, |h, twin| differ(h, twin.next()) || differ(h.next(), twin))
+}
+
+/// Whether normals differ at some edges, and are the same on both sides of others where faces meet at an angle: facets that are shaded flat
+/// say nothing of their edges.
+fn tell_edges_apart(mesh: &Mesh, normals: &Channel) -> bool {
+    let split = split_edges(mesh, normals);
+    let is_bent = |h: HalfEdgeId, twin: HalfEdgeId| {
+        let [m, n] = [h, twin].map(|h| mesh.face_normal(h.face()));
+        length(cross(m, n)) > BENT * length(m) * length(n)
+    };
+    !split.is_empty()
+        && !inner_edges(mesh, |h, twin| is_bent(h, twin) && split.binary_search(&h).is_err()).is_empty()
 }
 
 /// Whether the edge between two faces is a border of what they are labelled with.

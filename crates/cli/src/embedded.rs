@@ -100,10 +100,11 @@ fn in_words(error: &anyhow::Error) -> String {
     text
 }
 
-/// What kind of mesh it is, as JSON: `mesh` of the report of `limitmesh info`.
+/// What kind of mesh it is, as JSON: `mesh` of the report of `limitmesh info`. `faces` are the input's that its own are from; none where
+/// these are not known.
 ///
 /// # Errors
 /// A number that JSON cannot hold.
-pub fn examined(mesh: &Mesh) -> anyhow::Result<String> {
-    output::json(&mesh_info::examine(mesh))
+pub fn examined(mesh: &Mesh, faces: &[u32]) -> anyhow::Result<String> {
+    output::json(&mesh_info::examine(mesh, faces))
 }

@@ -47,7 +47,7 @@ pub(crate) struct Soup {
 impl Input {
     /// What it tells of sharp edges beside tags.
     pub(crate) fn hints(&self) -> Hints<'_> {
-        Hints { normals: self.normals.as_ref(), channels: &self.channels }
+        Hints { is_tagged: self.is_tagged, normals: self.normals.as_ref(), channels: &self.channels }
     }
 
     /// Its mesh with the edges sharp that are to be, by what it tells.
@@ -85,6 +85,8 @@ pub(crate) struct Input {
     pub(crate) format: &'static str,
     /// What else the file held and was left out, in words.
     pub(crate) left_out: Vec<String>,
+    /// Whether it tags edges or vertices as sharp.
+    pub(crate) is_tagged: bool,
     /// The mesh.
     pub(crate) mesh: Mesh,
     /// What was found and repaired.
@@ -307,6 +309,7 @@ pub(crate) fn connect(
     let texture_files = std::mem::take(&mut soup.texture_files);
     let near = nearly_closed(&mesh, options.weld, welded(&soup));
     let left_out = std::mem::take(&mut soup.left_out);
+    let is_tagged = !soup.creases.is_empty() || !soup.corners.is_empty();
     // Large soups are given back before refinement needs the memory.
     drop(soup);
     let building = start.elapsed();
@@ -324,6 +327,7 @@ pub(crate) fn connect(
         name,
         format,
         left_out,
+        is_tagged,
         mesh,
         diagnosis,
         trace,

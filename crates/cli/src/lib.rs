@@ -21,6 +21,7 @@ mod mesh_info;
 mod output;
 #[cfg(test)]
 mod pages;
+mod parts;
 mod pieces;
 mod points;
 mod progress;

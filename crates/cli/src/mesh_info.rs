@@ -9,8 +9,8 @@ use crate::dihedral::Dihedrals;
 use crate::report::MeshInformation;
 use crate::report::information::BoundingBox;
 
-/// Examines a control mesh.
-pub(crate) fn examine(mesh: &Mesh) -> MeshInformation {
+/// Examines a control mesh, with the input's faces that its own are from; none where these are not known.
+pub(crate) fn examine(mesh: &Mesh, faces: &[u32]) -> MeshInformation {
     let surface = mesh.as_triangles();
     let tightness = watertightness(surface);
     let quality = triangle_quality(surface);
@@ -37,7 +37,7 @@ pub(crate) fn examine(mesh: &Mesh) -> MeshInformation {
         irregular_vertices: topology.vertices().filter(|&v| !mesh.ring_shape(v).is_regular()).count(),
         bounding_box: BoundingBox { low, high, diagonal: surface.diagonal() },
         bulk: Bulk::of(mesh),
-        dihedrals: Dihedrals::of(mesh),
+        dihedrals: Dihedrals::of(mesh, faces),
         min_angle_degrees: quality.min_angle_degrees,
         mean_min_angle_degrees: quality.mean_min_angle_degrees,
         angle_histogram: quality.histogram,
@@ -80,7 +80,7 @@ mod tests {
             triangles.extend([[a, a + 1, a + 5], [a, a + 5, a + 4]]);
         }
         let mesh = Mesh::from_triangles(positions, triangles).unwrap();
-        let shape = examine(&mesh);
+        let shape = examine(&mesh, &[]);
         assert_eq!((shape.boundary_loops, shape.genus, shape.euler_characteristic), (2, 0, 0));
         assert_eq!((shape.vertices, shape.edges, shape.triangles), (16, 32, 16));
         assert_eq!(shape.bounding_box.high, [3.0, 3.0, 0.0]);

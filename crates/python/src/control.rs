@@ -1,7 +1,8 @@
 //! From a soup to the control mesh that is refined, and the way back: which row of the input each element is from.
 
-use limitmesh::interpolate::{InterpolateOptions, InterpolationMethod, interpolate_observed};
+use limitmesh::interpolate::{InterpolateOptions, Interpolated, InterpolationMethod, interpolate_observed};
 use limitmesh::mesh::{BoundaryRule, Channel, Diagnosis, Domain, FaceParts};
+use limitmesh::part::{Look, interpolate_unfolded_observed};
 use limitmesh::progress::Observer;
 use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, PolygonSoup};
@@ -31,12 +32,13 @@ impl Recipe {
         self.options.divides_concave_corners
     }
 
-    /// The mesh of a soup without what makes it a control mesh.
+    /// The mesh of a soup without what makes it a control mesh, with the soup's faces that its own are from.
     ///
     /// # Errors
     /// No mesh can be made of it.
-    pub(crate) fn plain(&self, soup: &PolygonSoup) -> Result<(Mesh, Diagnosis), Failure> {
-        Ok(Mesh::from_soup(soup, &self.options.build())?)
+    pub(crate) fn plain(&self, soup: &PolygonSoup) -> Result<(Mesh, Vec<u32>, Diagnosis), Failure> {
+        let (mesh, diagnosis, trace) = Mesh::from_soup_traced(soup, &self.options.build())?;
+        Ok((mesh, trace.faces, diagnosis))
     }
 
     /// The control mesh of a soup.
@@ -55,9 +57,13 @@ impl Recipe {
         }
         drop(soup);
         let mesh = mesh.with_boundary(self.boundary);
-        let mesh = match options.crease_angle {
-            Some(degrees) => mesh.with_creases_above(degrees.to_radians())?,
-            None => mesh,
+        let look = options.auto_creases.then(|| Look::of(&mesh, &trace.faces));
+        let (mesh, crease_angle, is_led) = match (options.crease_angle, look) {
+            (Some(degrees), _) => (mesh.with_creases_above(degrees.to_radians())?, Some(degrees), false),
+            (None, Some(Look::Part(part))) => {
+                (mesh.with_creases(&part.creases.edges), Some(part.degrees), options.leads_parts)
+            }
+            _ => (mesh, None, false),
         };
         let (mesh, concave) = match options.divides_concave_corners {
             true => mesh.with_divided_concave_corners()?,
@@ -66,16 +72,16 @@ impl Recipe {
         diagnosis.concave_corners = concave.corners;
         let diagonal = mesh.diagonal();
         let (mesh, interpolated) = match options.interpolate {
+            None if is_led => {
+                let found = interpolate_unfolded_observed(&mesh, self.scheme, observer)?;
+                let told = InterpolatedTold::new(&found.interpolated, found.folded.len());
+                (found.interpolated.mesh, Some(told))
+            }
             None => (mesh, None),
             Some(within) => {
                 let goal = InterpolateOptions::default().within(within.of(diagonal));
                 let found = interpolate_observed(&mesh, self.scheme, &goal, observer)?;
-                let told = InterpolatedTold {
-                    method: found.method,
-                    residual: found.residual,
-                    passed_by: found.passed_by.len(),
-                    displacement: found.displacement,
-                };
+                let told = InterpolatedTold::new(&found, 0);
                 (found.mesh, Some(told))
             }
         };
@@ -83,7 +89,14 @@ impl Recipe {
             true => channels,
             false => channels.iter().map(|channel| channel.on_parts(&concave.parts, &mesh)).collect(),
         };
-        let tables = Tables { parts: concave.parts, diagnosis, faces: trace.faces, corners, interpolated };
+        let tables = Tables {
+            parts: concave.parts,
+            diagnosis,
+            faces: trace.faces,
+            corners,
+            crease_angle,
+            interpolated,
+        };
         Ok(Control { mesh, tables, vertices, channels, diagonal })
     }
 }
@@ -109,6 +122,8 @@ pub(crate) struct Tables {
     pub(crate) faces: Vec<u32>,
     /// By corner of the same, the input's vertex.
     pub(crate) corners: Vec<u32>,
+    /// In degrees, as asked for or found.
+    pub(crate) crease_angle: Option<f64>,
     pub(crate) interpolated: Option<InterpolatedTold>,
 }
 
@@ -138,10 +153,21 @@ pub(crate) struct InterpolatedTold {
     method: InterpolationMethod,
     residual: f64,
     passed_by: usize,
+    folded_regions: usize,
     displacement: f64,
 }
 
 impl InterpolatedTold {
+    fn new(found: &Interpolated, folded_regions: usize) -> Self {
+        Self {
+            method: found.method,
+            residual: found.residual,
+            passed_by: found.passed_by.len(),
+            folded_regions,
+            displacement: found.displacement,
+        }
+    }
+
     pub(crate) fn told<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         let method = match self.method {
@@ -154,6 +180,7 @@ impl InterpolatedTold {
         dict.set_item("method", method)?;
         dict.set_item("residual", self.residual)?;
         dict.set_item("passed_by", self.passed_by)?;
+        dict.set_item("folded_regions", self.folded_regions)?;
         dict.set_item("displacement", self.displacement)?;
         Ok(dict)
     }

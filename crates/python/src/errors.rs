@@ -6,6 +6,7 @@ use limitmesh::interpolate::InterpolateError;
 use limitmesh::limit::LimitError;
 use limitmesh::measure::MeasureError;
 use limitmesh::mesh::{ChannelError, MeshError as CoreMeshError};
+use limitmesh::part::UnfoldedError;
 use limitmesh::progress::Cancelled;
 use limitmesh::refine::{RefineError, ReplayError};
 use limitmesh::simplify::SimplifyError;
@@ -172,6 +173,16 @@ impl From<InterpolateError> for Failure {
             InterpolateError::Cancelled(_) => Self::Cancelled,
             InterpolateError::Mesh(error) => error.into(),
             InterpolateError::TooFar { .. } => Self::Option(error.to_string()),
+            error => Self::Mesh(error.to_string()),
+        }
+    }
+}
+
+impl From<UnfoldedError> for Failure {
+    fn from(error: UnfoldedError) -> Self {
+        match error {
+            UnfoldedError::Interpolate(error) => error.into(),
+            UnfoldedError::Refine(error) => error.into(),
             error => Self::Mesh(error.to_string()),
         }
     }

@@ -186,8 +186,8 @@ pub(crate) fn examine<'py>(
 ) -> PyResult<(String, Option<Bound<'py, PyDict>>)> {
     let (soup, recipe) = (mesh.soup()?, Recipe::new(control)?);
     let (json, diagnosis) = run(py, threads, None, move |_| {
-        let (mesh, diagnosis): (Mesh, _) = recipe.plain(&soup)?;
-        let json = limitmesh_cli::examined(&mesh).map_err(|why| Failure::Mesh(why.to_string()))?;
+        let (mesh, faces, diagnosis) = recipe.plain(&soup)?;
+        let json = limitmesh_cli::examined(&mesh, &faces).map_err(|why| Failure::Mesh(why.to_string()))?;
         Ok((json, diagnosis))
     })?;
     Ok((json, tell::diagnosis(py, &diagnosis)?))

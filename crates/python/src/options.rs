@@ -20,6 +20,10 @@ pub(crate) struct ControlOptions {
     boundary: String,
     /// In degrees.
     pub(crate) crease_angle: Option<f64>,
+    /// Whether edges are sharp that look so, if the mesh looks like a part.
+    pub(crate) auto_creases: bool,
+    /// Whether the surface of such a part is led through its vertices.
+    pub(crate) leads_parts: bool,
     /// Whether corners of 180° and more are divided.
     pub(crate) divides_concave_corners: bool,
     /// How near the limit surface is to pass to the vertices.

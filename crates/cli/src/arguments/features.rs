@@ -49,6 +49,29 @@ pub(crate) enum CreasesFrom {
     Materials,
 }
 
+/// Which edges are sharp by the angle between their faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum CreaseAngle {
+    /// Those that look so, if the file has no sharpness of its own and the mesh looks like a part.
+    Auto,
+    /// None.
+    None,
+    /// Those whose faces' normals differ by more degrees.
+    Above(f64),
+    /// The same, found by looking at the mesh.
+    Found(f64),
+}
+
+impl CreaseAngle {
+    /// In degrees, where it is decided that there is one.
+    pub(crate) fn degrees(self) -> Option<f64> {
+        match self {
+            Self::Above(degrees) | Self::Found(degrees) => Some(degrees),
+            Self::Auto | Self::None => None,
+        }
+    }
+}
+
 /// A control mesh with its tags.
 pub(crate) struct Featured {
     pub(crate) mesh: Mesh,
@@ -59,14 +82,18 @@ pub(crate) struct Featured {
 }
 
 /// Where the surface is sharp, beside the tags of the file.
-#[derive(Args, Debug, Clone, Copy)]
+#[derive(Args, Debug, Clone, Copy, Default)]
 pub(crate) struct FeatureArguments {
-    /// Keep edges sharp where the faces meet at more than this angle between their normals [degrees, above 0 to 180]
+    /// Keep edges sharp where the faces meet at more than this angle between their normals [degrees, above 0 to 180; auto or none;
+    /// default: auto, none for methods other than exact]
     ///
     /// For parts with flat faces and round ones: 30 keeps a box a box, and makes a cylinder round between sharp rims. Of the two sides of a
-    /// needle that meet at its tip, the faces beyond them decide.
-    #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
-    pub(crate) crease_angle: Option<f64>,
+    /// needle that meet at its tip, the faces beyond them decide. With auto, a mesh that looks like a part gets the angle that parts
+    /// its sharp edges from the others, and its surface is led through the vertices where that does not fold it, unless --interpolate-within
+    /// says otherwise. Files with tags, normals that differ at some edges, or several smoothing groups have sharpness of their own; files of
+    /// quadrilaterals are cages: neither are looked at. With none all edges are smooth but those that the file tags.
+    #[arg(long, value_name = "DEG|auto|none", value_parser = values::crease_angle, allow_hyphen_values = true)]
+    pub(crate) crease_angle: Option<CreaseAngle>,
 
     /// Keep edges sharp that the file's normals, smoothing groups or materials say are sharp [default: none]
     ///
@@ -86,6 +113,22 @@ pub(crate) struct FeatureArguments {
 }
 
 impl FeatureArguments {
+    /// The angle in degrees beyond which edges are sharp, where there is one.
+    pub(crate) fn angle(&self) -> Option<f64> {
+        self.crease_angle.and_then(CreaseAngle::degrees)
+    }
+
+    /// Whether it was to be found by looking at the mesh.
+    pub(crate) fn is_auto(&self) -> bool {
+        matches!(self.crease_angle, Some(CreaseAngle::Auto | CreaseAngle::Found(_)))
+    }
+
+    /// The same for whom edges are sharp that look so, unless something else is asked for.
+    pub(crate) fn or_auto(mut self) -> Self {
+        self.crease_angle.get_or_insert(CreaseAngle::Auto);
+        self
+    }
+
     /// The first of these options that is given.
     pub(crate) fn given(&self) -> Option<&'static str> {
         let all = [
@@ -123,7 +166,7 @@ impl FeatureArguments {
 
     /// What becomes of concave corners, by the other options where it was not said.
     pub(crate) fn concave_corners(&self) -> ConcaveCorners {
-        let is_asked = self.crease_angle.is_some()
+        let is_asked = self.angle().is_some()
             || self.creases_from != CreasesFrom::None
             || self.boundary.unwrap_or_default() != Boundary::Smooth;
         let usual = if is_asked { ConcaveCorners::Divided } else { ConcaveCorners::AsTagged };
@@ -141,7 +184,7 @@ impl FeatureArguments {
             Boundary::Fixed => BoundaryRule::Fixed,
         };
         let mesh = mesh.with_boundary(rule);
-        let found = self.crease_angle.map(|angle| mesh.creases_above(angle.to_radians())).transpose()?;
+        let found = self.angle().map(|angle| mesh.creases_above(angle.to_radians())).transpose()?;
         let (mesh, along_needles) = match found {
             Some(found) => (mesh.with_creases(&found.edges), found.along_needles),
             None => (mesh, 0),

@@ -9,7 +9,7 @@ use super::{BuildArguments, FeatureArguments, InterpolationArguments, SchemeName
 pub(crate) struct LimitArguments {
     /// Scheme of the limit surface [default: loop]
     #[arg(long, value_enum)]
-    scheme: Option<SchemeName>,
+    pub(crate) scheme: Option<SchemeName>,
 
     #[command(flatten)]
     pub(crate) features: FeatureArguments,

@@ -30,7 +30,7 @@ pub(crate) use channels::ChannelArguments;
 pub(crate) use compare::CompareArguments;
 pub(crate) use evaluate::{EvaluateArguments, Place, Places};
 pub(crate) use exact::ExactArguments;
-pub(crate) use features::{Boundary, ConcaveCorners, CreasesFrom, FeatureArguments, Featured};
+pub(crate) use features::{Boundary, ConcaveCorners, CreaseAngle, CreasesFrom, FeatureArguments, Featured};
 pub(crate) use info::InfoArguments;
 pub(crate) use interpolation::InterpolationArguments;
 pub(crate) use limit::LimitArguments;

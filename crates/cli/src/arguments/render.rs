@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::shared::loop_family;
 use super::values;
-use super::{BuildArguments, SchemeName, Size};
+use super::{BuildArguments, CreaseAngle, SchemeName, Size};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -50,13 +50,14 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_parser = loop_family())]
     pub(crate) scheme: Option<SchemeName>,
 
-    /// Shade both sides of edges by themselves where the faces meet at more than this angle [degrees, above 0 to 180]
+    /// Shade both sides of edges by themselves where the faces meet at more than this angle [degrees, above 0 to 180, or none; with --exact
+    /// also auto, its default]
     ///
     /// In place of the file's normals. Edges that the file tags as sharp for ever are shaded so in any case. With --exact they are creases
-    /// of the surface.
-    #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
+    /// of the surface, as `refine` has them.
+    #[arg(long, value_name = "DEG|auto|none", value_parser = values::crease_angle, allow_hyphen_values = true)]
     #[arg(conflicts_with = "flat")]
-    pub(crate) crease_angle: Option<f64>,
+    pub(crate) crease_angle: Option<CreaseAngle>,
 
     /// What lies on the surface by its texture coordinates: a PNG or JPEG file, checker for a pattern that shows stretching and seams, or
     /// none

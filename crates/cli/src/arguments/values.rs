@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use limitmesh::measure::SamplingOptions;
 
+use super::CreaseAngle;
 use super::quantity::{self, Length, Unit, finite};
 
 /// Levels beyond this would need more than 4^12 (16 million) triangles for a single input triangle.
@@ -26,6 +27,18 @@ pub(super) fn angle(text: &str) -> Result<f64, String> {
         Ok(value)
     } else {
         Err(format!("{value}° is out of range: an angle is above 0 and at most 180 degrees"))
+    }
+}
+
+/// A crease angle: one in degrees, or the words `auto` and `none`.
+pub(super) fn crease_angle(text: &str) -> Result<CreaseAngle, String> {
+    match text {
+        "auto" => Ok(CreaseAngle::Auto),
+        "none" => Ok(CreaseAngle::None),
+        _ => match angle(text) {
+            Ok(degrees) => Ok(CreaseAngle::Above(degrees)),
+            Err(what) => Err(format!("{what}; degrees, 'auto' or 'none' are expected")),
+        },
     }
 }
 

@@ -5,7 +5,7 @@ use limitmesh::measure::CertifiedHausdorff;
 use limitmesh::refine::{LimitDistanceOptions, is_certified, limit_distance_observed};
 use limitmesh::{Mesh, Triangles};
 
-use crate::arguments::{ConcaveCorners, MeasureArguments};
+use crate::arguments::MeasureArguments;
 use crate::failure::usage;
 use crate::progress::Progress;
 
@@ -21,13 +21,14 @@ pub(super) struct Certified {
     pub(super) capped: Option<usize>,
 }
 
-/// Measures with finer and finer meshes until the interval is as narrow as asked for.
+/// Measures with finer and finer meshes until the interval is as narrow as asked for; folded flat regions are what their rims enclose if the
+/// surface unfolds.
 ///
 /// # Errors
 /// Exact refinement proves nothing for the scheme, or a surface cannot be measured.
 pub(super) fn measure(
     surface: Triangles<'_>,
-    control: &Mesh,
+    (control, unfolds): (&Mesh, bool),
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<Certified> {
@@ -40,7 +41,6 @@ pub(super) fn measure(
     }
     let gap =
         arguments.gap.map(|gap| gap.length(control.diagonal(), arguments.limit.build.unit)).transpose()?;
-    let unfolds = arguments.limit.features.concave_corners() == ConcaveCorners::Divided;
     let mut options = LimitDistanceOptions::default().gap(gap).unfold(unfolds);
     if let Some(work) = arguments.max_work {
         options = options.max_work(work);

@@ -13,8 +13,8 @@ use limitmesh::scheme::Scheme;
 use limitmesh::sqrt3::{self, Sqrt3, Sqrt3Options};
 use limitmesh_paper::{match_angle, methods, nearest_level};
 
-use super::limit_control;
-use crate::arguments::{CompareArguments, ConcaveCorners, RefiningScheme};
+use super::limit_control::{self, Prepared};
+use crate::arguments::{CompareArguments, ConcaveCorners, LimitArguments, RefiningScheme};
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds, table, thousands, upper_bound};
 use crate::input;
@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     let limit = arguments.limit.in_unit(input.unit);
     let arguments = &CompareArguments { limit, ..arguments.clone() };
     let diagonal = input.mesh.diagonal();
-    let (control, _) = limit_control::prepared(input, &arguments.limit, progress)?;
+    let Prepared { mesh: control, limit, .. } = limit_control::as_asked(input, &arguments.limit, progress)?;
     let scheme = arguments.limit.scheme().scheme();
     // Finer than what is measured against it by two levels, where that can be afforded.
     let wanted = USUAL_LEVELS.max(arguments.levels + 2);
@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     let reference = reference::at_level(&control, scheme, levels)?;
     let tree = Bvh::new(reference.mesh.as_triangles())?;
     let own = arguments.limit.scheme().into();
-    let judge = Judge { arguments, scheme: own, reference: &reference, tree: &tree, diagonal };
+    let judge = Judge { arguments, limit, scheme: own, reference: &reference, tree: &tree, diagonal };
 
     let mut methods = Vec::with_capacity(11);
     progress.stage("limit-normal");
@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
         let took = start.elapsed();
         methods.push(judge.judge((name, None), (&refinement.mesh, level), None, took)?);
     }
-    let unfolds = arguments.limit.features.concave_corners() == ConcaveCorners::Divided;
+    let unfolds = limit.features.concave_corners() == ConcaveCorners::Divided;
     let plain = ExactOptions::default().triangles(count).unfold(unfolds);
     let mut kinds = vec![("exact", plain.clone()), ("exact-balance", plain.clone().balance(true))];
     if count <= MOST_OPTIMISED {
@@ -100,7 +100,8 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
             Err(why) => progress.note(format!("{name} left out: {why}")),
         }
     }
-    let sqrt3 = match arguments.limit.interpolation.given() {
+    let of_part = limit.interpolation.is_of_part.then_some("--crease-angle auto");
+    let sqrt3 = match limit.interpolation.given().or(of_part) {
         Some(option) => Err(anyhow::anyhow!("{option} is for schemes that split triangles in four")),
         None => by_sqrt3(&control, count, reference.mesh.face_count(), &judge, progress),
     };
@@ -177,7 +178,8 @@ const MOST_OPTIMISED: usize = 200_000;
 #[derive(Clone, Copy)]
 struct Judge<'a> {
     arguments: &'a CompareArguments,
-    /// Whose limit surface.
+    /// What the limit surface is of, and by which scheme.
+    limit: LimitArguments,
     scheme: RefiningScheme,
     reference: &'a Reference,
     /// The reference's search tree, built once for all methods.
@@ -190,7 +192,7 @@ impl Judge<'_> {
     fn limit(&self) -> anyhow::Result<LimitReport> {
         Ok(LimitReport {
             scheme: self.scheme,
-            ..LimitReport::new(&self.arguments.limit, self.diagonal, self.reference.levels)?
+            ..LimitReport::new(&self.limit, self.diagonal, self.reference.levels)?
         })
     }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use limitmesh::{FaceId, LimitSurface, SurfacePoint};
 
-use super::limit_control;
+use super::limit_control::{self, Prepared};
 use crate::arguments::{EvaluateArguments, Place, Places};
 use crate::failure::Outcome;
 use crate::format::{counted, number, point, table};
@@ -24,7 +24,7 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
     let places: Vec<Place> = arguments.at.iter().map(places).collect::<anyhow::Result<Vec<_>>>()?.concat();
     let input = input::load(&arguments.control, &arguments.limit.build, progress)?;
     let (name, limit) = (input.name.clone(), arguments.limit.in_unit(input.unit));
-    let (mesh, faces) = limit_control::prepared(input, &limit, progress)?;
+    let Prepared { mesh, face_inputs: faces, .. } = limit_control::prepared(input, &limit, progress)?;
     if !faces.iter().zip(0..).all(|(&face, own)| face == own) {
         let count = counted(mesh.face_count(), "triangle", "triangles");
         progress.note(format!(

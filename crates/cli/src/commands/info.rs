@@ -3,17 +3,21 @@
 use std::collections::BTreeMap;
 
 use anyhow::Context;
-use limitmesh::Mesh;
+use limitmesh::mesh::{Channel, Trace};
 use limitmesh::scheme::Loop;
+use limitmesh::{Mesh, PolygonSoup};
 
-use crate::arguments::{CreasesFrom, InfoArguments};
+use super::interpolation;
+use crate::arguments::{CreasesFrom, InfoArguments, InterpolationArguments};
 use crate::bulk::Bulk;
+use crate::creases::Hints;
 use crate::dihedral::Dihedrals;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, point, table, thousands};
 use crate::input;
 use crate::mesh_info;
 use crate::output;
+use crate::parts;
 use crate::progress::Progress;
 use crate::report::information::{PolygonCount, TagCounts};
 use crate::report::{
@@ -31,7 +35,7 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
     if let (Some(option), false) = (arguments.features.given(), arguments.limit) {
         return usage(format!("{option} belongs to a limit surface; it needs --limit"));
     }
-    let input::Soup { name, format, soup, asset, package, unit, .. } =
+    let input::Soup { name, format, soup, normals, asset, package, unit, .. } =
         input::read(&arguments.input, &arguments.build, progress)?;
     let options = arguments.build.in_unit(unit).options()?;
     let mut corners = BTreeMap::<usize, usize>::new();
@@ -49,18 +53,16 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         channels: soup.channels.iter().map(Into::into).collect(),
     };
     progress.stage(format!("connecting {}", counted(input.faces, "face", "faces")));
-    let (mesh, diagnosis) =
-        Mesh::from_soup(&soup, &options).map_err(|error| input::describe(&name, error))?;
+    let (mesh, diagnosis, trace) =
+        Mesh::from_soup_traced(&soup, &options).map_err(|error| input::describe(&name, error))?;
     if let Some(near) = input::nearly_closed(&mesh, options.weld, input::welded(&soup)) {
         progress.note(format!("{name}: {near}"));
     }
+    let limit =
+        arguments.limit.then(|| limit_of(&soup, normals.as_ref(), (&mesh, &trace), arguments, progress));
+    let limit = limit.transpose().with_context(|| name.clone())?.flatten();
     drop(soup);
     progress.stage("examining the mesh");
-    let limit = match arguments.limit {
-        true => Bulk::of_limit(&arguments.features.apply(mesh.clone())?.mesh, &Loop)
-            .with_context(|| name.clone())?,
-        false => None,
-    };
     let report = InformationReport {
         version: VERSION,
         input,
@@ -69,7 +71,7 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         asset: asset.map(|(_, contents)| contents.into()),
         package: package.map(PackageInformation::from),
         diagnosis: (&diagnosis).into(),
-        mesh: mesh_info::examine(&mesh),
+        mesh: mesh_info::examine(&mesh, &trace.faces),
         limit,
     };
     progress.clear();
@@ -91,6 +93,28 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         output::print(&text)?;
     }
     Ok(Outcome::Done)
+}
+
+/// Area and volume of the limit surface, with what is sharp by its looks.
+fn limit_of(
+    soup: &PolygonSoup,
+    normals: Option<&Channel>,
+    (mesh, trace): (&Mesh, &Trace),
+    arguments: &InfoArguments,
+    progress: &Progress,
+) -> anyhow::Result<Option<Bulk>> {
+    let on_mesh = |channel: &Channel| channel.on_mesh(soup, mesh, trace);
+    let normals = normals.map(on_mesh).transpose()?;
+    let channels = soup.channels.iter().map(on_mesh).collect::<Result<Vec<_>, _>>()?;
+    let is_tagged = !soup.creases.is_empty() || !soup.corners.is_empty();
+    let hints = Hints { is_tagged, normals: normals.as_ref(), channels: &channels };
+    let asked = (arguments.features.or_auto(), InterpolationArguments::default());
+    let decided = parts::decided(asked, (mesh, &trace.faces), &hints, true);
+    decided.note.into_iter().for_each(|note| progress.note(note));
+    let mesh = decided.features.apply(mesh.clone())?.mesh;
+    let asked = (decided.interpolation, arguments.build.unit);
+    let (mesh, _) = interpolation::apply(mesh, asked, &Loop, progress)?;
+    Ok(Bulk::of_limit(&mesh, &Loop)?)
 }
 
 fn describe_file(report: &InformationReport) -> String {
@@ -256,7 +280,13 @@ fn dihedrals_in_words(dihedrals: &Dihedrals) -> String {
         None => "none stand out as sharp".to_owned(),
         Some(angle) => {
             let edges = counted(dihedrals.sharp_edges, "edge looks", "edges look");
-            format!("{edges} sharp; --crease-angle {} keeps them so", number(angle))
+            let angle = number(angle);
+            match dihedrals.look {
+                "part" => format!(
+                    "{edges} sharp, beyond {angle}°; it looks like a part, and `refine` keeps them so"
+                ),
+                _ => format!("{edges} sharp; --crease-angle {angle} keeps them so"),
+            }
         }
     };
     format!("\nedges by the angle between their faces: {look}\n{}", bars(&rows))

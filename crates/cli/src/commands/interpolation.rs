@@ -2,10 +2,11 @@
 
 use limitmesh::Mesh;
 use limitmesh::interpolate::{InterpolateOptions, Interpolated, InterpolationMethod, interpolate_observed};
+use limitmesh::part::{FoldedRegion, Unfolded, interpolate_unfolded_observed};
 use limitmesh::scheme::Scheme;
 
 use crate::arguments::{InterpolationArguments, Unit};
-use crate::format::{counted, number, upper_bound};
+use crate::format::{counted, number, point, upper_bound};
 use crate::progress::Progress;
 use crate::report::{InterpolationReport, percent};
 
@@ -21,11 +22,32 @@ pub(super) fn apply(
 ) -> anyhow::Result<(Mesh, Option<InterpolationReport>)> {
     let diagonal = mesh.diagonal();
     let Some(within) = arguments.within(diagonal, unit)? else { return Ok((mesh, None)) };
+    if arguments.is_of_part {
+        let Unfolded { interpolated, folded, .. } =
+            interpolate_unfolded_observed(&mesh, scheme, &mut progress.observer())?;
+        if let Some(largest) = folded.first() {
+            progress.note(folded_in_words(&interpolated, folded.len(), largest));
+        }
+        let report = InterpolationReport::new(&interpolated, within, diagonal, folded.len());
+        return Ok((interpolated.mesh, Some(report)));
+    }
     let options = InterpolateOptions::default().within(within);
     let found = interpolate_observed(&mesh, scheme, &options, &mut progress.observer())?;
     progress.note(in_words(&found, within, diagonal));
-    let report = InterpolationReport::new(&found, within, diagonal);
+    let report = InterpolationReport::new(&found, within, diagonal, 0);
     Ok((found.mesh, Some(report)))
+}
+
+/// Where the surface of a part passes by vertices, because through them it would fold.
+fn folded_in_words(found: &Interpolated, regions: usize, largest: &FoldedRegion) -> String {
+    let vertices = counted(found.passed_by.len(), "vertex", "vertices");
+    let faces = counted(largest.faces.len(), "face", "faces");
+    let [low, high] = largest.bounding_box.map(point);
+    let largest = if regions == 1 { "it has" } else { "the largest has" };
+    format!(
+        "the surface passes by {vertices}: through them it would fold in {}; {largest} {faces}, from {low} to {high}",
+        counted(regions, "region", "regions")
+    )
 }
 
 fn in_words(found: &Interpolated, within: f64, diagonal: f64) -> String {

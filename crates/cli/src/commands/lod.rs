@@ -18,6 +18,7 @@ use crate::format::{counted, number, table, thousands, upper_bound};
 use crate::input::{self, Input};
 use crate::interrupt;
 use crate::output;
+use crate::parts;
 use crate::progress::Progress;
 use crate::report::refinement::exact_stop_name;
 use crate::report::{InputReport, LevelReport, LodReport, MorphReport, PictureReport, VERSION};
@@ -73,6 +74,9 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     check_files(arguments, format)?;
     let kept = [Normals::kept(Some(format)), if format.is_gltf() { &[MATERIALS] } else { &[] }].concat();
     let input = input::load_for(&arguments.input, &arguments.build, (&kept, &arguments.channels), progress)?;
+    let asked = (arguments.features.or_auto(), arguments.interpolation);
+    let decided = parts::decided(asked, (&input.mesh, &input.trace.faces), &input.hints(), true);
+    decided.note.into_iter().for_each(|note| progress.note(note));
     let input = input.with_creases(arguments.features.creases_from)?;
     let arguments = &LodArguments { build: arguments.build.in_unit(input.unit), ..arguments.clone() };
     let unit = WrittenUnit::of(&arguments.input, &arguments.build, format);
@@ -91,10 +95,10 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     if asset.is_some() {
         progress.note("one mesh of all that the scene shows, in its coordinates, with its materials; nodes, skins, animations and cameras are left out");
     }
-    let Featured { mesh, concave, .. } = arguments.features.apply(mesh)?;
+    let Featured { mesh, concave, .. } = decided.features.apply(mesh)?;
     channels.on_parts(&concave.parts, &mesh);
     let scheme = arguments.scheme.scheme();
-    let asked = (arguments.interpolation, arguments.build.unit);
+    let asked = (decided.interpolation, arguments.build.unit);
     let (mesh, _) = interpolation::apply(mesh, asked, scheme, progress)?;
 
     let tolerances = tolerances(arguments, diagonal)?;

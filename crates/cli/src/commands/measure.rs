@@ -6,8 +6,9 @@ use std::time::Instant;
 use limitmesh::measure::{CertifiedHausdorff, Hausdorff, SamplingOptions, hausdorff_observed};
 use limitmesh::{Mesh, Triangles};
 
-use super::{certified, certified_limit, heatmap, limit_control};
-use crate::arguments::MeasureArguments;
+use super::limit_control::{self, Prepared};
+use super::{certified, certified_limit, heatmap};
+use crate::arguments::{ConcaveCorners, MeasureArguments};
 use crate::bulk::Bulk;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, point, table, thousands, upper_bound};
@@ -112,7 +113,8 @@ fn against_limit(
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, SurfaceReport, Distance)> {
-    let found = certified_limit::measure(surface, control, arguments, progress)?;
+    let unfolds = report.limit.as_ref().is_some_and(|limit| limit.concave_corners == ConcaveCorners::Divided);
+    let found = certified_limit::measure(surface, (control, unfolds), arguments, progress)?;
     let limit =
         report.limit.map(|limit| LimitReport { levels: found.levels, error: Some(found.error), ..limit });
     let report = SurfaceReport {
@@ -139,7 +141,7 @@ fn reference(
     let scheme = arguments.limit.scheme();
     let report = describe(&input, None);
     let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
-    let (mesh, _) = limit_control::prepared(input, &arguments.limit, progress)?;
+    let Prepared { mesh, limit, .. } = limit_control::prepared(input, &arguments.limit, progress)?;
     // Beyond what numbers hold they are not known; distances are.
     let bulk = Bulk::of_limit(&mesh, scheme.scheme()).ok().flatten();
     let (mesh, levels) = if arguments.certified {
@@ -152,7 +154,7 @@ fn reference(
         (reference::at_level(&mesh, scheme.scheme(), levels)?.mesh, levels)
     };
     let chosen = arguments.reference_levels.is_none();
-    let limit = LimitReport { chosen, ..LimitReport::new(&arguments.limit, whole.diagonal, levels)? };
+    let limit = LimitReport { chosen, ..LimitReport::new(&limit, whole.diagonal, levels)? };
     let report = SurfaceReport {
         vertices: mesh.vertex_count(),
         triangles: mesh.face_count(),

@@ -8,7 +8,8 @@ use limitmesh::{Closest, LimitSurface, Membership, Proximity, ProximityError, Tr
 use limitmesh_io::{Format, Output, Property, WriteOptions};
 use limitmesh_render::{ColourMap, Scale};
 
-use super::{heatmap, limit_control};
+use super::heatmap;
+use super::limit_control::{self, Prepared};
 use crate::arguments::ProjectArguments;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, lower_bound, number, point, thousands};
@@ -37,7 +38,7 @@ pub(crate) fn run(arguments: &ProjectArguments, progress: &Progress) -> anyhow::
     let points = points.in_unit(control.unit, progress);
     let (name, diagonal) = (control.name.clone(), control.mesh.diagonal());
     let scheme = arguments.limit.scheme();
-    let (mesh, _) = limit_control::prepared(control, &arguments.limit, progress)?;
+    let Prepared { mesh, .. } = limit_control::prepared(control, &arguments.limit, progress)?;
     if kind == Some(Kind::Picture) && points.triangles.is_empty() {
         return usage(format!("{} has no triangles to draw; -o writes .ply or .csv", points.name));
     }

@@ -7,8 +7,11 @@ use limitmesh::{LimitSurface, Mesh, RayCaster};
 use limitmesh_render::{Camera, Shading, Style, render_exact_observed};
 
 use super::covering::Cover;
+use super::limit_control::{self, Prepared};
 use super::{picture, shading};
-use crate::arguments::RenderArguments;
+use crate::arguments::{
+    CreaseAngle, FeatureArguments, InterpolationArguments, LimitArguments, RenderArguments,
+};
 use crate::failure::{Outcome, usage};
 use crate::format::counted;
 use crate::input;
@@ -31,10 +34,13 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
     if arguments.exact {
         return exact(arguments, progress);
     }
+    if arguments.crease_angle == Some(CreaseAngle::Auto) {
+        return usage("--crease-angle auto is for limit surfaces; it needs --exact");
+    }
     let input = input::load_keeping(&arguments.input, &arguments.build, &UNSEEN, progress)?;
     let cover = Cover::of(&input, arguments.texture.as_deref())?;
     let mut mesh = input.mesh;
-    if let Some(angle) = arguments.crease_angle {
+    if let Some(angle) = arguments.crease_angle.and_then(CreaseAngle::degrees) {
         mesh = mesh.with_creases_above(angle.to_radians())?;
     }
     progress.stage(format!("drawing {}", counted(mesh.face_count(), "triangle", "triangles")));
@@ -70,11 +76,15 @@ const FRAMED: usize = 100_000;
 /// Draws the limit surface of a control mesh by rays.
 fn exact(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     let input = input::load(&arguments.input, &arguments.build, progress)?;
-    let (name, mut mesh) = (input.name, input.mesh);
-    if let Some(angle) = arguments.crease_angle {
-        mesh = mesh.with_creases_above(angle.to_radians())?;
-    }
-    let scheme = arguments.scheme.unwrap_or_default().scheme();
+    let name = input.name.clone();
+    let limit = LimitArguments {
+        scheme: arguments.scheme,
+        features: FeatureArguments { crease_angle: arguments.crease_angle, ..FeatureArguments::default() },
+        interpolation: InterpolationArguments::default(),
+        build: arguments.build,
+    };
+    let Prepared { mesh, limit, .. } = limit_control::prepared(input, &limit, progress)?;
+    let scheme = limit.scheme().scheme();
     let surface = LimitSurface::new(&mesh, scheme).with_context(|| name.clone())?;
     let rays = RayCaster::new(&surface).with_context(|| name.clone())?;
     if mesh.face_count() == 0 {

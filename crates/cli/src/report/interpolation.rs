@@ -17,8 +17,10 @@ pub(crate) struct InterpolationReport {
     pub(crate) iterations: usize,
     /// The greatest distance of a limit from its vertex, but for those that are passed by.
     pub(crate) residual: f64,
-    /// Vertices that the surface passes by: those next to much longer edges of sharp lines and boundaries.
+    /// Vertices that the surface passes by: those next to much longer edges of sharp lines and boundaries, and those in regions that would fold.
     pub(crate) passed_by: usize,
+    /// Regions of a part that would fold if the surface passed through all vertices.
+    pub(crate) folded_regions: usize,
     /// The greatest distance of a control point from its vertex.
     pub(crate) displacement: f64,
     /// In per cent of the diagonal of the input's bounding box.
@@ -32,7 +34,7 @@ pub(crate) struct InterpolationReport {
 }
 
 impl InterpolationReport {
-    pub(crate) fn new(found: &Interpolated, within: f64, diagonal: f64) -> Self {
+    pub(crate) fn new(found: &Interpolated, within: f64, diagonal: f64, folded_regions: usize) -> Self {
         Self {
             within,
             method: match found.method {
@@ -45,6 +47,7 @@ impl InterpolationReport {
             iterations: found.iterations,
             residual: found.residual,
             passed_by: found.passed_by.len(),
+            folded_regions,
             displacement: found.displacement,
             displacement_percent: percent(found.displacement, diagonal.max(f64::MIN_POSITIVE)),
             most_displaced: found.most_displaced.index(),

@@ -73,6 +73,8 @@ pub(crate) struct LimitReport {
     pub(crate) boundary: Boundary,
     /// Edges beyond this angle are sharp; null for none.
     pub(crate) crease_angle_degrees: Option<f64>,
+    /// Whether that was found by looking at the mesh, where it looks like a part.
+    pub(crate) crease_angle_auto: bool,
     /// What in the file says that edges are sharp, beside tags.
     pub(crate) creases_from: CreasesFrom,
     /// How near it passes to the vertices of the control mesh; null where these are its control points.
@@ -94,7 +96,8 @@ impl LimitReport {
             chosen: true,
             error: None,
             boundary: features.boundary.unwrap_or_default(),
-            crease_angle_degrees: features.crease_angle,
+            crease_angle_degrees: features.angle(),
+            crease_angle_auto: features.is_auto(),
             creases_from: features.creases_from,
             interpolate_within: arguments.within(diagonal)?,
             concave_corners: features.concave_corners(),

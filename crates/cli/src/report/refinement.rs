@@ -212,6 +212,8 @@ pub(crate) struct ParametersReport {
     pub(crate) boundary: Boundary,
     /// Edges beyond this angle are sharp; null for none.
     pub(crate) crease_angle_degrees: Option<f64>,
+    /// Whether that was found by looking at the mesh, where it looks like a part.
+    pub(crate) crease_angle_auto: bool,
     /// What in the file says that edges are sharp, beside tags.
     pub(crate) creases_from: CreasesFrom,
     /// How near the limit surface is to pass to the input's vertices, in the mesh's unit; null where these are the control points.
@@ -242,7 +244,8 @@ impl ParametersReport {
             view: None,
             limit: false,
             boundary: arguments.features.boundary.unwrap_or_default(),
-            crease_angle_degrees: arguments.features.crease_angle,
+            crease_angle_degrees: arguments.features.angle(),
+            crease_angle_auto: arguments.features.is_auto(),
             creases_from: arguments.features.creases_from,
             interpolate_within: None,
             concave_corners: arguments.features.concave_corners(),

@@ -28,6 +28,7 @@ mod measure;
 mod naming;
 mod package;
 mod pages;
+mod parts;
 mod project;
 mod quantities;
 mod refine;

@@ -14,7 +14,7 @@ const CONTRACT: &str = "version input.path input.format input.vertices input.fac
     diagnosis.non_manifold_edges.count diagnosis.bow_tie_vertices.count diagnosis.dropped_tags.count
     diagnosis.concave_corners.count
     parameters.method parameters.angle_degrees parameters.levels parameters.scheme parameters.seam
-    parameters.view parameters.limit parameters.boundary parameters.crease_angle_degrees parameters.concave_corners parameters.max_triangles parameters.weld parameters.strict
+    parameters.view parameters.limit parameters.boundary parameters.crease_angle_degrees parameters.crease_angle_auto parameters.concave_corners parameters.max_triangles parameters.weld parameters.strict
     steps rounds levels stop needed_triangles error parameters.exact output.path output.vertices output.triangles output.boundary_edges
     output.non_manifold_edges output.watertight output.euler_characteristic output.components
     output.t_junctions output.inverted_triangles output.min_angle_degrees output.mean_min_angle_degrees output.angle_histogram
@@ -90,7 +90,7 @@ fn defaults_of_the_paper_s_method_are_ten_degrees_three_levels_loop_all() {
         refine("builtin:shoe", &folder.path().join("out.ply"), "--method limit-normal")["parameters"].clone();
     let expected = serde_json::json!({
         "method": "limit-normal", "angle_degrees": 10.0, "levels": 3, "scheme": "loop", "seam": "all",
-        "exact": null, "view": null, "limit": false, "boundary": "smooth", "crease_angle_degrees": null, "interpolate_within": null,
+        "exact": null, "view": null, "limit": false, "boundary": "smooth", "crease_angle_degrees": null, "crease_angle_auto": false, "interpolate_within": null,
         "creases_from": "none", "concave_corners": "as-tagged",
         "max_triangles": 50_000_000, "weld": 0.0, "strict": false
     });

@@ -255,3 +255,110 @@ fn open_edges(path: &Path) -> u64 {
     soup.faces = welded.iter().map(Vec::as_slice).collect();
     counts(&soup).boundary_edges
 }
+
+/// What files look like, the angle that is suggested, and the edges beyond it: those that have any.
+const SHARP: &[(&str, &str, f64, u64)] = &[
+    ("loop_saddle_edgecorner.obj", "part", 30.0, 2),
+    ("mechpart_creased.obj", "part", 60.0, 117),
+    ("rook_creased.obj", "part", 55.0, 400),
+    ("featuretype.stl", "part", 30.0, 1_435),
+    ("rgb_cube.gltf", "part", 30.0, 12),
+    ("parts/L.stl", "part", 30.0, 18),
+    ("parts/cyl16.stl", "part", 30.0, 32),
+    ("parts/cyl32.stl", "part", 30.0, 64),
+    ("parts/notch.stl", "part", 30.0, 108),
+    ("parts/notch_fine.stl", "part", 30.0, 126),
+    ("parts/plate.stl", "part", 30.0, 24),
+    ("assets/AnimatedMorphCube.gltf", "part", 30.0, 12),
+    ("assets/BoxDraco.gltf", "part", 30.0, 12),
+    ("assets/BoxInterleaved.glb", "part", 30.0, 12),
+    ("assets/BoxMeshopt.glb", "part", 30.0, 12),
+    ("assets/BoxTextured.glb", "part", 30.0, 12),
+    ("assets/BoxVertexColors.glb", "part", 30.0, 12),
+    ("assets/DracoSparseMesh.gltf", "part", 55.0, 20),
+    ("assets/MorphStressTest.gltf", "part", 30.0, 12),
+    ("assets/ShapeCollection.glb", "part", 55.0, 108),
+    ("assets/TwoCubes.glb", "part", 30.0, 24),
+    ("assets/cubevc.glb", "part", 30.0, 24),
+    ("assets/fuzz.glb", "part", 30.0, 12),
+    ("assets/nested.glb", "part", 30.0, 36),
+    ("assets/groups.obj", "part", 30.0, 52),
+    ("assets/BoxTextured.ply", "part", 30.0, 12),
+    ("assets/cube_blender_uv.ply", "cage", 30.0, 12),
+    ("assets/cube_blender_uv_meshlab.ply", "part", 30.0, 12),
+    ("assets/featuretype.3MF", "part", 30.0, 1_106),
+    ("assets/pyramids.3mf", "part", 30.0, 1_721),
+];
+
+/// Files where no edges stand out: shapes that are smooth all over, or flat.
+const SMOOTH: &[&str] = &[
+    "beetle.obj",
+    "bob_cage.obj",
+    "bunny_3674.obj",
+    "cup_standin.obj",
+    "cusp_standin.obj",
+    "fish_cage.obj",
+    "loop_pole64.obj",
+    "monsterfrog.obj",
+    "plane_holes.obj",
+    "radish_standin.obj",
+    "skull_low.obj",
+    "sphere_360.obj",
+    "teapot.obj",
+    "teddy.obj",
+    "boot_684.off",
+    "bunny_1k.off",
+    "mannequin.off",
+    "mannequin_142.off",
+    "gcanyon_530k.ply",
+    "goathead_be.ply",
+    "sphere_320.ply",
+    "duck.glb",
+    "defects/deg_faces.obj",
+    "defects/extra_vertex.obj",
+    "defects/fan3.obj",
+    "defects/mannequin_flipped.off",
+    "defects/moebius.obj",
+    "defects/spider_ascii.stl",
+    "defects/triple_vierbein.obj",
+    "assets/FeatureIdAttribute.gltf",
+    "assets/MultipleFeatureIdsAndProperties.gltf",
+    "assets/TextureTransformTest.gltf",
+    "assets/monkey.glb",
+    "assets/pirate.glb",
+    "assets/quad_skin.glb",
+    "assets/simple_skin.gltf",
+    "assets/texcoord_crash.gltf",
+    "assets/capsule.obj",
+    "assets/fuze.obj",
+    "assets/ico4uv.obj",
+];
+
+/// Coarse cages, sharp everywhere.
+const CAGES: &[&str] = &["loop_icos_semisharp.obj", "defects/hourglass_ico.obj"];
+
+/// The confusion table: what is to be a part by what it is, and what is found.
+#[test]
+fn parts_and_nothing_else_look_like_parts() {
+    let Some(models) = models() else { return };
+    let sharp = SHARP.iter().map(|&(name, look, angle, edges)| (name, look, Some(angle), edges));
+    let smooth = SMOOTH.iter().map(|&name| (name, "smooth", None, 0));
+    let cages = CAGES.iter().map(|&name| (name, "cage", None, 0));
+    let known: Vec<_> = sharp.chain(smooth).chain(cages).collect();
+    let unknown = files(&models).into_iter().find(|name| {
+        let is_readable =
+            !EXPECTED.iter().any(|(own, expected)| own == name && matches!(expected, Unreadable(_)));
+        is_readable && !known.iter().any(|(own, ..)| own == name)
+    });
+    assert_eq!(unknown, None);
+    for (name, look, angle, edges) in known {
+        let found = run("info {} --json", &[&models.join(name)]).expect(0).json();
+        let found = &found["mesh"]["dihedrals"];
+        let told = (
+            found["look"].as_str(),
+            found["suggested_crease_angle_degrees"].as_f64(),
+            found["sharp_edges"].as_u64(),
+        );
+        assert_eq!(told, (Some(look), angle, Some(edges)), "{name}");
+    }
+}

@@ -98,6 +98,17 @@ fn what_has_moved_is_told_and_what_would_keep_it() {
     // A sheet has no volume, and a fine mesh keeps its own.
     assert_eq!(hints("builtin:sheet --no-input-distance"), 0);
     assert_eq!(hints("builtin:bumpy --no-input-distance"), 0);
+    // What lies in a plane can lose its outline alone.
+    let flat = run("refine {} -o {} --interpolate", &[&square, &output]).expect(0);
+    let flat = flat.saying("moved by").saying("(--boundary fixed would keep the outline)");
+    assert!(!flat.stderr.contains("--crease-angle"), "{}", flat.stderr);
+    let plain = run("refine {} -o {}", &[&square, &output]).expect(0).stderr;
+    assert!(plain.contains("--boundary fixed") && !plain.contains("--interpolate would"), "{plain}");
+    let folded =
+        "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 2 2 0\nv 3 2 0\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 2 1 5\nf 3 2 5\nf 1 3 5\n";
+    let folded = file(&folder, "folded.obj", folded);
+    let said = run("refine {} -o {} --interpolate --tolerance 2%", &[&folded, &output]).expect(0).stderr;
+    assert!(!said.contains("--crease-angle"), "{said}");
     // With a unit.
     run("refine builtin:cube -o {} --unit mm", &[&output]).expect(0).saying(" mm²").saying(" mm³");
 }
@@ -110,12 +121,12 @@ fn area_volume_and_sharp_edges_are_examined() {
     // The diagonals of the squares, and the edges.
     let mut histogram = [0; 18];
     (histogram[0], histogram[9]) = (6, 12);
-    let dihedrals =
-        json!({"histogram": histogram, "suggested_crease_angle_degrees": 30.0, "sharp_edges": 12});
+    let dihedrals = json!({"histogram": histogram, "suggested_crease_angle_degrees": 30.0, "sharp_edges": 12, "look": "cage"});
     assert_eq!(cube["dihedrals"], dihedrals);
     for smooth in ["sphere", "torus", "bunny", "teddy", "bumpy"] {
         let found = mesh(&format!("builtin:{smooth}"));
         assert_eq!(found["dihedrals"]["suggested_crease_angle_degrees"], Value::Null, "{smooth}: {found}");
+        assert_eq!(found["dihedrals"]["look"], "smooth");
     }
     assert_eq!(mesh("builtin:sheet")["volume"], Value::Null);
     let text = run("info builtin:cube", &[]).expect(0).stdout;

@@ -53,7 +53,9 @@ pub(super) struct ControlPoints<'m> {
     /// Where some vertices keep their place, the rows of all.
     rows: Option<Sparse>,
     matrix: Sparse,
-    /// First copies whose rows are for an edge beside them that is shorter than it is.
+    /// First copies that keep their place, wherever their limit is.
+    kept: HashSet<u32>,
+    /// These, and first copies whose rows are for an edge beside them that is shorter than it is.
     passed_by: HashSet<u32>,
     /// First copies that keep their place though their limit is elsewhere in its plane, with the unit normal of that.
     planes: HashMap<u32, DVec3>,
@@ -62,20 +64,29 @@ pub(super) struct ControlPoints<'m> {
 }
 
 impl<'m> ControlPoints<'m> {
-    pub(super) fn new(mesh: &'m Mesh, rows: LimitRows, poll: &mut Poll<'_>) -> Result<Self, Cancelled> {
+    pub(super) fn new(
+        mesh: &'m Mesh,
+        rows: LimitRows,
+        kept: &[VertexId],
+        poll: &mut Poll<'_>,
+    ) -> Result<Self, Cancelled> {
         let mut first_copy: Vec<u32> = (0..mesh.vertex_count() as u32).collect();
         for group in mesh.junctions().vertices.iter() {
             let first = group.iter().copied().min().unwrap_or(0);
             group.iter().for_each(|&copy| first_copy[copy as usize] = first);
         }
-        let rows = of_first_copies(rows, &first_copy);
+        let kept: HashSet<u32> = kept.iter().map(|v| first_copy[v.index()]).collect();
+        let mut rows = of_first_copies(rows, &first_copy);
+        if !kept.is_empty() {
+            rows = keeping(&rows, |v| kept.contains(&v));
+        }
         let sharpness = Sharpness::of(mesh);
         let planes = kept_in_planes(&rows, mesh, &sharpness, poll)?;
         let unit = unit(mesh);
         let points = mesh.positions().iter().map(|&p| vector(p) * unit).collect();
         let (matrix, passed_by) = (Sparse::empty(), HashSet::new());
         let mut found =
-            Self { mesh, sharpness, first_copy, rows: None, matrix, passed_by, planes, points, unit };
+            Self { mesh, sharpness, first_copy, rows: None, matrix, kept, passed_by, planes, points, unit };
         found.set(rows, poll)?;
         Ok(found)
     }
@@ -84,9 +95,10 @@ impl<'m> ControlPoints<'m> {
     fn set(&mut self, rows: Sparse, poll: &mut Poll<'_>) -> Result<(), Cancelled> {
         (self.matrix, self.rows) = match self.planes.is_empty() {
             true => (rows, None),
-            false => (keeping(&rows, &self.planes), Some(rows)),
+            false => (keeping(&rows, |v| self.planes.contains_key(&v)), Some(rows)),
         };
         self.passed_by = even(&mut self.matrix, self.mesh, &self.sharpness, poll)?;
+        self.passed_by.extend(&self.kept);
         Ok(())
     }
 
@@ -254,10 +266,10 @@ fn of_first_copies(rows: LimitRows, first_copy: &[u32]) -> Sparse {
 }
 
 /// The same rows, but for vertices that keep their place.
-fn keeping(rows: &Sparse, planes: &HashMap<u32, DVec3>) -> Sparse {
+fn keeping(rows: &Sparse, is_kept: impl Fn(u32) -> bool) -> Sparse {
     let mut matrix = Sparse::empty();
     for v in 0..rows.rows() as u32 {
-        match planes.contains_key(&v) {
+        match is_kept(v) {
             true => matrix.push([(v, 1.0)]),
             false => matrix.push(rows.row(v as usize)),
         }

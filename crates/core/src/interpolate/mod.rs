@@ -147,7 +147,8 @@ pub struct Interpolated {
     /// all of that: what rounding leaves, unless limits may leave their vertices or the answer is one of least squares.
     pub residual: f64,
     /// Vertices on creases and boundaries beside edges that are much longer than those around: the curve does not pass through them, but by
-    /// them, by less than it turns there; through them it would leave the mesh and come back.
+    /// them, by less than it turns there; through them it would leave the mesh and come back. And those that keep their place so that the
+    /// surface [does not fold](crate::part::interpolate_unfolded).
     pub passed_by: Vec<VertexId>,
     /// The greatest distance of a control point from its vertex: the more, the likelier the surface undulates in between.
     pub displacement: f64,
@@ -183,6 +184,17 @@ pub fn interpolate_observed(
     options: &InterpolateOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Interpolated, InterpolateError> {
+    interpolate_but(mesh, scheme, options, &[], observer)
+}
+
+/// [`interpolate_observed`], but for vertices that are `kept` for control points as they are; the surface passes by them.
+pub(crate) fn interpolate_but(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    options: &InterpolateOptions,
+    kept: &[VertexId],
+    observer: &mut Observer<'_>,
+) -> Result<Interpolated, InterpolateError> {
     let within = options.within;
     if !(within >= 0.0 && within.is_finite()) {
         let (name, expected) = ("the distance of limits from vertices", "a length of at least 0");
@@ -193,14 +205,14 @@ pub fn interpolate_observed(
     watch.stage(Stage::Interpolating, Some(mesh.vertex_count()))?;
     let table = LimitTable::new(scheme);
     let rows = table.position_rows(mesh, &mut |_| watch.poll())??;
-    let mut points = ControlPoints::new(mesh, rows, &mut |_| watch.poll())?;
+    let mut points = ControlPoints::new(mesh, rows, kept, &mut |_| watch.poll())?;
     if points.is_solved() {
         return Ok(Interpolated {
             mesh: mesh.clone(),
             method: InterpolationMethod::Unchanged,
             iterations: 0,
             residual: 0.0,
-            passed_by: Vec::new(),
+            passed_by: points.passed_by(),
             displacement: 0.0,
             most_displaced: VertexId(0),
             fairness: None,

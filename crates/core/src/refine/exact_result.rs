@@ -145,6 +145,11 @@ impl Exact {
     /// Triangles that are turned over: their normal is more than 90° from the limit normal at one of their corners, on their
     /// own side of sharp edges. There the surface folds, or is not regular.
     pub fn inverted_triangles(&self) -> usize {
+        self.turned_over().len()
+    }
+
+    /// The triangles that are turned over, ascending.
+    pub(crate) fn turned_over(&self) -> Vec<u32> {
         let is_inverted = |face: usize| {
             let normal = self.mesh.scaled_face_normal(face);
             (0..3).any(|corner| {
@@ -152,9 +157,10 @@ impl Exact {
                 normal.dot(vector(self.corner_normal(h))) < 0.0
             })
         };
-        let pieces =
-            parallel::pieces(self.mesh.face_count(), |faces| faces.filter(|&f| is_inverted(f)).count());
-        pieces.iter().sum()
+        let pieces = parallel::pieces(self.mesh.face_count(), |faces| {
+            faces.filter(|&f| is_inverted(f)).map(|f| f as u32).collect::<Vec<_>>()
+        });
+        pieces.concat()
     }
 }
 

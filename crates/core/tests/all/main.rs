@@ -18,6 +18,7 @@ mod levels_of_detail;
 mod limit_normals;
 mod limit_surface;
 mod measures;
+mod parts;
 mod pixels;
 mod progress;
 mod proximity;

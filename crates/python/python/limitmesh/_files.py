@@ -61,7 +61,8 @@ def refine_file(
     tolerance: Length | None = None,
     triangles: int | None = None,
     angle: float | None = None,
-    interpolate: bool | Length = False,
+    interpolate: bool | Length | None = None,
+    creases: str | None = None,
     crease_angle: float | None = None,
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
@@ -101,6 +102,9 @@ def refine_file(
         In PLY files: a vertex for each side of sharp edges, and where vertices and triangles came from.
     ascii
         PLY and STL as text.
+    creases
+        "auto" keeps the edges of parts sharp and leads their surface through the vertices, as the program does by default, where the
+        file does not say itself which edges are sharp.
     tolerance, triangles, angle, interpolate, crease_angle, boundary, concave_corners, scheme, method, levels, optimize, balance, \
 weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         As for `refine`.
@@ -125,8 +129,12 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
     >>> report["stop"], report["error"]["certified"]
     ('met', True)
     """
+    _options.one_of(creases, "creases", (None, "auto"))
+    if creases == "auto" and interpolate is False:
+        raise OptionError("interpolate=False does not go with creases='auto' for files; crease_angle keeps edges sharp alone")
     _options.control_of(
         interpolate=interpolate,
+        auto_creases=creases == "auto",
         crease_angle=crease_angle,
         boundary=boundary,
         concave_corners=concave_corners,
@@ -146,7 +154,7 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         arguments.append(f"--interpolate-within={interpolate}")
     for name, value in (
         ("tolerance", tolerance),
-        ("crease-angle", crease_angle),
+        ("crease-angle", creases or ("none" if crease_angle is None else crease_angle)),
         ("angle", angle),
         ("concave-corners", concave_corners),
         ("triangles", goals["triangles"]),

@@ -117,7 +117,7 @@ def replay(
     )
     # Where corners are concave depends on positions, which change.
     native, control = _inputs.surface_of(
-        vertices, faces, creases, corners, channels, crease_angle=crease_angle, boundary=boundary,
+        vertices, faces, creases, corners, channels, interpolate=False, crease_angle=crease_angle, boundary=boundary,
         concave_corners="as-tagged", scheme=scheme, weld=weld, repair=repair,
     )
     dtype = _options.index_dtype_of(index_dtype)
@@ -239,7 +239,7 @@ def refine_frames(
     rows = _frames_of(frames)
     # Where corners are concave depends on positions, which change.
     native, control = _inputs.surface_of(
-        rows[0], faces, creases, corners, channels, crease_angle=crease_angle, boundary=boundary,
+        rows[0], faces, creases, corners, channels, interpolate=False, crease_angle=crease_angle, boundary=boundary,
         concave_corners="as-tagged", scheme=scheme, weld=weld, repair=repair,
     )
     dtype = _options.index_dtype_of(index_dtype)

@@ -73,7 +73,7 @@ class Front:
         vertices: npt.ArrayLike | MeshLike,
         faces: Any = None,
         *,
-        interpolate: bool | Length = False,
+        interpolate: bool | Length | None = None,
         crease_angle: float | None = None,
         creases: Any = None,
         corners: Any = None,

@@ -49,7 +49,9 @@ def mesh_of(
 ) -> Mesh:
     """A mesh with the tags and channels that are given beside it, which replace its own."""
     mesh = as_mesh(vertices, faces).with_channels(channels)
-    if creases is not None:
+    if isinstance(creases, str):
+        _options.one_of(creases, "creases", ("auto",))
+    elif creases is not None:
         mesh = replace(mesh, creases=creases)
     if corners is not None:
         mesh = replace(mesh, corners=corners)
@@ -65,5 +67,12 @@ def surface_of(
     **options: Unpack[_options.ControlOptions],
 ) -> tuple[MeshIn, dict[str, Any]]:
     """A mesh, and how a control mesh comes about from it, whose limit surface is meant."""
-    control = _options.control_of(**options)
-    return mesh_of(vertices, faces, creases, corners, channels)._native(), control
+    mesh = mesh_of(vertices, faces, creases, corners, channels)
+    control = _options.control_of(auto_creases=are_found(mesh, creases), **options)
+    return mesh._native(), control
+
+
+def are_found(mesh: Mesh, creases: Any) -> bool:
+    """Whether sharp edges are those that look so: that is asked for, and no edges or vertices are tagged."""
+    is_tagged = any(tags is not None and len(tags) > 0 for tags in (mesh.creases, mesh.corners))
+    return isinstance(creases, str) and not is_tagged

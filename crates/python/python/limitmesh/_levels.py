@@ -26,7 +26,7 @@ def levels_of_detail(
     tolerance: Length | None = None,
     ratio: float | None = None,
     morph: bool = False,
-    interpolate: bool | Length = False,
+    interpolate: bool | Length | None = None,
     crease_angle: float | None = None,
     creases: Any = None,
     corners: Any = None,

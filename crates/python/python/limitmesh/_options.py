@@ -238,7 +238,8 @@ def callback_of(progress: ProgressCallback | None) -> Told:
 class ControlOptions(TypedDict, total=False):
     """What `control_of` takes, for those who pass it on."""
 
-    interpolate: bool | Length
+    interpolate: bool | Length | None
+    auto_creases: bool
     crease_angle: float | None
     boundary: str
     concave_corners: str | None
@@ -249,7 +250,8 @@ class ControlOptions(TypedDict, total=False):
 
 def control_of(
     *,
-    interpolate: bool | Length = False,
+    interpolate: bool | Length | None = None,
+    auto_creases: bool = False,
     crease_angle: float | None = None,
     boundary: str = "smooth",
     concave_corners: str | None = None,
@@ -265,8 +267,10 @@ def control_of(
     ):
         one_of(value, name, expected)
     if crease_angle is not None:
+        if auto_creases:
+            raise OptionError("creases='auto' finds an angle; crease_angle does not go with it")
         crease_angle = angle_of(crease_angle, "crease_angle")
-    usual = "divided" if crease_angle is not None or boundary != "smooth" else "as-tagged"
+    usual = "divided" if auto_creases or crease_angle is not None or boundary != "smooth" else "as-tagged"
     within: tuple[float, bool] | None
     if interpolate is False or interpolate is None:
         within = None
@@ -279,6 +283,8 @@ def control_of(
         "repair": bool(repair),
         "boundary": boundary,
         "crease_angle": crease_angle,
+        "auto_creases": auto_creases,
+        "leads_parts": auto_creases and interpolate is None,
         "divides_concave_corners": (concave_corners or usual) == "divided",
         "interpolate": within,
         "scheme": scheme,
@@ -340,7 +346,8 @@ def index_dtype_of(index_dtype: npt.DTypeLike) -> np.dtype[Any]:
 
 def of_refinement(
     *,
-    interpolate: bool | Length,
+    interpolate: bool | Length | None,
+    auto_creases: bool,
     crease_angle: float | None,
     boundary: str,
     concave_corners: str | None,
@@ -355,7 +362,9 @@ def of_refinement(
     if sqrt3 and interpolate not in (False, None):
         raise OptionError("interpolate does not go with scheme='sqrt3'; it is for the schemes that divide triangles in four")
     control = control_of(
-        interpolate=interpolate,
+        # It has no control points that lead the surface of a part.
+        interpolate=False if sqrt3 else interpolate,
+        auto_creases=auto_creases,
         crease_angle=crease_angle,
         boundary=boundary,
         concave_corners=concave_corners,

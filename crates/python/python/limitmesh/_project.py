@@ -44,7 +44,7 @@ def project(
     faces: Any = None,
     *,
     tolerance: Length = "0.0001%",
-    interpolate: bool | Length = False,
+    interpolate: bool | Length | None = None,
     crease_angle: float | None = None,
     creases: Any = None,
     corners: Any = None,

@@ -52,7 +52,7 @@ def intersect(
     first: bool = False,
     between: tuple[float, float] = (0.0, np.inf),
     tolerance: Length | None = None,
-    interpolate: bool | Length = False,
+    interpolate: bool | Length | None = None,
     crease_angle: float | None = None,
     creases: Any = None,
     corners: Any = None,

@@ -26,7 +26,7 @@ def refine(
     angle: float | None = None,
     pixels: float | None = None,
     cameras: Camera | Iterable[Camera] | None = None,
-    interpolate: bool | Length = False,
+    interpolate: bool | Length | None = None,
     crease_angle: float | None = None,
     creases: Any = None,
     corners: Any = None,
@@ -75,16 +75,19 @@ def refine(
         Greatest distance as the cameras see it; 1 where there are cameras and no number.
     interpolate
         True lets the limit surface pass through every vertex; a length, or a part of the diagonal, that near to them, and as fair
-        as it can be.
+        as it can be. Default: False, but for parts that ``creases="auto"`` finds.
     crease_angle
         Edges stay sharp where faces meet at more than this angle between their normals, in degrees.
     creases, corners
-        Edges that stay sharp: pairs of vertices, or triples with a sharpness in levels; vertices that stay, likewise.
+        Edges that stay sharp: pairs of vertices, or triples with a sharpness in levels; vertices that stay, likewise. "auto" in place
+        of edges does what the program does by default: where nothing is tagged and the mesh looks like a part, its sharp edges stay
+        sharp, and the surface is led through the vertices where that does not fold it, unless ``interpolate`` says otherwise. A
+        mesh of quadrilaterals is a cage and becomes round. ``result.crease_angle`` says what was found.
     boundary
         "smooth"; "corners" keeps vertices in one face only; "fixed" keeps open boundaries as they are.
     concave_corners
         Corners of 180° and more between sharp edges: "divided", so that flat faces stay flat, or "as-tagged". Default: divided
-        with ``crease_angle`` and with boundaries that are not smooth.
+        with ``crease_angle``, with ``creases="auto"`` and with boundaries that are not smooth.
     scheme
         "loop", "loop-warren", "butterfly" or "sqrt3"; distances are proven for the first two, and estimated for the others. The last
         divides triangles by their centres, to tolerance, angle and triangles, or uniformly; it carries no channels.
@@ -146,6 +149,7 @@ def refine(
     control, goals = _options.remembered(
         _options.of_refinement,
         interpolate=interpolate,
+        auto_creases=_inputs.are_found(mesh, creases),
         crease_angle=crease_angle,
         boundary=boundary,
         concave_corners=concave_corners,
@@ -205,7 +209,7 @@ def estimate(
     angle: float | None = None,
     pixels: float | None = None,
     cameras: Camera | Iterable[Camera] | None = None,
-    interpolate: bool | Length = False,
+    interpolate: bool | Length | None = None,
     crease_angle: float | None = None,
     creases: Any = None,
     corners: Any = None,

@@ -127,8 +127,10 @@ class Refined:
         Flat regions that the scheme folds over, in whose place stands what their rim encloses.
     inverted
         Triangles that are turned over against the limit surface: it folds there.
+    crease_angle
+        The angle beyond which edges are sharp, in degrees: as asked for, or as ``creases="auto"`` found it; None where there is none.
     interpolation
-        How control points were found for a surface through the vertices, if that was asked for.
+        How control points were found for a surface through the vertices, if that was asked for, or found to suit a part.
     seconds
         Time that the library took, without the binding.
 
@@ -154,6 +156,7 @@ class Refined:
     open_cones: int
     unfolded: int
     inverted: int | None
+    crease_angle: float | None
     interpolation: Mapping[str, Any] | None
     seconds: float
     _sides: tuple[AnyIntegers, Floats]

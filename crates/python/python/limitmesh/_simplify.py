@@ -93,7 +93,7 @@ def simplify(
     dtype = _options.index_dtype_of(index_dtype)
     native, control = _inputs.surface_of(
         vertices, faces, creases, corners,
-        crease_angle=crease_angle, boundary=boundary, concave_corners="as-tagged", weld=weld, repair=repair,
+        interpolate=False, crease_angle=crease_angle, boundary=boundary, concave_corners="as-tagged", weld=weld, repair=repair,
     )
     native["channels"] = []
     told = _limitmesh.simplify(
@@ -175,7 +175,7 @@ def repair(
     ((2, 3), [0, 0], ('1 vertex in no face: left out (vertex 4)',))
     """
     dtype = _options.index_dtype_of(index_dtype)
-    native, control = _inputs.surface_of(vertices, faces, creases, corners, channels, weld=weld)
+    native, control = _inputs.surface_of(vertices, faces, creases, corners, channels, interpolate=False, concave_corners="as-tagged", weld=weld)
     told = _limitmesh.repair(native, control, _options.threads_of(threads))
     return Repaired(
         told["vertices"],

@@ -194,6 +194,7 @@ impl Refined {
         let dict = PyDict::new(py);
         dict.set_item(intern!(py, "seconds"), self.seconds)?;
         dict.set_item(intern!(py, "diagnosis"), tell::diagnosis(py, &self.tables.diagnosis)?)?;
+        dict.set_item(intern!(py, "crease_angle"), self.tables.crease_angle)?;
         let interpolated = self.tables.interpolated.map(|told| told.told(py)).transpose()?;
         dict.set_item(intern!(py, "interpolation"), interpolated)?;
         dict.set_item(intern!(py, "vertices"), tell::rows(py, self.positions)?)?;

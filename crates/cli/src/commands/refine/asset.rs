@@ -21,7 +21,7 @@ use super::goals::Goals;
 use super::put_back::{MOST_WIDE, PutBack, channel, moved_positions};
 use super::selection::Selection;
 use super::several::{self, Progressed};
-use super::{estimate, split_normals};
+use super::{estimate, looked_at, split_normals};
 use crate::arguments::{
     ConcaveCorners, CreasesFrom, Featured, MorphTolerance, RefineArguments, RelativeTo, Unit, Way,
 };
@@ -176,14 +176,14 @@ impl Job {
             progress.note(format!("{name}: {near}"));
         }
         let (built, diagnosis, trace) = built;
-        let built = self.sharpened(&name, &own, (built, &trace), progress)?;
+        let (built, arguments) = self.sharpened(&name, &own, (built, &trace), progress)?;
         own.soup.channels = own.attributes.iter().map(channel).collect();
         arguments.channels.apply(&mut own.soup.channels)?;
         let on_mesh = |channel: &Channel| channel.on_mesh(&own.soup, &built, &trace);
         let narrow = own.soup.channels.iter().filter(|channel| channel.arity <= MOST_WIDE);
         let channels = narrow.map(on_mesh).collect::<Result<_, _>>()?;
         let vertices = trace.vertices(&own.soup);
-        let arguments = self.of_mesh(&own, done);
+        let arguments = self.of_mesh(&arguments, &own, done);
         let shown = Shown::of(asset.largest(mesh), stretch);
         let control = Control::new((built, diagnosis, trace.faces), shown, diagonal, &arguments, progress)?;
         let mut channels = Channels::of_asset(channels, &arguments);
@@ -225,22 +225,27 @@ impl Job {
         Ok(())
     }
 
-    /// The mesh with the edges sharp that the document's normals say are, if that is asked for; if nothing is, a note counts them.
+    /// The mesh with the edges sharp that the document's normals say are, if that is asked for; if nothing is, a note counts them. And the
+    /// arguments with what is sharp by its looks.
     fn sharpened(
         &self,
         name: &str,
         own: &MeshSoup,
         (mesh, trace): (Mesh, &Trace),
         progress: &Progress,
-    ) -> anyhow::Result<Mesh> {
-        let Some(normals) = &own.normals else { return Ok(mesh) };
-        let normals = normals.on_mesh(&own.soup, &mesh, trace)?;
-        let hints = Hints { normals: Some(&normals), channels: &[] };
-        if let Some(note) = split_normals((&hints, &mesh), &self.arguments) {
+    ) -> anyhow::Result<(Mesh, RefineArguments)> {
+        let normals =
+            own.normals.as_ref().map(|normals| normals.on_mesh(&own.soup, &mesh, trace)).transpose()?;
+        let hints = Hints { is_tagged: false, normals: normals.as_ref(), channels: &[] };
+        let (arguments, note) = looked_at(&self.arguments, (&mesh, &trace.faces), &hints);
+        for note in note.into_iter().chain(split_normals((&hints, &mesh), &arguments)) {
             progress.note(format!("{name}: {note}"));
         }
+        if normals.is_none() {
+            return Ok((mesh, arguments));
+        }
         let edges = hints.edges(&mesh, self.arguments.features.creases_from, name)?;
-        Ok(mesh.with_creases(&edges))
+        Ok((mesh.with_creases(&edges), arguments))
     }
 
     /// What was repaired, and what stays apart.
@@ -279,8 +284,8 @@ impl Job {
     }
 
     /// The arguments for a mesh: its share of the cap, and what keeps the borders of several primitives.
-    fn of_mesh(&self, own: &MeshSoup, done: &Progressed) -> RefineArguments {
-        let mut arguments = done.share(&self.arguments);
+    fn of_mesh(&self, arguments: &RefineArguments, own: &MeshSoup, done: &Progressed) -> RefineArguments {
+        let mut arguments = done.share(arguments);
         // A flat region has triangles across borders, and across the faces that values belong to.
         let is_kept = |own: &CornerAttribute| !self.arguments.channels.drops(&own.name);
         let has_values = own.attributes.iter().any(is_kept) || !own.influences.is_empty();

@@ -65,7 +65,7 @@ impl Control {
         diagnosis.concave_corners = featured.concave.corners.clone();
         let Featured { mesh, concave, along_needles } = featured;
         let diagonal = diagonal.unwrap_or_else(|| mesh.diagonal());
-        let (mesh, interpolation) = match arguments.interpolation.given().is_some() {
+        let (mesh, interpolation) = match arguments.interpolation.is_led() {
             true => {
                 let asked = (arguments.interpolation, arguments.build.unit);
                 interpolation::apply(mesh, asked, arguments.scheme()?, progress)?

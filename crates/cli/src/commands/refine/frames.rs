@@ -17,7 +17,7 @@ use super::carried::Trail;
 use super::control::Control;
 use super::exact;
 use super::goals::Goals;
-use super::{Refined, check, jobs, write};
+use super::{Refined, check, jobs, looked_at, write};
 use crate::arguments::{RefineArguments, Way};
 use crate::bulk::Shown;
 use crate::failure::{Outcome, usage};
@@ -43,10 +43,12 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     jobs.iter().try_for_each(check::files)?;
     check_report(arguments, &jobs)?;
     let (first, frames) = read(&jobs, formats[0], progress)?;
+    let (decided, note) = looked_at(&jobs[0], (&first.mesh, &first.trace.faces), &first.hints());
+    note.into_iter().for_each(|note| progress.note(note));
     let Input { mesh, diagnosis, trace, name, channels, material_libraries, texture_files, .. } = first;
     let files = [material_libraries, texture_files];
     let channels = Channels::of_input(channels, files, &Destination::of(&jobs[0], formats[0]), progress);
-    let arguments_of_one = RefineArguments { exact: without_input_distance(arguments), ..jobs[0].clone() };
+    let arguments_of_one = RefineArguments { exact: without_input_distance(arguments), ..decided };
     let count = mesh.vertex_count();
     let control =
         Control::new((mesh, diagnosis, trace.faces), Shown::default(), None, &arguments_of_one, progress)?;

@@ -17,20 +17,20 @@ use std::borrow::Cow;
 
 use limitmesh::measure::{Bvh, CertifiedOptions, MeasureError, certified_hausdorff_between_observed};
 use limitmesh::mesh::FaceParts;
+use limitmesh::part::Look;
 use limitmesh::progress::Observer;
 use limitmesh::refine::{Exact, ExactOptions, Origin, exact_observed};
-use limitmesh::{Mesh, Triangles};
+use limitmesh::{FaceId, Mesh, Triangles};
 
 use super::INTERPOLATE;
 use super::control::{Before, BeforeSurface};
 use super::goals::{Goals, unit_in_words};
 use crate::arguments::{MOST_EXACT, RefineArguments};
-use crate::dihedral::Dihedrals;
 use crate::format::{counted, number};
 use crate::pieces::pieces;
 use crate::progress::Progress;
 use crate::report::{ErrorReport, InputDistanceReport};
-use crate::vector::{distance, dot, length, minus};
+use crate::vector::{cross, distance, dot, length, minus};
 
 /// Points whose distance is measured.
 const MEASURED: usize = 4;
@@ -180,11 +180,16 @@ pub(super) fn in_words(
         return Vec::new();
     }
     let mut lines = vec![moved.in_words(&unit_in_words(arguments.build.unit))];
-    let is_tagged = arguments.features.crease_angle.is_some() || !control.tags().creases.is_empty();
-    let dihedrals = (!is_tagged).then(|| Dihedrals::of(control));
-    if let Some(Dihedrals { suggested_crease_angle_degrees: Some(angle), sharp_edges, .. }) = dihedrals {
-        let edges = counted(sharp_edges, "edge that looks", "edges that look");
-        lines.push(format!("(--crease-angle {} would keep {edges} sharp)", number(angle)));
+    if lies_in_a_plane(control) {
+        // All that can move is the outline.
+        let is_open = arguments.features.boundary.is_none() && control.topology().boundary_edge_count() > 0;
+        lines.extend(is_open.then(|| "(--boundary fixed would keep the outline)".to_owned()));
+        return lines;
+    }
+    let is_decided = arguments.features.angle().is_some() || !control.tags().creases.is_empty();
+    if let Some(Look::Part(part)) = (!is_decided).then(|| Look::of(control, &[])) {
+        let edges = counted(part.creases.edges.len(), "edge that looks", "edges that look");
+        lines.push(format!("(--crease-angle {} would keep {edges} sharp)", number(part.degrees)));
     }
     if arguments
         .interpolation
@@ -194,6 +199,17 @@ pub(super) fn in_words(
         lines.push(INTERPOLATE.to_owned());
     }
     lines
+}
+
+/// How far the normals of faces in one plane may differ, as a sine: single precision leaves less.
+const IN_PLANE: f64 = 1e-5;
+
+/// Whether all faces are in one plane, or in parallel ones, whichever side of them is up.
+fn lies_in_a_plane(mesh: &Mesh) -> bool {
+    let normals = || (0..mesh.face_count() as u32).map(|face| mesh.face_normal(FaceId(face)));
+    let largest = normals().max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)));
+    let Some(plane) = largest else { return false };
+    normals().all(|normal| length(cross(normal, plane)) <= IN_PLANE * length(normal) * length(plane))
 }
 
 fn greatest(mesh: Triangles<'_>) -> f64 {

@@ -37,13 +37,14 @@ use limitmesh_render::Style;
 use super::channels::{Channels, Destination};
 use super::normals::Normals;
 use super::{interpolation, picture, shading};
-use crate::arguments::{CreasesFrom, RefineArguments, Unit};
+use crate::arguments::{CreasesFrom, RefineArguments, Unit, Way};
 use crate::bulk::{Bulk, Shown};
 use crate::creases::Hints;
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds, thousands};
 use crate::input::{self, Input};
 use crate::output;
+use crate::parts::{self, Decided};
 use crate::progress::Progress;
 use crate::report::{
     InputReport, MeshReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport,
@@ -112,12 +113,14 @@ fn refine(
     let asked = (Normals::kept(format), &arguments.channels);
     let input = input::load_for(arguments.input(), &arguments.build, asked, progress)?;
     let arguments = &RefineArguments { build: arguments.build.in_unit(input.unit), ..arguments.clone() };
-    if let Some(note) = format.and_then(|format| lost_tags(input.mesh.tags(), format)) {
-        progress.note(note);
-    }
-    if let Some(note) = split_normals((&input.hints(), &input.mesh), arguments) {
-        progress.note(note);
-    }
+    let (decided, note) = looked_at(arguments, (&input.mesh, &input.trace.faces), &input.hints());
+    let arguments = &decided;
+    let notes = [
+        note,
+        format.and_then(|format| lost_tags(input.mesh.tags(), format)),
+        split_normals((&input.hints(), &input.mesh), arguments),
+    ];
+    notes.into_iter().flatten().for_each(|note| progress.note(note));
     let input = input.with_creases(arguments.features.creases_from)?;
     let input_report = InputReport::of(&input, &arguments.channels);
     let files = [input.material_libraries, input.texture_files];
@@ -188,6 +191,22 @@ fn refine(
     Ok(outcome)
 }
 
+/// The arguments with what is sharp on a mesh by its looks, and what is said of that. Looks count for exact refinement, or where that is asked for.
+fn looked_at(
+    arguments: &RefineArguments,
+    (mesh, faces): (&Mesh, &[u32]),
+    hints: &Hints<'_>,
+) -> (RefineArguments, Option<String>) {
+    let features = match arguments.way() {
+        Way::Exact => arguments.features.or_auto(),
+        _ => arguments.features,
+    };
+    let can_be_led = !arguments.way().is_sqrt3() && !arguments.shared_topology;
+    let Decided { features, interpolation, note } =
+        parts::decided((features, arguments.interpolation), (mesh, faces), hints, can_be_led);
+    (RefineArguments { features, interpolation, ..arguments.clone() }, note)
+}
+
 /// Writes a mesh, and says what becomes of normals and of values where vertices have several.
 fn write_told(
     path: &Path,
@@ -254,7 +273,7 @@ fn capped(mesh: &Mesh, stop: ExactStop, arguments: &RefineArguments) -> Outcome 
 
 /// Tells about normals that say that edges are sharp, where nothing says what to do about that.
 fn split_normals((hints, mesh): (&Hints<'_>, &Mesh), arguments: &RefineArguments) -> Option<String> {
-    if arguments.features.crease_angle.is_some() || arguments.features.creases_from != CreasesFrom::None {
+    if arguments.features.angle().is_some() || arguments.features.creases_from != CreasesFrom::None {
         return None;
     }
     let edges = hints.split_edges(mesh);
@@ -345,7 +364,7 @@ impl Refined {
     /// Adds what became of area and volume to what is said, and what would have kept much of the volume that is gone.
     fn tell_size(&mut self, [before, after]: [Bulk; 2], arguments: &RefineArguments) {
         self.achieved.push(change_in_words(before, after, arguments.build.unit));
-        let is_kept = arguments.interpolation.given().is_some() || arguments.way().is_sqrt3();
+        let is_kept = arguments.interpolation.is_led() || arguments.way().is_sqrt3();
         let is_told = self.achieved.iter().any(|line| line == INTERPOLATE);
         if let (Some(before), Some(after), false) = (before.volume, after.volume, is_kept || is_told)
             && after / before < 1.0 - MUCH_VOLUME

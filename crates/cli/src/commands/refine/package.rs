@@ -15,9 +15,10 @@ use super::carried::Carried;
 use super::control::Control;
 use super::goals::Goals;
 use super::several::{self, Progressed};
-use super::{Refined, estimate};
+use super::{Refined, estimate, looked_at};
 use crate::arguments::RefineArguments;
 use crate::bulk::Shown;
+use crate::creases::Hints;
 use crate::failure::{Outcome, usage};
 use crate::format::counted;
 use crate::input;
@@ -108,7 +109,12 @@ impl Job {
             progress.note(format!("{name}: {line}"));
         }
         let Trace { faces, corners, .. } = trace;
-        let mut arguments = done.share(&self.arguments);
+        let hints = Hints { is_tagged: false, normals: None, channels: &[] };
+        let (arguments, note) = looked_at(&self.arguments, (&built, &faces), &hints);
+        if let Some(note) = note {
+            progress.note(format!("{name}: {note}"));
+        }
+        let mut arguments = done.share(&arguments);
         // A flat region has triangles across faces that carry different things.
         arguments.exact.divide_flat |= self.is_traced() && (own.varies_within || !own.is_uniform);
         let shown = Shown::of(package.largest(object), stretch);
