@@ -3,7 +3,7 @@
 use anyhow::{Context, bail};
 use limitmesh::mesh::SplitSurface;
 use limitmesh::refine::limit_reference;
-use limitmesh::{LimitSurface, Mesh, RayCaster};
+use limitmesh::{LimitSurface, RayCaster};
 use limitmesh_render::{Camera, Shading, Style, render_exact_observed};
 
 use super::covering::Cover;
