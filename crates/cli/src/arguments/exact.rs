@@ -23,6 +23,16 @@ pub(crate) struct ExactArguments {
     #[arg(long, value_name = "T", value_parser = values::tolerance, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<Extent>,
 
+    /// The smoothest mesh that is certainly within that distance of the input, either way
+    ///
+    /// For scans and voxels, whose vertices are no more exact than that: steps are smoothed away, and closed parts keep their volume. A
+    /// length in the mesh's unit, with a unit where --unit tells the mesh's, or with % in per cent of the diagonal of its bounding box. Takes the
+    /// place of --tolerance and --interpolate. The exit code is 3 where it cannot be kept, as where faces are large beside it, and with --strict where triangles
+    /// are turned over.
+    #[arg(long, value_name = "T", value_parser = values::tolerance, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["tolerance", "interpolate", "interpolate_within", "no_input_distance"])]
+    pub(crate) within: Option<Extent>,
+
     /// The best mesh with at most so many triangles, the worst places refined first
     ///
     /// With other goals, whichever is reached first ends the refinement. Each mesh of a glTF file and each object of a 3MF file may have so many.

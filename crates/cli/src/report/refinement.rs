@@ -218,6 +218,8 @@ pub(crate) struct ParametersReport {
     pub(crate) creases_from: CreasesFrom,
     /// How near the limit surface is to pass to the input's vertices, in the mesh's unit; null where these are the control points.
     pub(crate) interpolate_within: Option<f64>,
+    /// How near the input the result has to be, either way, in the mesh's unit; null where that was not asked for.
+    pub(crate) within: Option<f64>,
     /// What becomes of corners of 180° and more between sharp edges.
     pub(crate) concave_corners: ConcaveCorners,
     /// Triangles at most.
@@ -248,6 +250,7 @@ impl ParametersReport {
             crease_angle_auto: arguments.features.is_auto(),
             creases_from: arguments.features.creases_from,
             interpolate_within: None,
+            within: None,
             concave_corners: arguments.features.concave_corners(),
             max_triangles: arguments.max_triangles(),
             weld: match weld {
@@ -494,6 +497,16 @@ impl InputDistanceReport {
     pub(crate) fn new(lower: f64, upper: f64, diagonal: f64) -> Self {
         let percent = |length: f64| percent(length, diagonal);
         Self { lower, upper, lower_percent: percent(lower), upper_percent: percent(upper) }
+    }
+
+    /// `within 0.8123 % of the diagonal (0.01234) of the input, certified; at least 0.7901 %`, with a unit after lengths.
+    pub(crate) fn near_in_words(&self, unit: &str) -> String {
+        format!(
+            "within {} % of the diagonal ({}{unit}) of the input, either way, certified; at least {} %",
+            upper_bound(self.upper_percent),
+            upper_bound(self.upper),
+            lower_bound(self.lower_percent)
+        )
     }
 
     /// `moved by 0.7901 % to 0.8123 % of the diagonal (0.01234) from the input, certified`, with a unit after lengths.

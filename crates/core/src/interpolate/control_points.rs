@@ -8,7 +8,7 @@
 //! Copies of a vertex on sheets that were cut apart are one unknown, that of the first of them.
 
 use super::blocks::Blocks;
-use super::fairness::{self, Energies, Energy};
+use super::fairness::{self, Bounds, Energies, Energy, Found};
 use super::planes::kept_in_planes;
 use super::spacing::even;
 use super::sparse::{Sparse, greatest};
@@ -37,11 +37,41 @@ const SINGLES: usize = 1 << 12;
 pub(super) struct Moved {
     /// By vertex.
     pub(super) by: Vec<DVec3>,
+    /// By vertex, how far its limit was to be from it, or was chosen to be.
+    pub(super) away: Vec<DVec3>,
     pub(super) solver: Solver,
     /// Steps of conjugate gradients for the block that took most.
     pub(super) steps: usize,
     /// Where limits may leave their vertices.
     pub(super) energies: Option<Energies>,
+}
+
+/// Where the limits of vertices are to be.
+pub(super) enum Limits<'a> {
+    /// So far from them, by vertex.
+    At(&'a [DVec3]),
+    /// Within a reach of each, and as fair as they can be.
+    Near(&'a Near<'a>),
+}
+
+/// How far limits may be from their vertices.
+pub(super) struct Near<'a> {
+    /// By vertex.
+    pub(super) reach: &'a [f64],
+    /// How much being near counts beside being fair.
+    pub(super) nearness: f64,
+    /// How much less fair than possible they may be, beside limits at the vertices.
+    pub(super) nothing: f64,
+    /// By vertex, how far limits are from them to begin with.
+    pub(super) from: &'a [DVec3],
+}
+
+/// How blocks are solved.
+enum Way<'a> {
+    /// For limits so far from their vertices.
+    At(&'a [DVec3]),
+    /// For the fairest.
+    Near { near: &'a Near<'a>, reaches: Vec<f64>, energies: BlockEnergies },
 }
 
 /// The system of a mesh, its lengths multiplied by `unit`.
@@ -150,22 +180,36 @@ impl<'m> ControlPoints<'m> {
         (0..self.matrix.rows()).all(|v| self.stays(v))
     }
 
+    /// Whether a vertex and all its copies keep their place.
+    pub(super) fn is_fixed(&self, v: usize) -> bool {
+        self.stays(self.first_copy[v] as usize)
+    }
+
     /// Whether a limit position is the vertex itself, wherever others are. Further copies have no row.
     fn stays(&self, v: usize) -> bool {
         self.first_copy[v] != v as u32 || self.matrix.row(v).eq([(v as u32, 1.0)])
     }
 
-    /// Solves for limits within a distance of their vertices: at them, or as fair as they can be.
-    pub(super) fn solve(&self, within: f64, watch: &mut Watch<'_>) -> Result<Moved, Cancelled> {
+    /// Solves for the control points of given limits, or of the fairest near the vertices.
+    pub(super) fn solve(&self, limits: &Limits<'_>, watch: &mut Watch<'_>) -> Result<Moved, Cancelled> {
         let n = self.points.len();
         let poll: &mut Poll<'_> = &mut |_| watch.poll();
-        let away = parallel::map_polled(n, poll, |v| self.to_vertex(v))?;
-        let farthest = greatest(n, poll, |v| away[v].abs().max_element())?;
+        let to_vertices = parallel::map_polled(n, poll, |v| self.to_vertex(v))?;
+        let farthest = greatest(n, poll, |v| to_vertices[v].abs().max_element())?;
         let goal = (ACCURACY * farthest).max(ROUNDING);
         let blocks = Blocks::of(&self.matrix);
-        let energy = (within > 0.0).then(|| BlockEnergies::new(self.mesh, &self.first_copy, &blocks));
-        let energies = energy.is_some().then(Energies::default);
-        let mut moved = Moved { by: vec![DVec3::ZERO; n], solver: Solver::Symmetric, steps: 0, energies };
+        let way = match *limits {
+            Limits::At(away) => Way::At(away),
+            Limits::Near(near) => Way::Near {
+                near,
+                reaches: self.reaches(near),
+                energies: BlockEnergies::new(self.mesh, &self.first_copy, &blocks),
+            },
+        };
+        let energies = matches!(way, Way::Near { .. }).then(Energies::default);
+        let nowhere = vec![DVec3::ZERO; n];
+        let mut moved =
+            Moved { by: nowhere.clone(), away: nowhere, solver: Solver::Symmetric, steps: 0, energies };
         let mut done = 0;
         for (number, block) in blocks.iter().enumerate() {
             done += block.len();
@@ -177,28 +221,60 @@ impl<'m> ControlPoints<'m> {
                 }
                 continue;
             }
-            let (system, right) = self.system_of(block, &blocks, &away, &moved.by);
+            let system = self.system_of(block, &blocks, &to_vertices, &moved.by);
             let poll: &mut Poll<'_> = &mut |_| watch.poll();
-            let found = match &energy {
-                Some(energy) => {
-                    let energy = energy.of(number, &blocks, &self.points, &moved.by);
-                    let within = within * self.unit;
-                    let (found, energies) = fairness::solve(&system, &energy, &right, within, goal, poll)?;
-                    moved.energies.iter_mut().for_each(|all| all.add(energies));
-                    found
-                }
-                None => system.solve(&right, vec![DVec3::ZERO; block.len()], goal, poll)?,
-            };
-            let Solution { x, steps, solver } = found;
-            block.iter().zip(x).for_each(|(&v, by)| moved.by[v as usize] = by);
+            let found = self.solve_block((number, &blocks), (&way, system), &moved.by, goal, poll)?;
+            let Found { solution: Solution { x, steps, solver }, away, energies } = found;
+            for ((&v, by), away) in block.iter().zip(x).zip(away) {
+                (moved.by[v as usize], moved.away[v as usize]) = (by, away / self.unit);
+            }
+            moved.energies.iter_mut().for_each(|all| all.add(energies));
             moved.steps = moved.steps.max(steps);
             moved.solver = moved.solver.max(solver);
             watch.done(done)?;
         }
         for v in 0..n {
-            moved.by[v] = moved.by[self.first_copy[v] as usize];
+            let first = self.first_copy[v] as usize;
+            (moved.by[v], moved.away[v]) = (moved.by[first], moved.away[first]);
         }
         Ok(moved)
+    }
+
+    /// Solves the system of a block, whose right side is that of limits at the vertices. Earlier blocks are moved `by` what is known.
+    fn solve_block(
+        &self,
+        (number, blocks): (usize, &Blocks),
+        (way, (system, mut right)): (&Way<'_>, (System, Vec<DVec3>)),
+        by: &[DVec3],
+        goal: f64,
+        poll: &mut Poll<'_>,
+    ) -> Result<Found, Cancelled> {
+        let block = blocks.block(number);
+        let scaled = |away: &[DVec3]| block.iter().map(|&v| self.unit * away[v as usize]).collect();
+        match way {
+            Way::At(away) => {
+                let away: Vec<DVec3> = scaled(away);
+                right.iter_mut().zip(&away).for_each(|(b, &away)| *b += away);
+                let solution = system.solve(&right, vec![DVec3::ZERO; block.len()], goal, poll)?;
+                Ok(Found { solution, away, energies: Energies::default() })
+            }
+            Way::Near { near, reaches, energies } => {
+                let energy = energies.of(number, blocks, &self.points, by);
+                let reach: Vec<f64> = block.iter().map(|&v| reaches[v as usize]).collect();
+                let bounds = Bounds { reach: &reach, nearness: near.nearness, nothing: near.nothing };
+                fairness::solve(&system, &energy, &right, (&bounds, scaled(near.from)), goal, poll)
+            }
+        }
+    }
+
+    /// By first copy, how far the limits of all copies may be from them, in the system's unit.
+    fn reaches(&self, near: &Near<'_>) -> Vec<f64> {
+        let mut reaches = vec![f64::INFINITY; near.reach.len()];
+        for (&first, reach) in self.first_copy.iter().zip(near.reach) {
+            let of_first = &mut reaches[first as usize];
+            *of_first = of_first.min(reach * self.unit);
+        }
+        reaches
     }
 
     /// The system of a block, and its right side with what is known from earlier blocks.

@@ -5,13 +5,13 @@
 //! Each row counts in the block where its last point is found, so that lines are as fair as they can be by themselves, and
 //! regions with the lines fixed.
 //!
-//! Unknown is y, how far limits are from their vertices, |yᵢ| ≤ T; control points follow from it by A·x = v + y. So
+//! Unknown is y, how far limits are from their vertices, |yᵢ| ≤ Tᵢ; control points follow from it by A·x = v + y. So
 //! f(y) = ½|Bx|² + ½ε|y|² is to be least over a product of balls, to which projection is exact: accelerated projected
 //! gradients (Beck and Teboulle 2009) with restarts (O'Donoghue and Candès 2015). The gradient is A⁻ᵀBᵀBx + εy. All is affine in
 //! y, so that what is needed where the method looks ahead follows from the iterates without solving again. ε makes the answer
 //! unique: of equally fair ones that nearest to the vertices.
 //!
-//! For any feasible y the least energy is at least f(y) − (g·y + T Σ|gᵢ|), since f is convex (the gap of Frank and Wolfe;
+//! For any feasible y the least energy is at least f(y) − (g·y + Σ Tᵢ|gᵢ|), since f is convex (the gap of Frank and Wolfe;
 //! Jaggi 2013). The iteration ends where that gap is small, and tells it.
 
 use super::sparse::{Sparse, greatest, sum, update};
@@ -22,14 +22,14 @@ use crate::parallel::Poll;
 use crate::progress::Cancelled;
 use crate::vector::DVec3;
 
-/// ε: far below the curvature of the energy in any but the longest waves.
-const NEARNESS: f64 = 1e-6;
+/// An ε that is far below the curvature of the energy in any but the longest waves.
+pub(super) const NEARNESS: f64 = 1e-6;
 
 /// The gap that is small enough, beside the energy and beside what can be gained.
 const GAP: f64 = 1e-2;
 
-/// The gap that is small enough beside the energy at the beginning, where hardly any is left.
-const NOTHING: f64 = 1e-9;
+/// An energy that is as good as none, beside that of limits at the vertices.
+pub(super) const NOTHING: f64 = 1e-9;
 
 /// Steps of the projected gradient at most.
 const MOST_STEPS: usize = 500;
@@ -131,24 +131,23 @@ impl State {
         update(&mut next.gradient, poll, |i, g| *g += along * (*g - before.gradient[i]))?;
         Ok(next)
     }
+}
 
-    fn slope(&self, i: usize) -> DVec3 {
-        self.gradient[i] + NEARNESS * self.y[i]
-    }
+/// How far limits may be from their vertices.
+pub(super) struct Bounds<'a> {
+    /// By unknown, the Tᵢ.
+    pub(super) reach: &'a [f64],
+    /// ε.
+    pub(super) nearness: f64,
+    /// The gap that is small enough in any case, beside the energy of limits at the vertices.
+    pub(super) nothing: f64,
+}
 
-    fn value(&self, poll: &mut Poll<'_>) -> Result<f64, Cancelled> {
-        let bent = sum(self.bent.len(), poll, |i| self.bent[i] * self.bent[i])?;
-        let away = sum(self.y.len(), poll, |i| self.y[i] * self.y[i])?;
-        Ok(0.5 * (bent.element_sum() + NEARNESS * away.element_sum()))
-    }
-
-    /// How far the least value can be below that of this feasible state.
-    fn gap(&self, within: f64, poll: &mut Poll<'_>) -> Result<f64, Cancelled> {
-        let gap = sum(self.y.len(), poll, |i| {
-            let slope = self.slope(i);
-            DVec3::X * (slope.dot(self.y[i]) + within * slope.length())
-        })?;
-        Ok(gap.x.max(0.0))
+impl Bounds<'_> {
+    /// Limits, those that are too far from their vertices brought as near as they have to be.
+    fn kept(&self, mut y: Vec<DVec3>, poll: &mut Poll<'_>) -> Result<Vec<DVec3>, Cancelled> {
+        update(&mut y, poll, |i, y| *y = y.clamp_length_max(self.reach[i]))?;
+        Ok(y)
     }
 }
 
@@ -158,15 +157,36 @@ struct Problem<'a> {
     energy: &'a Energy,
     /// A·d less y.
     right: &'a [DVec3],
-    within: f64,
+    bounds: &'a Bounds<'a>,
+    /// The greatest of the bounds.
+    most: f64,
 }
 
 impl Problem<'_> {
+    fn slope(&self, state: &State, i: usize) -> DVec3 {
+        state.gradient[i] + self.bounds.nearness * state.y[i]
+    }
+
+    fn value(&self, state: &State, poll: &mut Poll<'_>) -> Result<f64, Cancelled> {
+        let bent = sum(state.bent.len(), poll, |i| state.bent[i] * state.bent[i])?;
+        let away = sum(state.y.len(), poll, |i| state.y[i] * state.y[i])?;
+        Ok(0.5 * (bent.element_sum() + self.bounds.nearness * away.element_sum()))
+    }
+
+    /// How far the least value can be below that of a feasible state.
+    fn gap(&self, state: &State, poll: &mut Poll<'_>) -> Result<f64, Cancelled> {
+        let gap = sum(state.y.len(), poll, |i| {
+            let slope = self.slope(state, i);
+            DVec3::X * (slope.dot(state.y[i]) + self.bounds.reach[i] * slope.length())
+        })?;
+        Ok(gap.x.max(0.0))
+    }
+
     /// The state of given limits; what is solved for starts from that of `near`.
     fn state(&self, y: Vec<DVec3>, near: State, poll: &mut Poll<'_>) -> Result<State, Cancelled> {
         let mut right = self.right.to_vec();
         update(&mut right, poll, |i, b| *b += y[i])?;
-        let d = self.system.solve(&right, near.d, ACCURACY * self.within, poll)?.x;
+        let d = self.system.solve(&right, near.d, ACCURACY * self.most, poll)?.x;
         let mut bent = self.energy.known.clone();
         update(&mut bent, poll, |i, b| *b += self.energy.rows.row_times(i, &d))?;
         let pull = self.energy.transposed.times(&bent, poll)?;
@@ -178,60 +198,67 @@ impl Problem<'_> {
     /// A step against the slope from `from` into the balls.
     fn step(&self, from: &State, curvature: f64, poll: &mut Poll<'_>) -> Result<Vec<DVec3>, Cancelled> {
         let mut y = from.y.clone();
-        update(&mut y, poll, |i, y| {
-            *y -= from.slope(i) / curvature;
-            let length = y.length();
-            if length > self.within {
-                *y *= self.within / length;
-            }
-        })?;
-        Ok(y)
+        update(&mut y, poll, |i, y| *y -= self.slope(from, i) / curvature)?;
+        self.bounds.kept(y, poll)
     }
 }
 
-/// The control points of a block, how they were found, and the energies.
+/// What was found for a block.
+pub(super) struct Found {
+    pub(super) solution: Solution,
+    /// How far limits are from their vertices.
+    pub(super) away: Vec<DVec3>,
+    pub(super) energies: Energies,
+}
+
+/// The fairest control points of a block, from limits that are `away` from their vertices on.
 pub(super) fn solve(
     system: &System,
     energy: &Energy,
     right: &[DVec3],
-    within: f64,
+    (bounds, away): (&Bounds<'_>, Vec<DVec3>),
     goal: f64,
     poll: &mut Poll<'_>,
-) -> Result<(Solution, Energies), Cancelled> {
+) -> Result<Found, Cancelled> {
     let n = right.len();
-    let problem = Problem { system, energy, right, within };
+    let most = bounds.reach.iter().copied().fold(0.0, f64::max);
+    let problem = Problem { system, energy, right, bounds, most };
     let nothing = vec![DVec3::ZERO; n];
     let origin =
         State { y: nothing.clone(), d: nothing.clone(), bent: Vec::new(), gradient: nothing.clone() };
     let mut now = problem.state(nothing, origin, poll)?;
-    let through = now.value(poll)?;
+    let through = problem.value(&now, poll)?;
+    if away.iter().any(|&away| away != DVec3::ZERO) {
+        now = problem.state(bounds.kept(away, poll)?, now, poll)?;
+    }
     let (mut ahead, mut momentum, mut curvature) = (now.clone(), 1.0f64, CURVATURE);
-    let (mut value, mut gap, mut steps) = (through, now.gap(within, poll)?, 0);
-    while steps < MOST_STEPS && gap > (GAP * value.min(through - value + gap)).max(NOTHING * through) {
+    let (mut value, mut gap, mut steps) = (problem.value(&now, poll)?, problem.gap(&now, poll)?, 0);
+    while steps < MOST_STEPS && gap > (GAP * value.min(through - value + gap)).max(bounds.nothing * through) {
         steps += 1;
-        let from = ahead.value(poll)?;
+        let from = problem.value(&ahead, poll)?;
         let (next, next_value) = loop {
             let y = problem.step(&ahead, curvature, poll)?;
             let next = problem.state(y, ahead.clone(), poll)?;
             let model = sum(n, poll, |i| {
                 let by = next.y[i] - ahead.y[i];
-                DVec3::X * (ahead.slope(i).dot(by) + 0.5 * curvature * by.length_squared())
+                DVec3::X * (problem.slope(&ahead, i).dot(by) + 0.5 * curvature * by.length_squared())
             })?;
-            let next_value = next.value(poll)?;
+            let next_value = problem.value(&next, poll)?;
             if next_value <= from + model.x + 1e-9 * from || curvature > 1e6 {
                 break (next, next_value);
             }
             curvature *= 2.0;
         };
-        let uphill = sum(n, poll, |i| DVec3::X * ahead.slope(i).dot(next.y[i] - now.y[i]))?;
+        let uphill = sum(n, poll, |i| DVec3::X * problem.slope(&ahead, i).dot(next.y[i] - now.y[i]))?;
         let after = if uphill.x > 0.0 { 1.0 } else { 0.5 * (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt()) };
         let along = if uphill.x > 0.0 { 0.0 } else { (momentum - 1.0) / after };
         ahead = next.beyond(&now, along, poll)?;
         (now, value, momentum) = (next, next_value, after);
-        gap = now.gap(within, poll)?;
+        gap = problem.gap(&now, poll)?;
     }
     let mut right = right.to_vec();
     update(&mut right, poll, |i, b| *b += now.y[i])?;
     let solution = system.solve(&right, now.d, goal, poll)?;
-    Ok((solution, Energies { through, reached: value, least: (value - gap).max(0.0), steps }))
+    let energies = Energies { through, reached: value, least: (value - gap).max(0.0), steps };
+    Ok(Found { solution, away: now.y, energies })
 }

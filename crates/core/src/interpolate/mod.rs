@@ -53,12 +53,14 @@
 mod blocks;
 mod control_points;
 mod fairness;
+mod near;
 mod planes;
 mod spacing;
 mod sparse;
 mod system;
 
 pub use fairness::Fairness;
+pub(crate) use near::NearVertices;
 
 use crate::index::VertexId;
 use crate::limit::{LimitError, LimitTable};
@@ -67,7 +69,7 @@ use crate::options::options;
 use crate::progress::{Cancelled, Observer, Stage, Watch, unobserved};
 use crate::scheme::Scheme;
 use crate::vector::{DVec3, diagonal, vector};
-use control_points::ControlPoints;
+use control_points::{ControlPoints, Limits, Near};
 use system::Solver;
 
 /// Limits farther from their vertices than this share of the bounding box's diagonal are not at them.
@@ -218,9 +220,13 @@ pub(crate) fn interpolate_but(
             fairness: None,
         });
     }
+    let (nowhere, reach) = (vec![DVec3::ZERO; mesh.vertex_count()], vec![within; mesh.vertex_count()]);
+    let near =
+        Near { reach: &reach, nearness: fairness::NEARNESS, nothing: fairness::NOTHING, from: &nowhere };
+    let asked = if within > 0.0 { Limits::Near(&near) } else { Limits::At(&nowhere) };
     let mut attempt = 0;
     let (moved, control, limits) = loop {
-        let moved = points.solve(within, &mut watch)?;
+        let moved = points.solve(&asked, &mut watch)?;
         let positions = moved.by.iter().enumerate().map(|(v, &by)| points.position(v, by)).collect();
         let control = mesh.clone().with_positions(positions)?;
         watch.stage(Stage::Limits, Some(mesh.vertex_count()))?;

@@ -47,6 +47,24 @@ impl FaceParts {
         (part.whole, core::array::from_fn(coordinate))
     }
 
+    /// Of a mesh all of whose faces are parts: of which face each is one, and where its corners are in that.
+    pub(crate) fn of_all(parts: impl Iterator<Item = (u32, [[f64; 3]; 3])>) -> Self {
+        let part = |(face, (whole, corners))| Part { face, whole, corners };
+        Self { parts: (0..).zip(parts).map(part).collect() }
+    }
+
+    /// The same faces as parts of those that were divided before.
+    pub fn after(&self, before: &Self) -> Self {
+        let of_first = |part: &Part| {
+            let corners = part.corners.map(|corner| before.on_whole(part.whole, corner).1);
+            Part { whole: before.whole(part.whole), corners, ..*part }
+        };
+        let left = before.parts.iter().filter(|part| self.part(part.face).is_none()).copied();
+        let mut parts: Vec<Part> = self.parts.iter().map(of_first).chain(left).collect();
+        parts.sort_unstable_by_key(|part| part.face);
+        Self { parts }
+    }
+
     fn part(&self, face: u32) -> Option<&Part> {
         self.parts.binary_search_by_key(&face, |part| part.face).ok().map(|place| &self.parts[place])
     }

@@ -9,6 +9,7 @@ mod driver;
 mod exact;
 mod exact_options;
 mod exact_result;
+mod input_distance;
 mod junctions;
 mod level;
 mod levels_of_detail;
@@ -22,6 +23,7 @@ mod step;
 mod stepwise;
 mod tags;
 mod uniform;
+mod within;
 
 pub use attribute_goal::AttributeGoal;
 pub use exact::{
@@ -30,6 +32,7 @@ pub use exact::{
 };
 pub use exact_options::ExactOptions;
 pub use exact_result::{ErrorBounds, Estimate, Exact, ExactStop, Origin};
+pub use input_distance::InputDistance;
 pub use level::{Geomorph, Level, switching_distance};
 pub use levels_of_detail::{LodOptions, levels_of_detail, levels_of_detail_observed};
 pub use limit_distance::{LimitDistance, LimitDistanceOptions, limit_distance, limit_distance_observed};
@@ -41,10 +44,12 @@ pub use uniform::{
     UniformOptions, UniformTriangles, uniform, uniform_observed, uniform_triangles,
     uniform_triangles_observed,
 };
+pub use within::{Within, WithinOptions, within, within_observed};
 
 use core::time::Duration;
 
 use crate::criterion::CriterionError;
+use crate::interpolate::InterpolateError;
 use crate::limit::{LimitError, SidedNormals};
 use crate::measure::MeasureError;
 use crate::mesh::{Mesh, MeshError};
@@ -82,6 +87,17 @@ pub enum RefineError {
     /// Edges could not be collapsed.
     #[error(transparent)]
     Simplify(SimplifyError),
+    /// There are no control points for the limits that are asked for.
+    #[error(transparent)]
+    Interpolate(InterpolateError),
+    /// A scheme that leaves vertices where they are, for what smooths by moving them.
+    #[error(
+        "the scheme {scheme} passes through its control points, so that it smooths nothing; Loop's and Warren's do"
+    )]
+    NotSmoothing {
+        /// Its name.
+        scheme: String,
+    },
     /// A frame cannot be replayed.
     #[error(transparent)]
     Replay(ReplayError),
@@ -95,6 +111,17 @@ impl From<MeasureError> for RefineError {
         match error {
             MeasureError::Cancelled(cancelled) => Self::Cancelled(cancelled),
             error => Self::Measure(error),
+        }
+    }
+}
+
+impl From<InterpolateError> for RefineError {
+    fn from(error: InterpolateError) -> Self {
+        match error {
+            InterpolateError::Limit(error) => Self::Limit(error),
+            InterpolateError::Mesh(error) => Self::Mesh(error),
+            InterpolateError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Interpolate(error),
         }
     }
 }

@@ -29,3 +29,4 @@ mod simplified;
 mod sqrt3;
 mod strips;
 mod support;
+mod within;

@@ -103,7 +103,7 @@ fn unknown(arguments: &RefineArguments) -> Option<Limited> {
 }
 
 /// All of them. What depends on other options has checks of its own.
-fn limited(arguments: &RefineArguments) -> [Limited; 23] {
+fn limited(arguments: &RefineArguments) -> [Limited; 24] {
     const EXACT: &[Way] = &[Way::Exact];
     const IN_QUARTERS: &[Way] = &[Way::Exact, Way::Stepwise, Way::Restricted];
     const GOALS: &[Way] = &[Way::Exact, Way::Restricted, Way::Sqrt3];
@@ -119,6 +119,7 @@ fn limited(arguments: &RefineArguments) -> [Limited; 23] {
         option("--interpolate", interpolation.interpolate, IN_QUARTERS),
         option("--interpolate-within", interpolation.interpolate_within.is_some(), IN_QUARTERS),
         option("--tolerance", exact.tolerance.is_some(), GOALS),
+        option("--within", exact.within.is_some(), EXACT),
         option("--triangles", exact.triangles.is_some(), GOALS),
         option("--max-levels", exact.max_levels.is_some(), GOALS),
         option("--provenance", exact.provenance, GOALS),
@@ -166,6 +167,12 @@ impl Limited {
 /// Refuses goals and caps that do not go together.
 fn goals(arguments: &RefineArguments) -> anyhow::Result<()> {
     let exact = &arguments.exact;
+    if exact.within.is_some() && arguments.scheme()?.loop_family().is_none() {
+        return usage(format!(
+            "--scheme {} passes through the vertices of the input, so that --within has nothing to smooth; loop and loop-warren do not",
+            arguments.scheme()?.name()
+        ));
+    }
     let cameras = !exact.camera.is_empty() || !exact.camera_path.is_empty();
     if exact.optimize && (arguments.angle.is_some() || cameras || exact.balance) {
         return usage("--optimize keeps --tolerance and --triangles; not --angle, cameras or --balance");

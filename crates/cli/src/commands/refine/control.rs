@@ -3,6 +3,7 @@
 use limitmesh::Mesh;
 
 use super::interpolation;
+use super::nearness::Nearness;
 use crate::arguments::{Featured, RefineArguments, Way};
 use crate::bulk::{Bulk, Shown};
 use crate::format::counted;
@@ -63,14 +64,19 @@ impl Control {
             progress.note(note);
         }
         diagnosis.concave_corners = featured.concave.corners.clone();
-        let Featured { mesh, concave, along_needles } = featured;
+        let Featured { mesh, mut concave, along_needles } = featured;
         let diagonal = diagonal.unwrap_or_else(|| mesh.diagonal());
-        let (mesh, interpolation) = match arguments.interpolation.is_led() {
-            true => {
+        let (mesh, interpolation) = match Nearness::of(arguments, &mesh, diagonal)? {
+            Some(near) => {
+                let (mesh, parts) = near.control(&mesh, arguments, progress)?;
+                concave.parts = parts.after(&concave.parts);
+                (mesh, None)
+            }
+            None if arguments.interpolation.is_led() => {
                 let asked = (arguments.interpolation, arguments.build.unit);
                 interpolation::apply(mesh, asked, arguments.scheme()?, progress)?
             }
-            false => (mesh, None),
+            None => (mesh, None),
         };
         let featured = Featured { mesh, concave, along_needles };
         let before =

@@ -2,14 +2,14 @@
 
 use limitmesh::Mesh;
 use limitmesh::progress::Stage;
-use limitmesh::refine::{Exact, ExactStop, exact_observed};
+use limitmesh::refine::{Exact, ExactStop, InputDistance, exact_observed};
 
 use super::super::channels::Channels;
 use super::super::normals::Normals;
 use super::carried::Trail;
 use super::control::Before;
 use super::goals::{Goals, unit_in_words, written};
-use super::input_distance::{self, InputDistance};
+use super::input_distance;
 use super::provenance::Provenance;
 use super::{Refined, view_report};
 use crate::arguments::{Featured, RefineArguments};
@@ -63,11 +63,22 @@ pub(super) fn run(
     let mut achieved = achieved(&found, &error, goals, arguments);
     let attributes = goals.attributes.reached(&found);
     achieved.extend(goals.attributes.achieved(&attributes, &unit_in_words(arguments.build.unit)));
-    if let Some(moved) = &moved {
-        achieved.extend(input_distance::in_words(moved, &error, control, goals, arguments));
+    match (&moved, goals.near) {
+        (Some(moved), Some(_)) => {
+            achieved.insert(0, moved.near_in_words(&unit_in_words(arguments.build.unit)))
+        }
+        (Some(moved), None) => {
+            achieved.extend(input_distance::in_words(moved, &error, control, goals, arguments));
+        }
+        (None, _) => {}
     }
-    let outcome = outcome(&found, control, goals, arguments);
     let inverted = found.inverted_triangles();
+    let outcome = match outcome(&found, control, goals, arguments) {
+        Outcome::Done => {
+            goals.near.map_or(Outcome::Done, |near| near.outcome(moved.as_ref(), inverted, arguments))
+        }
+        short => short,
+    };
     let channels = channels.refined(control, &found, arguments.scheme()?)?;
     let wanted = written(arguments).is_some_and(|(format, _)| Normals::are_held(format))
         || arguments.picture.is_some();
@@ -180,6 +191,7 @@ pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> Paramete
     let options = goals.options(arguments);
     ParametersReport {
         angle_degrees: goals.angle_degrees,
+        within: goals.near.map(|near| near.within),
         view: view_report(arguments),
         exact: Some(ExactParametersReport {
             pixels: goals.pixels,

@@ -159,6 +159,7 @@ fn refuse(arguments: &RefineArguments) -> anyhow::Result<()> {
     let given = [
         ("--scheme sqrt3", arguments.way().is_sqrt3()),
         ("--method other than exact", arguments.way() != Way::Exact),
+        ("--within", arguments.exact.within.is_some()),
         ("--triangles", arguments.exact.triangles.is_some()),
         ("--balance", arguments.exact.balance),
         ("--optimize", arguments.exact.optimize),

@@ -9,6 +9,7 @@ use limitmesh_io::{Format, WriteOptions};
 
 use super::super::channels::Channels;
 use super::attribute_goals::AttributeGoals;
+use super::nearness::Nearness;
 use super::{cameras, view};
 use crate::arguments::{ConcaveCorners, Extent, Length, RefineArguments, Unit};
 use crate::report::AttributeReport;
@@ -25,6 +26,8 @@ pub(super) struct Goals {
     pub(super) length: Option<f64>,
     /// The same as a person gave it.
     tolerance: Option<Extent>,
+    /// How near the input the result has to be, and the tolerance that this leaves.
+    pub(super) near: Option<Nearness>,
     /// Of the input's bounding box.
     pub(super) diagonal: f64,
     /// How far the output's format may round a vertex.
@@ -51,15 +54,18 @@ impl Goals {
         let exact = &arguments.exact;
         let cameras = cameras::all(arguments)?;
         cameras::check(&cameras, control, arguments)?;
+        let near = Nearness::of(arguments, control, diagonal)?;
         let none = exact.tolerance.is_none()
+            && near.is_none()
             && exact.triangles.is_none()
             && arguments.angle.is_none()
             && cameras.is_empty();
         let tolerance = exact.tolerance.or(none.then_some(USUAL_TOLERANCE));
         let length = tolerance.map(|tolerance| tolerance.length(diagonal, arguments.build.unit));
         Ok(Self {
-            length: length.transpose()?,
+            length: length.transpose()?.or(near.map(|near| near.tolerance)),
             tolerance,
+            near,
             diagonal,
             rounding: most_rounding(arguments, control),
             angle_degrees: arguments.angle,
@@ -115,7 +121,7 @@ impl Goals {
             .optimize(arguments.exact.optimize)
             .kept_edges(self.kept_edges.clone())
             .attributes(self.attributes.options())
-            .flat_regions(!arguments.exact.divide_flat && !self.tells_faces_apart)
+            .flat_regions(!arguments.exact.divide_flat && !self.tells_faces_apart && self.near.is_none())
             .unfold(arguments.features.concave_corners() == ConcaveCorners::Divided)
             .origins(
                 arguments.exact.provenance
@@ -130,9 +136,7 @@ impl Goals {
             options = options.view(view);
         }
         if let Some(length) = self.length {
-            // What rounding takes afterwards, unless that is most of it.
-            let room = length - self.rounding;
-            options = options.tolerance(if room > 0.5 * length { room } else { length });
+            options = options.tolerance(with_room(length, self.rounding));
         }
         if let Some(degrees) = self.angle_degrees {
             options = options.angle(degrees.to_radians());
@@ -164,6 +168,12 @@ impl Goals {
     }
 }
 
+/// What is left of a length where rounding takes of it afterwards, unless that is most of it.
+pub(super) fn with_room(length: f64, rounding: f64) -> f64 {
+    let room = length - rounding;
+    if room > 0.5 * length { room } else { length }
+}
+
 /// ` mm`, or nothing where no unit is known.
 pub(super) fn unit_in_words(unit: Option<Unit>) -> String {
     unit.map_or_else(String::new, |unit| format!(" {}", unit.name()))
@@ -181,7 +191,7 @@ pub(super) fn written(arguments: &RefineArguments) -> Option<(Format, WriteOptio
 }
 
 /// How far the output's format rounds a vertex at most: all lie in the box of the control mesh's.
-fn most_rounding(arguments: &RefineArguments, control: &Mesh) -> f64 {
+pub(super) fn most_rounding(arguments: &RefineArguments, control: &Mesh) -> f64 {
     let largest = control.positions().as_flattened().iter().fold(0.0f64, |most, x| most.max(x.abs()));
     // Half of the last place of `f32`, and of its least number, along each axis.
     let most = 3f64.sqrt() * (largest * f64::from(f32::EPSILON) * 0.5 + 0.5 * f64::from(f32::from_bits(1)));

@@ -12,6 +12,7 @@ mod frames;
 mod goals;
 mod input_distance;
 mod jobs;
+mod nearness;
 mod package;
 mod provenance;
 mod put_back;
@@ -197,11 +198,13 @@ fn looked_at(
     (mesh, faces): (&Mesh, &[u32]),
     hints: &Hints<'_>,
 ) -> (RefineArguments, Option<String>) {
+    // What is as smooth as a distance allows has sharp edges only where somebody says so.
+    let is_smoothed = arguments.exact.within.is_some();
     let features = match arguments.way() {
-        Way::Exact => arguments.features.or_auto(),
+        Way::Exact if !is_smoothed => arguments.features.or_auto(),
         _ => arguments.features,
     };
-    let can_be_led = !arguments.way().is_sqrt3() && !arguments.shared_topology;
+    let can_be_led = !arguments.way().is_sqrt3() && !arguments.shared_topology && !is_smoothed;
     let Decided { features, interpolation, note } =
         parts::decided((features, arguments.interpolation), (mesh, faces), hints, can_be_led);
     (RefineArguments { features, interpolation, ..arguments.clone() }, note)
@@ -364,7 +367,8 @@ impl Refined {
     /// Adds what became of area and volume to what is said, and what would have kept much of the volume that is gone.
     fn tell_size(&mut self, [before, after]: [Bulk; 2], arguments: &RefineArguments) {
         self.achieved.push(change_in_words(before, after, arguments.build.unit));
-        let is_kept = arguments.interpolation.is_led() || arguments.way().is_sqrt3();
+        let is_led = arguments.interpolation.is_led() || arguments.exact.within.is_some();
+        let is_kept = is_led || arguments.way().is_sqrt3();
         let is_told = self.achieved.iter().any(|line| line == INTERPOLATE);
         if let (Some(before), Some(after), false) = (before.volume, after.volume, is_kept || is_told)
             && after / before < 1.0 - MUCH_VOLUME
