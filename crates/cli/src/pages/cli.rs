@@ -25,6 +25,8 @@ fn page() -> String {
     let mut whole = Arguments::command();
     whole.build();
     let mut page = BEGINNING.to_owned();
+    let about = whole.get_long_about().map(ToString::to_string);
+    writeln!(page, "\n{}", text(about)).unwrap();
     let shown: Vec<&Command> =
         whole.get_subcommands().filter(|own| !own.is_hide_set() && own.get_name() != "help").collect();
     page.push_str("\n| command | what it does |\n|---|---|\n");
@@ -37,6 +39,7 @@ fn page() -> String {
     for argument in whole.get_arguments().filter(|own| own.is_global_set()) {
         page.push_str(&entry(argument));
     }
+    page.push_str(&examples(&whole));
     shown.iter().for_each(|command| page.push_str(&section(command)));
     page
 }
@@ -64,10 +67,13 @@ fn section(command: &Command) -> String {
         writeln!(page, "\n### {}: {name}\n", command.get_name()).unwrap();
         own.iter().filter(|argument| heading(argument) == name).for_each(|own| page.push_str(&entry(own)));
     }
-    if let Some(examples) = command.get_after_long_help().or(command.get_after_help()) {
-        writeln!(page, "\n```text\n{}\n```", examples.to_string().trim()).unwrap();
-    }
-    page
+    page + &examples(command)
+}
+
+/// What follows a command's options in its help.
+fn examples(command: &Command) -> String {
+    let help = command.get_after_long_help().or(command.get_after_help());
+    help.map_or_else(String::new, |help| format!("\n```text\n{}\n```\n", help.to_string().trim()))
 }
 
 fn heading(argument: &Arg) -> &str {

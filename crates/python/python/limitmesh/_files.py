@@ -108,7 +108,7 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
     Returns
     -------
     dict
-        The report of the program, as the README describes it; and ``notes``, lines that the program would print.
+        The report of the program, as docs/reports.md describes it; and ``notes``, lines that the program would print.
 
     Raises
     ------
