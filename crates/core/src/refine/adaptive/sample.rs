@@ -10,7 +10,7 @@ use crate::refine::exact_options::ExactOptions;
 use crate::scheme::Scheme;
 
 /// The triangles that a distance takes over each of the first so many control faces, which are divided as those beside them across
-/// edges are. Of triangles that strips are made of about the square root is left: they are put together in one of two directions.
+/// edges are. Of triangles that strips may be made of the same part is left everywhere.
 pub(in crate::refine) fn count_in(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -24,16 +24,24 @@ pub(in crate::refine) fn count_in(
             engine.edges.twin(h).into_iter().for_each(|twin| is_divided[twin as usize / 3] = true);
         }
         let goal = Goal::Partly(f64::INFINITY, engine.floor(Some(distance)), is_divided);
-        let Some(plan) = engine.without_strips().plan(goal, usize::MAX)? else { return Ok(Vec::new()) };
-        Ok((0..faces as u32).map(|face| engine.triangles_over(&plan, face)).collect())
+        let Some(mut plan) = engine.without_strips().plan(goal, usize::MAX)? else { return Ok(Vec::new()) };
+        let left = engine.left_of_strips(&mut plan)?;
+        let flat = &engine.control.flat;
+        let count = |face: u32| {
+            let own = plan.closed[face as usize].triangles as usize;
+            let count = flat.count_over((engine.control, &engine.edges), &plan.chains, (face, own)) as f64;
+            if flat.may_have_strips(face) { left * count } else { count }
+        };
+        Ok((0..faces as u32).map(count).collect())
     })
 }
 
 impl Engine<'_> {
-    fn triangles_over(&self, plan: &Plan, face: u32) -> f64 {
-        let flat = &self.control.flat;
-        let own = plan.closed[face as usize].triangles as usize;
-        let count = flat.count_over((self.control, &self.edges), &plan.chains, (face, own)) as f64;
-        if flat.may_have_strips(face) { count.sqrt() } else { count }
+    /// The part of the triangles that strips may be made of that is left once they are.
+    fn left_of_strips(&self, plan: &mut Plan) -> Result<f64, RefineError> {
+        let over_strips =
+            |plan: &Plan| self.control.flat.over_strips(|face| plan.closed[face as usize].triangles as usize);
+        let saved = self.triangles_at_most(plan) - self.triangles(plan)?;
+        Ok(1.0 - saved.min(over_strips(plan)) as f64 / over_strips(plan).max(1) as f64)
     }
 }
