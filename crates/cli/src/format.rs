@@ -39,6 +39,32 @@ fn bound(x: f64, round: impl Fn(f64) -> f64) -> String {
     format!("{digits:.0}e{exponent}").parse().map_or_else(|_| number(x), short)
 }
 
+/// Digits of an interval's ends, at least and at most: a number has little more than fifteen.
+const INTERVAL_DIGITS: [f64; 2] = [6.0, 15.0];
+
+/// The ends of an interval, rounded outwards, in so many digits that it is hardly wider than it was.
+pub(crate) fn interval(lower: f64, upper: f64) -> [String; 2] {
+    let [fewest, most] = INTERVAL_DIGITS;
+    let digits = |end: f64| (100.0 * end / (upper - lower)).log10().ceil().max(fewest).min(most) as usize;
+    [outwards(lower, digits(lower), -1.0), outwards(upper, digits(upper), 1.0)]
+}
+
+/// A number in so many digits, by the sign rounded up or down.
+fn outwards(x: f64, digits: usize, sign: f64) -> String {
+    if !(x > 0.0 && x.is_finite()) {
+        return number(x);
+    }
+    let in_digits = |x: f64| format!("{x:.*e}", digits - 1).parse().unwrap_or(x);
+    let (nearest, exponent): (f64, f64) = (in_digits(x), x.log10().floor());
+    let unit = 10f64.powf(exponent + 1.0 - digits as f64);
+    let rounded = if sign * nearest < sign * x { in_digits(nearest + sign * unit) } else { nearest };
+    if !(1e-4..1e9).contains(&rounded) {
+        return format!("{rounded:.*e}", digits - 1);
+    }
+    let text = format!("{rounded:.*}", (digits as f64 - 1.0 - exponent).max(0.0) as usize);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 /// [`number`] without a tail of zeros before an exponent either.
 fn short(x: f64) -> String {
     let text = number(x);
@@ -137,6 +163,28 @@ mod tests {
         ];
         for (x, above, below) in pairs {
             assert_eq!((upper_bound(x).as_str(), lower_bound(x).as_str()), (above, below), "{x}");
+        }
+    }
+
+    #[test]
+    fn intervals_are_hardly_wider_than_they_were() {
+        let texts = [
+            ([4.999_999_999_8, 5.000_002_4], ["4.99999999", "5.0000024"]),
+            ([0.25, 0.3], ["0.25", "0.3"]),
+            ([0.0, 1e-7], ["0", "1.00000e-7"]),
+            ([1234.567_891_23, 1234.6], ["1234.56", "1234.6"]),
+            ([0.1, 0.1], ["0.1", "0.1"]),
+            ([0.0, 0.0], ["0", "0"]),
+        ];
+        for ([lower, upper], expected) in texts {
+            assert_eq!(interval(lower, upper), expected, "{lower} {upper}");
+        }
+        for i in 1..2000 {
+            let lower = 1.1f64.powi(i % 400 - 200) * (1.0 + f64::from(i) / 3000.0);
+            let upper = lower * (1.0 + 0.3 * 0.5f64.powi(i % 41));
+            let [from, to] = interval(lower, upper).map(|end| end.parse::<f64>().expect("a number"));
+            assert!(from <= lower && upper <= to, "{i}: {from} {lower} {upper} {to}");
+            assert!(to - from <= 1.3 * (upper - lower) + 2e-14 * upper, "{i}: {from} {lower} {upper} {to}");
         }
     }
 

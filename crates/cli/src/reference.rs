@@ -1,12 +1,15 @@
 //! What stands for a limit surface when distances are measured, as in the paper: the control mesh refined
 //! uniformly, all vertices moved to the limit.
 
-use limitmesh::Mesh;
-use limitmesh::refine::{Stop, UniformOptions, uniform};
+use limitmesh::refine::{Stop, UniformOptions, reference_levels, uniform};
 use limitmesh::scheme::Scheme;
+use limitmesh::{Mesh, Triangles};
 
 use crate::failure::usage;
 use crate::format::thousands;
+
+/// Fewer levels are hardly finer than what is measured against them.
+const FEWEST: usize = 2;
 
 /// Levels that are enough for most: the distance of such a mesh to the limit surface is about a thousandth of the
 /// control mesh's.
@@ -26,10 +29,39 @@ pub(crate) struct Reference {
     pub(crate) levels: usize,
 }
 
-/// As many of the `wanted` levels as keep the reference below [`CHOSEN_TRIANGLES`].
+/// As many of the `wanted` levels as keep the reference below [`CHOSEN_TRIANGLES`], but [`FEWEST`] at least.
 pub(crate) fn affordable_levels(control_faces: usize, wanted: usize) -> usize {
     let fits = |&levels: &usize| faces_at(control_faces, levels).is_some_and(|n| n <= CHOSEN_TRIANGLES);
-    (0..=wanted).rev().find(fits).unwrap_or(0)
+    (FEWEST..=wanted).rev().find(fits).unwrap_or(FEWEST)
+}
+
+/// The levels that were asked for, or those that suit what is measured.
+///
+/// # Errors
+/// The reference would be the control mesh's own triangles, or too large.
+pub(crate) fn levels_for(
+    control: &Mesh,
+    measured: Triangles<'_>,
+    asked: Option<usize>,
+) -> anyhow::Result<usize> {
+    let found = match asked {
+        Some(0) => {
+            return usage(
+                "--reference-levels 0 would measure against the control mesh's own triangles; 1 is the least",
+            );
+        }
+        Some(levels) => return Ok(levels),
+        None => reference_levels(control.face_count(), measured.triangles.len()),
+    };
+    let Some(levels) = found else {
+        return usage(format!(
+            "a mesh of {} triangles is not compared with a reference for the limit surface that is two levels finer, which \
+             is too large; --certified measures against the limit surface itself, --reference-levels against a coarser \
+             reference",
+            thousands(measured.triangles.len())
+        ));
+    };
+    Ok(levels)
 }
 
 /// Number of faces after so many levels of uniform refinement, if it can be counted.
@@ -63,8 +95,7 @@ mod tests {
     #[test]
     fn levels_keep_within_the_budget() {
         assert_eq!(affordable_levels(142, 5), 5);
-        assert_eq!(affordable_levels(530_450, 5), 1);
-        assert_eq!(affordable_levels(10_000_000, 5), 0);
+        assert_eq!(affordable_levels(530_450, 5), 2);
         assert_eq!(faces_at(142, 3), Some(9088));
         assert_eq!(faces_at(usize::MAX, 3), None);
     }

@@ -6,7 +6,7 @@ use limitmesh::measure::{
 };
 use limitmesh::progress::Observer;
 use limitmesh::refine::{LimitDistanceOptions, is_certified, limit_distance_observed};
-use limitmesh::refine::{UniformOptions, uniform_triangles_observed};
+use limitmesh::refine::{UniformOptions, reference_levels, uniform_triangles_observed};
 use limitmesh::{Mesh, Triangles};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -89,7 +89,10 @@ pub(crate) fn measure_limit<'py>(
             let found = limit_distance_observed(a, &control.mesh, recipe.scheme, &options, observer)?;
             return Ok(Distance::Certified(found.distance));
         }
-        let levels = levels.unwrap_or_else(|| affordable_levels(control.mesh.face_count()));
+        let suiting = || reference_levels(control.mesh.face_count(), a.triangles.len());
+        let Some(levels) = levels.or_else(suiting) else {
+            return Err(Failure::Option(TOO_LARGE.to_owned()));
+        };
         let limit = UniformOptions::default().levels(levels).limit(true);
         let limit = uniform_triangles_observed(&control.mesh, recipe.scheme, &limit, observer)?;
         drop(control);
@@ -98,14 +101,9 @@ pub(crate) fn measure_limit<'py>(
     told(py, &distance)
 }
 
-/// Levels that are enough for most, and the triangles that they may come to: as the program has them.
-const USUAL_LEVELS: u32 = 5;
-const CHOSEN_TRIANGLES: usize = 4_000_000;
-
-fn affordable_levels(faces: usize) -> usize {
-    let fits = |&levels: &u32| faces.saturating_mul(4usize.pow(levels)) <= CHOSEN_TRIANGLES;
-    (0..=USUAL_LEVELS).rev().find(fits).unwrap_or(0) as usize
-}
+/// Why meshes are not compared with references as fine as themselves.
+const TOO_LARGE: &str = "a reference for the limit surface two levels finer than the mesh is too large; certified=True measures \
+     against the limit surface itself, levels= against a coarser reference";
 
 fn between(
     a: Triangles<'_>,
@@ -158,6 +156,7 @@ fn sampled<'py>(py: Python<'py>, found: &OneSided) -> PyResult<Bound<'py, PyDict
     dict.set_item("upper", f64::INFINITY)?;
     dict.set_item("mean", found.mean)?;
     dict.set_item("rms", found.rms)?;
+    dict.set_item("percentile_95", found.percentile_95)?;
     dict.set_item("samples", found.samples)?;
     dict.set_item("at", found.at)?;
     dict.set_item("to", found.to)?;
@@ -170,6 +169,7 @@ fn bounded<'py>(py: Python<'py>, found: &Bounds) -> PyResult<Bound<'py, PyDict>>
     dict.set_item("upper", found.upper)?;
     dict.set_item("mean", None::<f64>)?;
     dict.set_item("rms", None::<f64>)?;
+    dict.set_item("percentile_95", None::<f64>)?;
     dict.set_item("samples", None::<usize>)?;
     dict.set_item("at", found.at)?;
     dict.set_item("to", found.to)?;

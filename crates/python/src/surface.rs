@@ -15,9 +15,10 @@ use crate::tell;
 /// What is not there, in rows of three.
 const NONE: [f64; 3] = [f64::NAN; 3];
 
-/// Rows for places: positions, normals, two first and three second derivatives each, two principal directions each; and Gaussian
+/// Rows for places: positions, normals, two tangents, two first and three second derivatives each, two principal directions each; and Gaussian
 /// curvature, mean curvature, the greatest and the least, in rows of four.
 type Told<'py> = (
+    Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray2<f64>>,
@@ -30,6 +31,7 @@ type Told<'py> = (
 struct Found {
     positions: Vec<[f64; 3]>,
     normals: Vec<[f64; 3]>,
+    tangents: Vec<[f64; 3]>,
     first: Vec<[f64; 3]>,
     second: Vec<[f64; 3]>,
     directions: Vec<[f64; 3]>,
@@ -59,12 +61,15 @@ pub(crate) fn limit_surface<'py>(
             return Err(Failure::Mesh(error.to_string()));
         }
         let mut found = Found::default();
-        for (point, derivatives) in points.into_iter().zip(derivatives) {
+        for ((&(face, weights), point), derivatives) in places.iter().zip(points).zip(derivatives) {
             let limit = Some(point.normal).filter(|normal| *normal != [0.0; 3]);
             let curvature = derivatives.and_then(|derivatives| derivatives.curvature());
             let normal = derivatives.and_then(|derivatives| derivatives.normal()).or(limit);
             found.positions.push(derivatives.map_or(point.position, |derivatives| derivatives.position));
             found.normals.push(normal.unwrap_or(NONE));
+            let own = derivatives.and_then(|derivatives| derivatives.tangents());
+            let tangents = own.or_else(|| surface.tangents_at_corner(face, weights));
+            found.tangents.extend(tangents.unwrap_or([NONE; 2]));
             found.first.extend(derivatives.map_or([NONE; 2], |derivatives| derivatives.first));
             found.second.extend(derivatives.map_or([NONE; 3], |derivatives| derivatives.second));
             found.directions.extend(curvature.map_or([NONE; 2], |curvature| curvature.directions));
@@ -78,6 +83,7 @@ pub(crate) fn limit_surface<'py>(
     Ok((
         tell::rows(py, found.positions)?,
         tell::rows(py, found.normals)?,
+        tell::rows(py, found.tangents)?,
         tell::rows(py, found.first)?,
         tell::rows(py, found.second)?,
         tell::rows(py, found.directions)?,

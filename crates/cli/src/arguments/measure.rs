@@ -45,7 +45,8 @@ pub(crate) struct MeasureArguments {
 
     /// Levels of uniform refinement that stand for the limit surface
     ///
-    /// Default: 5, or fewer where they would give more than 4 million triangles. With --limit-of only.
+    /// Default: 5, or fewer where they would give more than 4 million triangles, but two more than the first mesh has. With
+    /// --limit-of only.
     #[arg(long, value_name = "N", value_parser = values::levels)]
     pub(crate) reference_levels: Option<usize>,
 

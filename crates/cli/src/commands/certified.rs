@@ -7,12 +7,9 @@ use limitmesh::measure::{
 
 use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
-use crate::format::{counted, number, point, table};
+use crate::format::{counted, interval, point, table};
 use crate::progress::Progress;
 use crate::report::Whole;
-
-/// Rounding to six digits changes a number by at most this share of it.
-const SIX_DIGITS: f64 = 5e-6;
 
 /// Finds what makes no sense before any work is done.
 pub(super) fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
@@ -55,10 +52,11 @@ pub(super) fn outcome(measured: &CertifiedHausdorff, capped: Option<usize>) -> O
     if measured.converged() {
         return Outcome::Done;
     }
+    let [from, to] = interval(measured.lower(), measured.upper());
     Outcome::StoppedShort(format!(
         "the interval, from {} to {}, is as certain but wider than asked for: {}",
-        at_least(measured.lower()),
-        at_most(measured.upper()),
+        from,
+        to,
         match capped {
             None => "the search was cut short; raise --max-work or --gap".to_owned(),
             Some(triangles) => format!(
@@ -69,25 +67,12 @@ pub(super) fn outcome(measured: &CertifiedHausdorff, capped: Option<usize>) -> O
     ))
 }
 
-/// A lower bound, never rounded up.
-fn at_least(bound: f64) -> String {
-    number(bound * (1.0 - SIX_DIGITS))
-}
-
-/// An upper bound, never rounded down.
-fn at_most(bound: f64) -> String {
-    number(bound * (1.0 + SIX_DIGITS))
-}
-
 /// All that was found.
 pub(super) fn in_words(measured: &CertifiedHausdorff, whole: Whole) -> String {
-    let mut text = format!(
-        "symmetric Hausdorff distance  from {} to {}",
-        at_least(measured.lower()),
-        at_most(measured.upper())
-    );
+    let [lower, upper] = interval(measured.lower(), measured.upper());
+    let mut text = format!("symmetric Hausdorff distance  from {lower} to {upper}");
     if let [Some(lower), Some(upper)] = [measured.lower(), measured.upper()].map(|x| whole.percent(x)) {
-        let (lower, upper) = (at_least(lower), at_most(upper));
+        let [lower, upper] = interval(lower, upper);
         text.push_str(&format!("  ({lower} % to {upper} % of {})", whole.in_words()));
     }
     text.push_str("\ncertified: the true distance lies in this interval\n\n");
@@ -106,5 +91,6 @@ pub(super) fn in_words(measured: &CertifiedHausdorff, whole: Whole) -> String {
 
 fn row(name: &str, bounds: &Bounds) -> Vec<String> {
     let remark = if bounds.converged { "" } else { "cut short" };
-    vec![name.to_owned(), at_least(bounds.lower), at_most(bounds.upper), remark.to_owned()]
+    let [lower, upper] = interval(bounds.lower, bounds.upper);
+    vec![name.to_owned(), lower, upper, remark.to_owned()]
 }

@@ -46,7 +46,8 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
     }
     let found = places.into_iter().zip(points).zip(derivatives);
     let report = |((place, limits), derivatives): ((Place, SurfacePoint), _)| {
-        EvaluationReport::new(place, faces[place.face as usize], limits, derivatives)
+        let tangents = surface.tangents_at_corner(FaceId(place.face), place.weights);
+        EvaluationReport::new(place, faces[place.face as usize], (limits, tangents), derivatives)
     };
     let reports: Vec<EvaluationReport> = found.map(report).collect();
     progress.clear();

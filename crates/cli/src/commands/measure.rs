@@ -15,7 +15,7 @@ use crate::format::{counted, number, point, table, thousands, upper_bound};
 use crate::input::{self, Input};
 use crate::output;
 use crate::progress::Progress;
-use crate::reference::{self, USUAL_LEVELS};
+use crate::reference;
 use crate::report::Whole;
 use crate::report::measurement::{HausdorffReport, MeasureSeconds};
 use crate::report::{CertifiedReport, DistanceReport, LimitReport, MeasureReport, SurfaceReport, VERSION};
@@ -30,8 +30,8 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
     let limit = arguments.limit.in_unit(second.unit);
     let arguments = &MeasureArguments { limit, ..arguments.clone() };
     let surface = surface.in_unit(second.unit, progress)?;
-    let (control, reference_report, whole) = reference(second, arguments, progress)?;
     let a = surface.mesh.as_triangles();
+    let (control, reference_report, whole) = reference((second, a), arguments, progress)?;
     let prepare = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
@@ -129,7 +129,7 @@ fn against_limit(
 /// The second surface: a mesh as it is, or one that stands for a limit surface; the control mesh itself, where the
 /// distance to its limit surface is to be certified. And what lengths are given in per cent of.
 fn reference(
-    input: Input,
+    (input, measured): (Input, Triangles<'_>),
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, SurfaceReport, Whole)> {
@@ -147,9 +147,7 @@ fn reference(
     let (mesh, levels) = if arguments.certified {
         (mesh, 0)
     } else {
-        let levels = arguments
-            .reference_levels
-            .unwrap_or_else(|| reference::affordable_levels(mesh.face_count(), USUAL_LEVELS));
+        let levels = reference::levels_for(&mesh, measured, arguments.reference_levels)?;
         progress.stage(format!("refining {} by {levels} levels to stand for its limit surface", report.path));
         (reference::at_level(&mesh, scheme.scheme(), levels)?.mesh, levels)
     };
@@ -224,11 +222,11 @@ fn sampled_in_words(measured: &Hausdorff, whole: Whole) -> String {
 
 /// A table of both directions, and where each maximum lies.
 fn directions(measured: &Hausdorff, percent: impl Fn(f64) -> String) -> String {
-    let cells = |words: [&str; 4]| words.map(str::to_owned).to_vec();
-    let mut rows = vec![cells(["", "max", "mean", "RMS"])];
+    let cells = |words: [&str; 5]| words.map(str::to_owned).to_vec();
+    let mut rows = vec![cells(["", "max", "mean", "RMS", "95 %"])];
     let mut places = String::new();
     for (name, one) in [("forward", &measured.forward), ("backward", &measured.backward)] {
-        let values = [one.max, one.mean, one.rms];
+        let values = [one.max, one.mean, one.rms, one.percentile_95];
         rows.push([vec![name.to_owned()], values.map(number).to_vec()].concat());
         rows.push([vec![String::new()], values.map(&percent).to_vec()].concat());
         places.push_str(&format!("{name} maximum at {}, closest point {}\n", point(one.at), point(one.to)));

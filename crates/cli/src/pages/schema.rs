@@ -90,6 +90,8 @@ pub(crate) struct OneSided {
     mean: f64,
     /// The root mean square over the surface.
     rms: f64,
+    /// What 95 % of the same samples do not exceed.
+    percentile_95: f64,
     /// Samples taken, vertices included.
     samples: usize,
     /// The point at which the maximum was found.

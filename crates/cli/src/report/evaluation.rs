@@ -19,6 +19,9 @@ pub(crate) struct EvaluationReport {
     pub(crate) point: [f64; 3],
     /// The unit normal on the face's side; null where there is none.
     pub(crate) normal: Option<[f64; 3]>,
+    /// Two unit vectors that span the tangent plane: the directions of the derivatives u and v, and at corners of faces where there are
+    /// none the limit tangents of the scheme; null where there is no tangent plane.
+    pub(crate) tangents: Option<[[f64; 3]; 2]>,
     /// By the weights of the second and third corner; null where there are none.
     pub(crate) derivatives: Option<DerivativesReport>,
     /// How the surface bends; null where it has no curvature.
@@ -56,11 +59,11 @@ pub(crate) struct CurvatureReport {
 }
 
 impl EvaluationReport {
-    /// `limits` are the point and the normal that hold where there are no derivatives.
+    /// `limits` are the point and the normal, `corner` the tangents, that hold where there are no derivatives.
     pub(crate) fn new(
         Place { face, weights }: Place,
         input_face: u32,
-        limits: limitmesh::SurfacePoint,
+        (limits, corner): (limitmesh::SurfacePoint, Option<[[f64; 3]; 2]>),
         derivatives: Option<Derivatives>,
     ) -> Self {
         let limit_normal = (limits.normal != [0.0; 3]).then_some(limits.normal);
@@ -70,6 +73,7 @@ impl EvaluationReport {
             barycentric: weights,
             point: derivatives.map_or(limits.position, |derivatives| derivatives.position),
             normal: derivatives.and_then(|derivatives| derivatives.normal()).or(limit_normal),
+            tangents: derivatives.and_then(|derivatives| derivatives.tangents()).or(corner),
             derivatives: derivatives.map(|Derivatives { first: [u, v], second: [uu, uv, vv], .. }| {
                 DerivativesReport { u, v, uu, uv, vv }
             }),

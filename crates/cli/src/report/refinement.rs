@@ -442,6 +442,9 @@ pub(crate) struct ErrorReport {
     pub(crate) certified: bool,
 }
 
+/// A lower bound is told where the upper one is at most so many times as far.
+const NARROW: f64 = 1.25;
+
 impl ErrorReport {
     /// Of a mesh whose control mesh has that diagonal.
     pub(crate) fn new(bounds: &ErrorBounds, diagonal: f64) -> Self {
@@ -470,7 +473,7 @@ impl ErrorReport {
     }
 
     /// `within 0.0998 % of the diagonal (0.0123) of the limit surface, certified; at least 0.0962 %`, with a unit after
-    /// lengths.
+    /// lengths; what it is at least only where that is not far below.
     pub(crate) fn in_words(&self, unit: &str) -> Vec<String> {
         let extent =
             |percent: String, length: String| format!("{percent} % of the diagonal ({length}{unit})");
@@ -479,11 +482,15 @@ impl ErrorReport {
                 "about {} from the limit surface by samples, not certified",
                 extent(upper_bound(percent), upper_bound(upper))
             ),
-            (Some(upper), Some(percent)) => format!(
-                "within {} of the limit surface, certified; at least {} %",
-                extent(upper_bound(percent), upper_bound(upper)),
-                lower_bound(self.lower_percent)
-            ),
+            (Some(upper), Some(percent)) => {
+                let most = extent(upper_bound(percent), upper_bound(upper));
+                // Farther below, it says nothing of what is true.
+                let least = match upper <= NARROW * self.lower {
+                    true => format!("; at least {} %", lower_bound(self.lower_percent)),
+                    false => String::new(),
+                };
+                format!("within {most} of the limit surface, certified{least}")
+            }
             _ => format!(
                 "at least {} from the limit surface, not certified",
                 extent(lower_bound(self.lower_percent), lower_bound(self.lower))

@@ -33,6 +33,16 @@ fn places_of_an_octahedron() {
     near(&corner["point"][0], 24.0 / 55.0);
     near(&corner["normal"][0], 1.0);
     assert!(corner["curvature"].is_null() && corner["derivatives"].is_null());
+    // By symmetry the surface leaves it along the axes, first towards the face's next corner.
+    for (tangent, expected) in [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().enumerate() {
+        (0..3).for_each(|axis| near(&corner["tangents"][tangent][axis], expected[axis]));
+    }
+    // Elsewhere they are the directions of the derivatives.
+    for (tangent, name) in ["u", "v"].into_iter().enumerate() {
+        let by: Vec<f64> = (0..3).filter_map(|axis| place["derivatives"][name][axis].as_f64()).collect();
+        let length = by.iter().map(|x| x * x).sum::<f64>().sqrt();
+        (0..3).for_each(|axis| near(&place["tangents"][tangent][axis], by[axis] / length));
+    }
     for (found, [gaussian, mean]) in
         [(edge, [5.983379501385, -2.531187639857]), (centre, [3.848001180091, -1.961632274431])]
     {

@@ -10,6 +10,7 @@ const CONTRACT: &str = "version surface.path surface.triangles reference.path re
     reference.limit hausdorff.kind hausdorff.symmetric hausdorff.symmetric_percent hausdorff.forward
     hausdorff.backward hausdorff.samples hausdorff.diagonal hausdorff.diagonal_of
     hausdorff.forward_detail.max hausdorff.forward_detail.mean hausdorff.forward_detail.rms
+    hausdorff.forward_detail.percentile_95 hausdorff.backward_detail.percentile_95
     hausdorff.forward_detail.samples hausdorff.forward_detail.at hausdorff.forward_detail.to
     hausdorff.backward_detail.max hausdorff.backward_detail.mean hausdorff.backward_detail.rms
     seconds.prepare seconds.measure";
@@ -78,6 +79,23 @@ fn refinement_with_limit_vertices_approaches_the_limit_surface() {
     let same = measure("{} --limit-of builtin:torus --reference-levels 3", &[&refined]);
     assert!(number(&same["hausdorff"]["symmetric_percent"]) < 1e-10);
     assert_eq!(same["reference"]["limit"]["chosen"], false);
+}
+
+/// What is measured lies on the limit surface with its vertices alone, as the reference does: compared with itself it would be at no
+/// distance. How far it is the next levels show.
+#[test]
+fn a_mesh_of_many_levels_is_not_its_own_reference() {
+    let folder = folder();
+    let refined = folder.path().join("refined.ply");
+    run("refine builtin:tetrahedron -o {} --method uniform --limit --levels 5", &[&refined]).expect(0);
+    let report = measure("{} --limit-of builtin:tetrahedron", &[&refined]);
+    assert_eq!(report["reference"]["limit"]["levels"], 7);
+    let certified =
+        run("measure {} --limit-of builtin:tetrahedron --certified --json", &[&refined]).expect(0).json();
+    let [lower, upper] = ["lower", "upper"].map(|end| number(&certified["hausdorff"][end]));
+    let found = number(&report["hausdorff"]["symmetric"]);
+    // Two levels finer it is a sixteenth of that off itself.
+    assert!(0.9 * lower < found && found < upper, "{found}, certainly from {lower} to {upper}");
 }
 
 /// Area and volume are beside what is asked for: where they are beyond what numbers hold, distances are not.

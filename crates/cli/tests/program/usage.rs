@@ -155,6 +155,9 @@ fn measuring_needs_exactly_one_reference() {
     run("measure builtin:head --limit-of builtin:head --reference-levels 12", &[])
         .expect(2)
         .saying("levels are possible");
+    run("measure builtin:head --limit-of builtin:head --reference-levels 0", &[])
+        .expect(2)
+        .saying("would measure against the control mesh's own triangles");
 }
 
 #[test]

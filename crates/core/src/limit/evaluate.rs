@@ -169,12 +169,38 @@ impl LimitTable<'_> {
     pub fn normal_at(&self, mesh: &Mesh, corner: HalfEdgeId) -> Result<[f64; 3], LimitError> {
         let vertex = mesh.topology().origin(corner);
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
-        let around = mesh.topology().outgoing_ring(vertex);
-        let slot = around.clone().position(|h| h == corner).unwrap_or(0);
-        let faces = around.count();
-        let is_within = |side: &Side<'_>| (slot + faces - side.first) % faces < side.faces;
-        let normal = stencil.sides().find(is_within).map(|side| self.side_normal(mesh, vertex, &side));
-        Ok(normal.unwrap_or(DVec3::ZERO).to_array())
+        let side = stencil.side_of(mesh, corner);
+        Ok(side.map_or(DVec3::ZERO, |side| self.side_normal(mesh, vertex, &side)).to_array())
+    }
+
+    /// Two unit vectors that span the limit tangent plane at the vertex that `corner` leaves, on the side of its face, the
+    /// second to the left of the first as seen from outside. Away from boundaries and sharp edges the first runs along the edge
+    /// of `corner`. `None` without a tangent plane.
+    pub(crate) fn tangents_at(
+        &self,
+        mesh: &Mesh,
+        sharpness: &Sharpness<'_>,
+        corner: HalfEdgeId,
+    ) -> Result<Option<[[f64; 3]; 2]>, LimitError> {
+        let vertex = mesh.topology().origin(corner);
+        let stencil = self.stencil_at(mesh, sharpness, vertex)?;
+        let Some(side) = stencil.side_of(mesh, corner) else { return Ok(None) };
+        let tangents = match self.scheme().support() {
+            Support::TwoRing => {
+                two_ring_tangents(mesh, vertex, &side, &Masks::on_demand(mesh, self.scheme()))
+            }
+            Support::OneRing => one_ring_tangents(mesh, vertex, &side),
+        };
+        // The weights of a closed ring count from its first edge.
+        let turned = match &stencil {
+            Stencil::Plain(plain) if !plain.shape.open => {
+                let slot = slot_of(mesh, corner) as f64;
+                tangents.turned(core::f64::consts::TAU * slot / f64::from(plain.shape.valence))
+            }
+            _ => tangents,
+        };
+        let units = || [turned.first, turned.second].map(|tangent| unit_or_zero(tangent).to_array());
+        Ok(turned.normal().map(|_| units()))
     }
 
     /// Limit position of one vertex.
@@ -279,6 +305,13 @@ impl Stencil {
         }
     }
 
+    /// The side that the face of `corner` is on, at the vertex that it leaves.
+    fn side_of(&self, mesh: &Mesh, corner: HalfEdgeId) -> Option<Side<'_>> {
+        let (slot, topology) = (slot_of(mesh, corner), mesh.topology());
+        let faces = topology.outgoing_ring(topology.origin(corner)).count();
+        self.sides().find(|side| (slot + faces - side.first) % faces < side.faces)
+    }
+
     pub(super) fn sides(&self) -> impl Iterator<Item = Side<'_>> {
         (0..self.side_count()).map(|i| self.side(i))
     }
@@ -351,7 +384,7 @@ pub(super) fn stays(weights: &[f64]) -> bool {
 }
 
 /// Sums of two tangents and the size of what entered them.
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 struct Tangents {
     first: DVec3,
     second: DVec3,
@@ -372,6 +405,13 @@ impl Tangents {
 
     /// The unit normal of the plane they span, if they do span one.
     #[inline]
+    /// Those of a closed ring that is counted from another edge, this angle away on the regular ring.
+    fn turned(&self, angle: f64) -> Self {
+        let (sine, cosine) = angle.sin_cos();
+        let first = cosine * self.first + sine * self.second;
+        Self { first, second: cosine * self.second - sine * self.first, ..*self }
+    }
+
     fn normal(&self) -> Option<DVec3> {
         let squares = [self.first.length_squared(), self.second.length_squared()];
         let least = LEAST_LENGTH * self.greatest;
@@ -408,13 +448,23 @@ fn one_ring_position(mesh: &Mesh, vertex: VertexId, weights: &[f64]) -> [f64; 3]
     ring.fold(start, |sum, (neighbour, &weight)| sum + weight * point(mesh, neighbour)).to_array()
 }
 
+/// Which of the edges at its vertex a half-edge is.
+fn slot_of(mesh: &Mesh, corner: HalfEdgeId) -> usize {
+    let topology = mesh.topology();
+    topology.outgoing_ring(topology.origin(corner)).position(|h| h == corner).unwrap_or(0)
+}
+
 fn one_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> Option<DVec3> {
+    one_ring_tangents(mesh, vertex, side).normal()
+}
+
+fn one_ring_tangents(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> Tangents {
     let centre = point(mesh, vertex);
     let mut tangents = Tangents::default();
     for (neighbour, &weights) in mesh.topology().ring(vertex).zip(side.tangents) {
         tangents.add(weights, point(mesh, neighbour) - centre);
     }
-    tangents.normal()
+    tangents
 }
 
 fn two_ring_position(
@@ -434,6 +484,15 @@ fn two_ring_normal(
     side: &Side<'_>,
     refined: &impl Refined<Point = DVec3>,
 ) -> Option<DVec3> {
+    two_ring_tangents(mesh, vertex, side, refined).normal()
+}
+
+fn two_ring_tangents(
+    mesh: &Mesh,
+    vertex: VertexId,
+    side: &Side<'_>,
+    refined: &impl Refined<Point = DVec3>,
+) -> Tangents {
     let mut tangents = Tangents::default();
     if !side.tangents.is_empty() {
         let centre = refined.moved(vertex);
@@ -441,7 +500,7 @@ fn two_ring_normal(
             tangents.add(side.tangents[i], point - centre);
         });
     }
-    tangents.normal()
+    tangents
 }
 
 /// Calls `visit` for the points around `vertex` after one refinement, numbered as in the stencil's tangents.

@@ -8,7 +8,7 @@
 //! Curvature follows from the first and second fundamental forms (do Carmo, Differential Geometry of Curves and Surfaces, 3-3).
 
 use super::{LimitSurface, regular};
-use crate::index::FaceId;
+use crate::index::{FaceId, HalfEdgeId};
 use crate::parallel;
 use crate::patch::{Patch, root_patch};
 use crate::vector::{DVec3, unit_or_zero, vector};
@@ -53,6 +53,11 @@ impl Derivatives {
         let [along, across] = self.first.map(|first| unit_or_zero(vector(first)));
         let normal = unit_or_zero(along.cross(across));
         (normal != DVec3::ZERO).then(|| normal.to_array())
+    }
+
+    /// The unit directions of both first derivatives; `None` where they span no plane.
+    pub fn tangents(&self) -> Option<[[f64; 3]; 2]> {
+        self.normal().map(|_| self.first.map(|first| unit_or_zero(vector(first)).to_array()))
     }
 
     /// How the surface bends; `None` where the derivatives span no plane.
@@ -105,6 +110,24 @@ impl LimitSurface<'_> {
     /// ```
     pub fn derivatives(&self, face: FaceId, barycentric: [f64; 3]) -> Option<Derivatives> {
         (face.index() < self.mesh.face_count()).then(|| self.derivatives_on(face, &[barycentric]).pop())??
+    }
+
+    /// Two unit vectors that span the tangent plane at a corner of a control face, by the scheme's limit masks: also at irregular
+    /// vertices, where there are no derivatives, and for schemes outside the Loop family. Their cross product looks to the side from
+    /// which the face's corners run counter-clockwise. Away from boundaries and sharp edges the first is the direction in which the
+    /// surface leaves the vertex over the face's edge to the next corner.
+    ///
+    /// `None` where there is no tangent plane, where the place, given by barycentric coordinates, is no corner, and on faces that
+    /// there are not.
+    pub fn tangents_at_corner(&self, face: FaceId, barycentric: [f64; 3]) -> Option<[[f64; 3]; 2]> {
+        let corner = nearest(barycentric);
+        let is_corner = (1..3).all(|step| barycentric[(corner + step) % 3] == 0.0);
+        if !is_corner || face.index() >= self.mesh.face_count() {
+            return None;
+        }
+        let (table, corner) = (self.rules.table(), HalfEdgeId::of(face, corner));
+        let found = table.tangents_at(self.mesh, &self.sharpness, corner);
+        found.map_err(|why| self.rules.fail(why)).ok().flatten()
     }
 
     /// The derivatives at places of many faces, in order, on all threads. Places of one face that stand together share its work.

@@ -42,6 +42,8 @@ pub struct OneSided {
     pub mean: f64,
     /// Root mean square of the same samples.
     pub rms: f64,
+    /// What 95 % of the same samples do not exceed.
+    pub percentile_95: f64,
     /// Samples taken, vertices included. Points measured only in the search for the maximum do not count.
     pub samples: usize,
     /// The point at which the maximum was found.
@@ -156,7 +158,7 @@ fn one_sided(
     let samples = Samples::new(from, options.samples.min(SamplingOptions::MOST_SAMPLES));
     watch.triangles(from.surface().triangles.len());
     let collect = |range, run: &mut Vec<DVec3>| samples.visit(range, |point| run.push(point));
-    let distances = measure_points(to, samples.len(), collect, watch)?;
+    let mut distances = measure_points(to, samples.len(), collect, watch)?;
     let (mut farthest, mut max) = (0, 0.0);
     for (index, &distance) in distances.iter().enumerate() {
         if distance > max {
@@ -165,14 +167,16 @@ fn one_sided(
     }
     // A surface without area has no samples inside; its vertices and sides then stand for it.
     let insides = samples.insides();
-    let (mean, rms) = means(if insides.is_empty() { &distances } else { &distances[insides] }, max);
+    let over_the_surface = if insides.is_empty() { 0..distances.len() } else { insides };
+    let (mean, rms) = means(&distances[over_the_surface.clone()], max);
     let mut at = samples.point(farthest);
     let climbed = climb(&samples, &distances, from, to, watch)?;
     if let Some((point, distance)) = climbed.filter(|found| found.1 > max) {
         (at, max) = (point, distance);
     }
-    let at = at.to_array();
-    Ok(OneSided { max, mean, rms, samples: distances.len(), at, to: to.closest(at).point })
+    let (at, samples) = (at.to_array(), distances.len());
+    let percentile_95 = percentile_95(&mut distances[over_the_surface]);
+    Ok(OneSided { max, mean, rms, percentile_95, samples, at, to: to.closest(at).point })
 }
 
 /// The distances of `count` points to a surface; `collect` adds those of a range to a list. Consecutive ones should be
@@ -213,6 +217,12 @@ fn means(distances: &[f64], max: f64) -> (f64, f64) {
     }
     let count = distances.len() as f64;
     (max * (sum / count), max * (squares / count).sqrt())
+}
+
+/// The least of some distances that 95 % of them do not exceed; 0 of none. Changes their order.
+fn percentile_95(distances: &mut [f64]) -> f64 {
+    let Some(last) = (95 * distances.len()).div_ceil(100).checked_sub(1) else { return 0.0 };
+    *distances.select_nth_unstable_by(last, f64::total_cmp).1
 }
 
 /// The distance of each point to a surface, for heat maps.

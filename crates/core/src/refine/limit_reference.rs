@@ -5,6 +5,37 @@ use super::{RefineError, UniformOptions, uniform};
 use crate::mesh::Mesh;
 use crate::scheme::Scheme;
 
+/// Levels that are enough for most: the distance of such a mesh to the limit surface is about a thousandth of the control
+/// mesh's.
+const USUAL_LEVELS: usize = 5;
+
+/// Triangles that a reference of so many levels has at most: it and its search tree take about a gigabyte.
+const USUAL_TRIANGLES: usize = 4_000_000;
+
+/// Levels that a reference is finer than what is measured against it, at least: a mesh two levels coarser is measured
+/// sixteenfold nearer than it is far itself.
+const FINER: usize = 2;
+
+/// Triangles that a reference has at most for that: four gigabytes.
+const MOST_TRIANGLES: usize = 1 << 24;
+
+/// Levels of [`limit_reference`] that suit a mesh of so many triangles which is measured against the limit surface of a
+/// control mesh of `control_faces` faces: five, or as many as come to four million triangles, but at least two more
+/// than take the control mesh about to the measured mesh's number of triangles, so that a mesh is not compared with itself. `None`
+/// where these come to more than 16 million triangles: [`limit_distance`](super::limit_distance()) needs fewer.
+pub fn reference_levels(control_faces: usize, measured_triangles: usize) -> Option<usize> {
+    let fits = |levels: usize, most: usize| {
+        4usize
+            .checked_pow(levels as u32)
+            .and_then(|times| times.checked_mul(control_faces))
+            .is_some_and(|n| n <= most)
+    };
+    let usual = (0..=USUAL_LEVELS).rev().find(|&levels| fits(levels, USUAL_TRIANGLES)).unwrap_or(0);
+    // Nearer to the next level than to this one.
+    let own = (0..).take_while(|&levels| fits(levels, measured_triangles / 2)).count();
+    Some(usual.max(own + FINER)).filter(|&levels| fits(levels, MOST_TRIANGLES))
+}
+
 /// The limit surface of `control` under `scheme`, as triangles after `levels` uniform refinements with all vertices on
 /// the surface: what the paper measures distances to (section 5).
 ///
@@ -20,6 +51,25 @@ pub fn limit_reference(control: &Mesh, scheme: &dyn Scheme, levels: usize) -> Re
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn references_are_two_levels_finer_than_what_is_measured() {
+        // Small meshes have five levels, or as many as they can afford.
+        assert_eq!(reference_levels(142, 5_000), Some(5));
+        assert_eq!(reference_levels(3674, 20_000), Some(5));
+        assert_eq!(reference_levels(5_000, 5_000), Some(4));
+        // A mesh of five levels is compared with seven, one of nearly as many triangles, too.
+        assert_eq!(reference_levels(200, 200 * 1024), Some(7));
+        assert_eq!(reference_levels(200, 190 * 1024), Some(7));
+        // Large ones as they are with two, as long as there is room.
+        assert_eq!(reference_levels(530_450, 530_450), Some(2));
+        assert_eq!(reference_levels(530_450, 533_106), Some(2));
+        assert_eq!(reference_levels(530_450, 4 * 530_450), None);
+        assert_eq!(reference_levels(1_048_576, 1_000_000), Some(2));
+        assert_eq!(reference_levels(1_048_577, 1_000_000), None);
+        assert_eq!(reference_levels(3000, 3000 * 1024), None);
+        assert_eq!(reference_levels(usize::MAX, usize::MAX), None);
+    }
     use crate::limit::LimitTable;
     use crate::measure::{SamplingOptions, hausdorff};
     use crate::scheme::Loop;

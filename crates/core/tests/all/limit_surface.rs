@@ -462,3 +462,48 @@ fn weights_give_the_points() {
         }
     }
 }
+
+/// The direction in which the surface leaves a vertex over an edge is that of differences, nearer and nearer to it.
+#[test]
+fn tangents_at_irregular_vertices_are_where_the_surface_goes() {
+    let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+    let unit = |a: [f64; 3]| a.map(|x| x / dot(a, a).sqrt());
+    for valence in [3, 4, 5, 7, 12] {
+        for scheme in [&Loop as &dyn Scheme, &ModifiedButterfly] {
+            let mesh = fan(valence);
+            let surface = LimitSurface::new(&mesh, scheme).unwrap();
+            for face in 0..valence {
+                let face = FaceId(face);
+                let corner = (0..3).find(|&i| mesh.triangles()[face.index()][i] == 0).unwrap();
+                let place = |share: f64, step: usize| {
+                    let mut weights = [0.0; 3];
+                    (weights[corner], weights[(corner + step) % 3]) = (1.0 - share, share);
+                    weights
+                };
+                let [along, across] = surface.tangents_at_corner(face, place(0.0, 1)).unwrap();
+                let at = surface.at(face, place(0.0, 1));
+                let towards = |share: f64, step: usize| {
+                    let beside = surface.at(face, place(share, step)).position;
+                    unit([0, 1, 2].map(|i| beside[i] - at.position[i]))
+                };
+                // Both are in the plane, and turn as its normal says.
+                near(dot(along, at.normal), 0.0, 1e-12);
+                near(dot(across, at.normal), 0.0, 1e-12);
+                let cross = [0, 1, 2].map(|i| {
+                    let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                    along[j] * across[k] - along[k] * across[j]
+                });
+                assert!(dot(cross, at.normal) > 0.0, "{valence}");
+                // What is left of the next pattern falls by a constant factor a level.
+                let off = |levels: i32| 1.0 - dot(along, towards(0.5f64.powi(levels), 1));
+                assert!(off(16) < 1e-4 && off(16) < 0.6 * off(8) + 1e-9, "{valence}: {} {}", off(8), off(16));
+                // The other edge of the face leaves to the left of the first.
+                assert!(dot(across, towards(0.5f64.powi(16), 2)) > 0.0, "{valence}");
+            }
+        }
+    }
+    let mesh = octahedron();
+    let surface = LimitSurface::new(&mesh, &Loop).unwrap();
+    assert_eq!(surface.tangents_at_corner(FaceId(0), [0.5, 0.5, 0.0]), None);
+    assert_eq!(surface.tangents_at_corner(FaceId(8), [1.0, 0.0, 0.0]), None);
+}

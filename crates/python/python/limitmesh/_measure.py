@@ -25,8 +25,8 @@ class OneSided:
     ----------
     lower, upper
         It is between these; sampled distances are lower bounds, with ``upper`` infinite.
-    mean, rms
-        Over the surface, of sampled distances.
+    mean, rms, percentile_95
+        Over the surface, of sampled distances; 95 % of the surface is no farther away than the last.
     samples
         How many were taken.
     at, to
@@ -37,6 +37,7 @@ class OneSided:
     upper: float
     mean: float | None
     rms: float | None
+    percentile_95: float | None
     samples: int | None
     at: tuple[float, float, float]
     to: tuple[float, float, float]
@@ -108,7 +109,8 @@ def measure(
     max_work
         Work after which a certified search ends with what it has.
     levels
-        Of uniform refinement that stands for a limit surface when sampling. Default: 5, or fewer for large meshes.
+        Of uniform refinement that stands for a limit surface when sampling, at least 1. Default: 5, or fewer for large meshes, but two
+        more than ``a`` has.
     interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, weld
         What the limit surface is, as for `refine`.
     threads, progress
@@ -142,7 +144,7 @@ def measure(
     if limit_of is None:
         told = _limitmesh.measure(surface, as_mesh(b, name="b")._native(), how, *work)
     else:
-        steps = None if levels is None else min(_options.whole(levels, "levels", 0), 12)
+        steps = None if levels is None else min(_options.whole(levels, "levels", 1), 12)
         reference, control = _inputs.surface_of(
             limit_of, None, creases, corners,
             interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,

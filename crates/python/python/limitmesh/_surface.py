@@ -23,6 +23,9 @@ class SurfacePoints:
     ----------
     positions, normals
         (n, 3), in the mesh's unit; normals are unit vectors, on the face's own side of sharp edges.
+    tangents
+        (n, 2, 3): unit vectors that span the tangent plane: the directions of the first derivatives, and at corners of faces where there
+        are none the limit tangents of the scheme.
     first
         (n, 2, 3): the derivatives by the weights of the face's second and third corner, where that of the first is what they leave of 1.
     second
@@ -35,6 +38,7 @@ class SurfacePoints:
 
     positions: Floats
     normals: Floats
+    tangents: Floats
     first: Floats
     second: Floats
     gaussian: Floats
@@ -99,11 +103,12 @@ def limit_surface(
         scheme=scheme, weld=weld,
     )
     found = _limitmesh.limit_surface(native, control, rows, weights, *_options.work_of(threads, progress))
-    positions, normals, first, second, directions, curvatures = found
+    positions, normals, tangents, first, second, directions, curvatures = found
     gaussian, mean, most, least = np.ascontiguousarray(curvatures.reshape(-1, 4).T)
     return SurfacePoints(
         positions,
         normals,
+        tangents.reshape(-1, 2, 3),
         first.reshape(-1, 2, 3),
         second.reshape(-1, 3, 3),
         gaussian,

@@ -15,6 +15,7 @@
 //! surface, piece by piece: as tight as the cover, but a nearest point and a clip for every piece, where the cover
 //! asks for one nearest point and three scalar products a triangle.
 
+mod between;
 mod cover;
 mod nearby;
 mod piece;
@@ -219,7 +220,7 @@ pub(crate) fn certified_from_known(
 }
 
 /// Work of a search with something known, for each triangle of both surfaces: it ends by itself after some five.
-const KNOWN_WORK: u64 = 100;
+const KNOWN_WORK: u64 = 20;
 
 fn where_known(trees: [&Bvh<'_>; 2], gap: f64) -> CertifiedOptions {
     let count: usize = trees.iter().map(|tree| tree.surface().triangles.len()).sum();

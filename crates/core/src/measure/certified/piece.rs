@@ -5,7 +5,8 @@
 //! * **step**: for any point p of t, d(p) + max |cᵢ − p|, as the distance changes no faster than the point;
 //! * **one triangle**: for any triangle k of the other surface, max d(cᵢ, k), as the distance to a convex set is convex;
 //! * **cover**: see [`super::cover`]; the only one whose error falls with the square of the size of t where t lies
-//!   over several triangles.
+//!   over several triangles;
+//! * **two triangles**: see [`super::between`]; attained where t lies between two.
 
 use super::cover::Cover;
 use super::scale::DEEPEST;
@@ -59,7 +60,7 @@ pub(crate) struct Worker<'t, 's, 'a> {
     /// The farthest point met.
     pub(super) farthest: Sample,
     /// Pieces bounded, and nodes visited in searches.
-    steps: u64,
+    pub(super) steps: u64,
 }
 
 impl<'t, 's, 'a> Worker<'t, 's, 'a> {
@@ -74,7 +75,7 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
     }
 
     /// The nearest triangle to a point of a piece, which counts as a sample.
-    fn sample(&mut self, point: DVec3, guess: u32) -> Near {
+    pub(super) fn sample(&mut self, point: DVec3, guess: u32) -> Near {
         let near = self.target.nearest(point, guess);
         self.steps += u64::from(near.visited);
         self.farthest = self.farthest.farther(Sample { point, distance: near.distance });
@@ -105,6 +106,10 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
         }
         if best > goal && (self.middle_first || face != faces[0]) {
             best = best.min(self.covered(t, face, goal));
+        }
+        if best > goal {
+            let [a, b, c] = faces;
+            best = best.min(self.between(t, &[a, b, c, face], goal - slack) + slack);
         }
         best
     }

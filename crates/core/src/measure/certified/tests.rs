@@ -316,6 +316,69 @@ fn an_interval_cut_short_is_wider_and_still_right() {
     assert!(short.forward.lower <= whole.forward.upper && whole.forward.lower <= short.forward.upper);
 }
 
+/// Flat strips of unit length in `parts`, each drawn from one point of the plane y = 0 to another.
+fn strips(parts: u32, profiles: &[[[f64; 2]; 2]]) -> Shape {
+    let mut shape = Shape { positions: vec![], triangles: vec![] };
+    for [from, to] in profiles {
+        let first = shape.positions.len() as u32;
+        for i in 0..=parts {
+            let y = f64::from(i) / f64::from(parts);
+            shape.positions.extend([[from[0], y, from[1]], [to[0], y, to[1]]]);
+        }
+        let at = |i: u32| first + 2 * i;
+        shape
+            .triangles
+            .extend((0..parts).flat_map(|i| [[at(i), at(i) + 1, at(i) + 3], [at(i), at(i) + 3, at(i) + 2]]));
+    }
+    shape
+}
+
+/// Turned by some angles, so that nothing is along an axis.
+fn turned(shape: &Shape) -> Shape {
+    let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 1.1, -0.7);
+    shape.mapped(|p| (turn * vector(p)).to_array())
+}
+
+/// What is farthest away lies on a whole line, or all over.
+#[test]
+fn work_grows_with_the_logarithm_of_the_gap_where_the_maximum_is_not_one_point() {
+    let wide = |height: f64| [[-1.0, height], [1.0, height]];
+    let ribs: Vec<[[f64; 2]; 2]> =
+        (-2..=2).map(|i| [[0.5 * f64::from(i), -1.0], [0.5 * f64::from(i), 0.0]]).collect();
+    let shingles: Vec<[[f64; 2]; 2]> =
+        (-4..4).map(|i| [[0.25 * f64::from(i), 0.0], [0.25 * f64::from(i + 1), 0.0]]).collect();
+    let cases = [
+        // Between two sheets beside it, and over the slot between them.
+        ("ridge", vec![wide(0.0)], vec![[[-2.0, 0.0], [-1.0, 0.0]], [[1.0, 0.0], [2.0, 0.0]]], 1.0),
+        ("slot", vec![wide(0.5)], vec![[[-2.0, 0.0], [-0.3, 0.0]], [[0.3, 0.0], [2.0, 0.0]]], 0.34f64.sqrt()),
+        // In the middle between two walls, and between two that lean: the distances fall from its middle line.
+        ("walls", vec![wide(0.0)], vec![[[-1.0, -1.0], [-1.0, 1.0]], [[1.0, -1.0], [1.0, 1.0]]], 1.0),
+        ("roof", vec![wide(0.0)], vec![[[-3.0, -1.0], [0.0, 2.0]], [[0.0, 2.0], [3.0, -1.0]]], 2f64.sqrt()),
+        // Over the edges of ribs that are half as far from each other as it is long, and through their middles.
+        ("ribs below", vec![wide(0.5)], ribs.clone(), 0.3125f64.sqrt()),
+        ("ribs", vec![wide(-0.5)], ribs, 0.25),
+        // Over sheets that touch each other without being connected, so that all of it is as far away.
+        ("shingles", vec![wide(0.25)], shingles, 0.25),
+        // An edge and a plane: where they are equally far is a parabola.
+        ("edge and plane", vec![wide(0.0)], vec![[[-1.0, 0.0], [-3.0, 0.0]], [[1.0, -3.0], [1.0, 3.0]]], 1.0),
+    ];
+    for (name, from, to, truth) in &cases {
+        for (own, others) in [(1, 1), (1, 5), (5, 1), (3, 4)] {
+            let (from, to) = (turned(&strips(own, from)), turned(&strips(others, to)));
+            let measured = |gap: f64| {
+                let options = CertifiedOptions::default().gap(Some(gap)).relative_gap(0.0);
+                let found = certify(&from, &to, &options);
+                holds(&found.forward, *truth, gap);
+                found.work
+            };
+            // With the square root of 1 / gap it would be a hundred times as much.
+            let work = [1e-4, 1e-6, 1e-8].map(measured);
+            println!("{name}, {own} and {others} parts: {work:?}");
+            assert!(work[2] <= 3 * work[0] + 500, "{name}, {own} and {others} parts: {work:?}");
+        }
+    }
+}
+
 #[test]
 fn nearly_coincident_surfaces_take_little_work() {
     // The upper bound follows from sheets: a few units for each triangle, however near the surfaces are.

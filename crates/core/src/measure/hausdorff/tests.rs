@@ -260,3 +260,26 @@ fn the_same_bytes_on_any_number_of_threads() {
         assert_eq!(one, on(threads));
     }
 }
+
+/// Over a sheet that rises evenly from 0 to h above a plane, distances are spread evenly between.
+#[test]
+fn the_95th_percentile_of_a_rising_sheet() {
+    let plane = square(1).moved([-1.0, -1.0, 0.0], 3.0);
+    for (n, height) in [(1, 0.4), (7, 1e-120), (3, 1e120)] {
+        let mut sheet = square(n);
+        sheet.positions.iter_mut().for_each(|p| p[2] = height * p[0]);
+        let (sheet, plane) = (sheet.moved([0.0; 3], 1.0), &plane);
+        let wide = if height > 1.0 { 1e121 } else { 1.0 };
+        let found = measure(&sheet, &plane.moved([0.0; 3], wide), 40_000);
+        assert!((found.forward.percentile_95 / height - 0.95).abs() < 0.01, "{n}, {height}: {found:?}");
+    }
+    // A surface without area has its vertices and sides measured.
+    let line = Shape { positions: vec![[0.0, 0.0, 2.0]; 3], triangles: vec![[0, 1, 2]] };
+    assert_eq!(measure(&line, &plane, 100).forward.percentile_95, 2.0);
+    assert_eq!(
+        [percentile_95(&mut []), percentile_95(&mut [3.0]), percentile_95(&mut [2.0, 1.0])],
+        [0.0, 3.0, 2.0]
+    );
+    let mut hundred: Vec<f64> = (1..=100).rev().map(f64::from).collect();
+    assert_eq!(percentile_95(&mut hundred), 95.0);
+}

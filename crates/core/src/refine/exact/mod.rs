@@ -4,6 +4,7 @@
 
 mod estimate;
 mod frames;
+mod sampled;
 pub(super) mod scale;
 mod tighter;
 

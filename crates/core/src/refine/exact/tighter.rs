@@ -36,13 +36,14 @@ const PLACED: f64 = 8.0;
 const IN_ANY_CASE: usize = 200_000;
 const FOR_EACH: usize = 3;
 
-/// Where nothing but a tolerance was asked for, which is proven already, so many triangles are measured at most, against meshes of fewer.
+/// Where nothing but a tolerance was asked for, which is proven already, so many triangles are measured at most, against meshes of so
+/// few that it takes about as long as the refinement.
 const MET_MOST: usize = 20_000;
-const MET_IN_ANY_CASE: usize = 100_000;
-const MET_FOR_EACH: usize = 5;
+const MET_IN_ANY_CASE: usize = 5_000;
+const MET_FOR_EACH: usize = 3;
 
 /// Meshes that are [`FINER`] times nearer have so many times the triangles at least: the square root of that where rims alone are curved.
-const GROWTH: usize = 2;
+const GROWTH: f64 = 2.0;
 
 /// Whether there may be tighter bounds for triangles that stand for the limit surface of `control`.
 pub(super) fn is_loose(error: &ErrorBounds, control: &Mesh) -> bool {
@@ -71,6 +72,10 @@ pub(super) fn tighter(
     let room = options.triangles_by_memory().map_or(usize::MAX, |most| most.saturating_sub(count));
     let most = if is_met { MET_IN_ANY_CASE + MET_FOR_EACH * count } else { IN_ANY_CASE + FOR_EACH * count };
     let most = most.min(room);
+    // Bounds that are much too great, as on needles, would take a mesh that is far too fine.
+    if error.upper.is_finite() && triangles_at(known.finest(), (count, error.upper)) > most as f64 {
+        return Ok(error);
+    }
     let tree = Bvh::new_observed(surface, observer)?;
     // Where there is no bound yet, one that is not tight is of no use.
     let is_bounded = error.upper.is_finite();
@@ -93,15 +98,24 @@ pub(super) fn tighter(
     }
     while let Some(mesh) = found {
         let (count, off) = (mesh.mesh.face_count(), mesh.error.upper);
-        known.measure([&tree, &Bvh::new_observed(mesh.mesh.as_triangles(), observer)?], off, observer)?;
-        let is_last = is_too_fine || near <= known.finest() || GROWTH * count > most;
-        if is_last || known.is_tight() {
+        let trees = [&tree, &Bvh::new_observed(mesh.mesh.as_triangles(), observer)?];
+        // A search that is cut short would take longer with a finer mesh.
+        let is_cut_short = !known.measure(trees, off, observer)?;
+        if is_cut_short || is_too_fine || near <= known.finest() || known.is_tight() {
             break;
         }
         near = (near / FINER).max(known.finest());
+        if triangles_at(near, (count, off)) > most as f64 {
+            break;
+        }
         found = nearer(near, observer)?;
     }
     Ok(if is_bounded || known.is_tight() { known.bounds } else { error })
+}
+
+/// The triangles that a mesh has at least to be so near, by those of one that is farther away.
+fn triangles_at(near: f64, (count, far): (usize, f64)) -> f64 {
+    count as f64 * GROWTH.powf((far / near).log(FINER))
 }
 
 /// What is known of a distance.
@@ -130,13 +144,13 @@ impl Known {
         SHARE * self.distance()
     }
 
-    /// Measures the surface against one that is off by so much.
+    /// Measures the surface against one that is off by so much; `false` where that was cut short.
     fn measure(
         &mut self,
         trees: [&Bvh<'_>; 2],
         off: f64,
         observer: &mut Observer<'_>,
-    ) -> Result<(), RefineError> {
+    ) -> Result<bool, RefineError> {
         let lower = self.bounds.lower;
         // What is found is at most that much above what was, or what turns out to be the distance.
         let gap = (ErrorBounds::TIGHT * self.distance() - lower - 2.0 * off).max(2.0 * off);
@@ -145,6 +159,6 @@ impl Known {
         if found.lower > lower.max(PLACED * off) {
             (self.bounds.lower, self.bounds.at) = (found.lower, found.at);
         }
-        Ok(())
+        Ok(found.converged)
     }
 }

@@ -35,6 +35,9 @@ const MOST_OFF: f64 = 0.125;
 /// What is found is known to this part of the distance: the search takes little of the time.
 const GAP: f64 = 0.04;
 
+/// Bounds so many times what was found are those of needles: to prove less of them takes triangles as short as they are wide.
+const NEEDLES: f64 = 32.0;
+
 /// Triangles over F at most: so many in any case, and one for so many of the mesh, but no more than that. Others would take longer than
 /// all that was done before.
 const IN_ANY_CASE: usize = 200;
@@ -56,7 +59,8 @@ pub(super) fn anew(
     let (control, watch) = (engine.control, engine.watch);
     let count: usize = faces.iter().map(|&face| emission.triangles_of(face).len()).sum();
     let most = (IN_ANY_CASE + emission.triangles.len() / FOR_SO_MANY).min(MOST);
-    let first = faces.first().filter(|_| count <= most && control.criteria.is_none());
+    let is_worth_while = count <= most && control.criteria.is_none() && known.upper <= NEEDLES * lower;
+    let first = faces.first().filter(|_| is_worth_while);
     let Some(&first) = first else { return Ok(None) };
     // Of what gives way to triangulations of rims nothing but these is known. All around that is sharp, so nobody counts on it.
     let is_within_rim = |face: &u32| control.flat.is_within_rim(*face);
