@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
     let found = places.into_iter().zip(points).zip(derivatives);
     let report = |((place, limits), derivatives): ((Place, SurfacePoint), _)| {
         let tangents = surface.tangents_at_corner(FaceId(place.face), place.weights);
-        EvaluationReport::new(place, faces[place.face as usize], (limits, tangents), derivatives)
+        EvaluationReport::new(place, faces[place.face as usize], limits, tangents, derivatives)
     };
     let reports: Vec<EvaluationReport> = found.map(report).collect();
     progress.clear();

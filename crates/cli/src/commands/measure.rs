@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
     let arguments = &MeasureArguments { limit, ..arguments.clone() };
     let surface = surface.in_unit(second.unit, progress)?;
     let a = surface.mesh.as_triangles();
-    let (control, reference_report, whole) = reference((second, a), arguments, progress)?;
+    let (control, reference_report, whole) = reference(second, a, arguments, progress)?;
     let prepare = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
@@ -129,7 +129,8 @@ fn against_limit(
 /// The second surface: a mesh as it is, or one that stands for a limit surface; the control mesh itself, where the
 /// distance to its limit surface is to be certified. And what lengths are given in per cent of.
 fn reference(
-    (input, measured): (Input, Triangles<'_>),
+    input: Input,
+    measured: Triangles<'_>,
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, SurfaceReport, Whole)> {

@@ -63,7 +63,8 @@ impl EvaluationReport {
     pub(crate) fn new(
         Place { face, weights }: Place,
         input_face: u32,
-        (limits, corner): (limitmesh::SurfacePoint, Option<[[f64; 3]; 2]>),
+        limits: limitmesh::SurfacePoint,
+        corner: Option<[[f64; 3]; 2]>,
         derivatives: Option<Derivatives>,
     ) -> Self {
         let limit_normal = (limits.normal != [0.0; 3]).then_some(limits.normal);

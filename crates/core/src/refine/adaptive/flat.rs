@@ -355,21 +355,23 @@ impl FlatRegions {
         own: impl Fn(u32) -> usize,
     ) -> usize {
         let faces = 0..control.mesh.face_count() as u32;
-        faces.map(|face| self.count_over((control, edges), chains, (face, own(face)))).sum()
+        faces.map(|face| self.count_over(control, edges, chains, face, own(face))).sum()
     }
 
     /// Those that one face comes to, of which `own` are its own if it is not flat.
     pub(super) fn count_over(
         &self,
-        mesh: (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
+        edges: &Edges<'_>,
         chains: &Chains,
-        (face, own): (u32, usize),
+        face: u32,
+        own: usize,
     ) -> usize {
         if self.region(face).is_none() {
             return own;
         }
-        let rim = (3 * face..3 * face + 3).filter(|&h| self.is_rim(mesh, h));
-        1 + rim.map(|h| chains.along(mesh.1, h)).sum::<usize>()
+        let rim = (3 * face..3 * face + 3).filter(|&h| self.is_rim((control, edges), h));
+        1 + rim.map(|h| chains.along(edges, h)).sum::<usize>()
     }
 
     /// Whether there may be strips over a face.

@@ -14,7 +14,9 @@ use crate::scheme::Scheme;
 pub(in crate::refine) fn count_in(
     mesh: &Mesh,
     scheme: &dyn Scheme,
-    (options, distance, faces): (&ExactOptions, f64, usize),
+    options: &ExactOptions,
+    distance: f64,
+    faces: usize,
     observer: &mut Observer<'_>,
 ) -> Result<Vec<f64>, RefineError> {
     with_engine(mesh, scheme, (options, &Demands::default()), observer, |engine| {
@@ -29,7 +31,7 @@ pub(in crate::refine) fn count_in(
         let flat = &engine.control.flat;
         let count = |face: u32| {
             let own = plan.closed[face as usize].triangles as usize;
-            let count = flat.count_over((engine.control, &engine.edges), &plan.chains, (face, own)) as f64;
+            let count = flat.count_over(engine.control, &engine.edges, &plan.chains, face, own) as f64;
             if flat.may_have_strips(face) { left * count } else { count }
         };
         Ok((0..faces as u32).map(count).collect())

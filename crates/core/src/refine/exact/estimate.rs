@@ -73,7 +73,7 @@ pub fn exact_estimate_observed(
         return Ok(of(options.budget().0, false));
     }
     if let Some(tolerance) = options.tolerance.filter(|_| options.asks_for_distances_alone()) {
-        let (triangles, is_counted) = sampled::triangles(control, scheme, (options, tolerance), observer)?;
+        let (triangles, is_counted) = sampled::triangles(control, scheme, options, tolerance, observer)?;
         return Ok(of(triangles, is_counted));
     }
     let coarsest = coarsest(control, options);

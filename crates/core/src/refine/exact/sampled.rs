@@ -64,7 +64,8 @@ struct Drawn {
 pub(super) fn triangles(
     control: &Mesh,
     scheme: &dyn Scheme,
-    (options, tolerance): (&ExactOptions, f64),
+    options: &ExactOptions,
+    tolerance: f64,
     observer: &mut Observer<'_>,
 ) -> Result<(usize, bool), RefineError> {
     let faces = control.face_count();
@@ -134,8 +135,8 @@ impl Sampling<'_> {
         let is_whole = drawn.len() == self.shares.len();
         let seeds: Vec<HalfEdgeId> = drawn.iter().map(|one| HalfEdgeId::of(FaceId(one.face), 0)).collect();
         let around = (!is_whole).then(|| submesh(self.control, &self.sharpness, &seeds, rings(self.scheme)));
-        let asked = (&self.options, times * self.tolerance, seeds.len());
-        let counts = count_in(around.as_ref().unwrap_or(self.control), self.scheme, asked, observer)?;
+        let (mesh, distance) = (around.as_ref().unwrap_or(self.control), times * self.tolerance);
+        let counts = count_in(mesh, self.scheme, &self.options, distance, seeds.len(), observer)?;
         let added: Vec<f64> =
             drawn.iter().zip(counts).map(|(one, count)| one.weight * (count - 1.0)).collect();
         let sum: f64 = added.iter().sum();

@@ -73,7 +73,7 @@ pub(super) fn tighter(
     let most = if is_met { MET_IN_ANY_CASE + MET_FOR_EACH * count } else { IN_ANY_CASE + FOR_EACH * count };
     let most = most.min(room);
     // Bounds that are much too great, as on needles, would take a mesh that is far too fine.
-    if error.upper.is_finite() && triangles_at(known.finest(), (count, error.upper)) > most as f64 {
+    if error.upper.is_finite() && triangles_at(known.finest(), count, error.upper) > most as f64 {
         return Ok(error);
     }
     let tree = Bvh::new_observed(surface, observer)?;
@@ -105,7 +105,7 @@ pub(super) fn tighter(
             break;
         }
         near = (near / FINER).max(known.finest());
-        if triangles_at(near, (count, off)) > most as f64 {
+        if triangles_at(near, count, off) > most as f64 {
             break;
         }
         found = nearer(near, observer)?;
@@ -114,7 +114,7 @@ pub(super) fn tighter(
 }
 
 /// The triangles that a mesh has at least to be so near, by those of one that is farther away.
-fn triangles_at(near: f64, (count, far): (usize, f64)) -> f64 {
+fn triangles_at(near: f64, count: usize, far: f64) -> f64 {
     count as f64 * GROWTH.powf((far / near).log(FINER))
 }
 
