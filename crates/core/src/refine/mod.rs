@@ -10,6 +10,7 @@ mod exact;
 mod exact_options;
 mod exact_result;
 mod junctions;
+mod kept_faces;
 mod level;
 mod levels_of_detail;
 mod limit_distance;
