@@ -166,23 +166,55 @@ fn sniff_text(bytes: &[u8]) -> Option<Format> {
         b"ply" => Some(Format::Ply),
         b"v" | b"vn" | b"vt" if next_is_number() => Some(Format::Obj),
         b"mtllib" | b"usemtl" | b"o" | b"g" => Some(Format::Obj),
-        _ if off_prefix(word).is_some() => Some(Format::Off),
+        _ if off_keyword(word).is_some() => Some(Format::Off),
         _ if is_ascii_stl(bytes) => Some(Format::Stl),
         _ => None,
     }
 }
 
-/// The letters before `OFF` in the keyword of an OFF file, such as `CN`; `None` for any other word.
-pub(crate) fn off_prefix(word: &[u8]) -> Option<&[u8]> {
-    let prefix = word.strip_suffix(b"OFF")?;
-    // Geomview: "[ST][C][N][4][n]OFF".
-    let rest = prefix.strip_prefix(b"ST").unwrap_or(prefix);
-    let rest = rest.strip_prefix(b"C").unwrap_or(rest);
-    let rest = rest.strip_prefix(b"N").unwrap_or(rest);
-    let rest = rest.strip_prefix(b"4").unwrap_or(rest);
-    let rest = rest.strip_prefix(b"n").unwrap_or(rest);
-    // Both orders of colour and normal are met in files.
-    (rest.is_empty() || prefix == b"NC").then_some(prefix)
+/// What the keyword of an OFF file says.
+#[derive(Default)]
+pub(crate) struct OffKeyword<'a> {
+    /// Whether normals, colours and texture coordinates follow a vertex's position, in this order.
+    pub(crate) has_normals: bool,
+    pub(crate) has_colours: bool,
+    pub(crate) has_textures: bool,
+    /// Whether a vertex has another number of coordinates than three.
+    pub(crate) has_other_dimension: bool,
+    /// Digits that follow the keyword without a blank: the number of vertices, as in many files of ModelNet.
+    pub(crate) glued: &'a [u8],
+}
+
+/// Reads a word as the keyword of an OFF file, such as `STCNOFF`, `coff` or `OFF216`; `None` for any other word.
+pub(crate) fn off_keyword(word: &[u8]) -> Option<OffKeyword<'_>> {
+    const OFF: usize = 3;
+    let at = word.windows(OFF).position(|three| three.eq_ignore_ascii_case(b"OFF"))?;
+    let (mut letters, off, glued) = (&word[..at], &word[at..at + OFF], &word[at + OFF..]);
+    if !glued.iter().all(u8::is_ascii_digit) {
+        return None;
+    }
+    let mut keyword = OffKeyword { glued, ..OffKeyword::default() };
+    // Geomview: "[ST][C][N][4][n]OFF". In small letters, n is taken for normals, which are far more common.
+    for dimension in [b'n', b'4'] {
+        if (dimension == b'4' || off == b"OFF") && letters.last() == Some(&dimension) {
+            keyword.has_other_dimension = true;
+            letters = &letters[..letters.len() - 1];
+        }
+    }
+    // All orders of the other letters are met in files.
+    while !letters.is_empty() {
+        let (is_met, length) = match letters.to_ascii_uppercase().as_slice() {
+            [b'S', b'T', ..] => (&mut keyword.has_textures, 2),
+            [b'C', ..] => (&mut keyword.has_colours, 1),
+            [b'N', ..] => (&mut keyword.has_normals, 1),
+            _ => return None,
+        };
+        if std::mem::replace(is_met, true) {
+            return None;
+        }
+        letters = &letters[length..];
+    }
+    Some(keyword)
 }
 
 /// Whether a text begins as an ASCII STL does: `solid` and, after its line, `facet` or `endsolid`.

@@ -23,6 +23,8 @@ fn peak_of<T>(work: impl FnOnce() -> T) -> usize {
 #[test]
 fn memory_follows_the_size_of_the_file() {
     promises_take_no_room();
+    packages_that_swell_take_a_stated_room();
+    zeros_take_no_room();
     room_is_exact();
     a_large_model();
 }
@@ -56,6 +58,55 @@ fn promises_take_no_room() {
         let peak = peak_of(|| read_bytes(&bytes, format));
         let text = String::from_utf8_lossy(&bytes);
         assert!(peak < 16 * 1024, "{peak} bytes to read {} bytes of {format}:\n{text}", bytes.len());
+    }
+}
+
+/// A package of some hundred kilobytes that claims a quarter of a gigabyte is given up at a hundred times its size and 32 MiB, and the room for
+/// these is at most doubled where it grows.
+fn packages_that_swell_take_a_stated_room() {
+    use std::io::Write;
+    let mut writer = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    let options = zip::write::SimpleFileOptions::default();
+    let relationship = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
+    let blanks = vec![b' '; 1 << 20];
+    writer.start_file("_rels/.rels", options).unwrap();
+    write!(
+        writer,
+        "<Relationships><Relationship Target=\"/m.model\" Type=\"{relationship}\"/></Relationships>"
+    )
+    .unwrap();
+    writer.start_file("m.model", options).unwrap();
+    (0..256).for_each(|_| writer.write_all(&blanks).unwrap());
+    let bytes = writer.finish().unwrap().into_inner();
+    let stated = (32 << 20) + 100 * bytes.len();
+    assert!(stated < 64 << 20);
+    let peak = peak_of(|| read_bytes(&bytes, Format::ThreeMf).unwrap_err());
+    assert!(peak < 3 * stated, "{peak} bytes to refuse {}", bytes.len());
+}
+
+/// Accessors that are zeros, named by a thousand meshes, a thousand morph targets, or a thousand nodes with instances.
+fn zeros_take_no_room() {
+    let zeros = r#"[{"count":1000000,"type":"VEC3","componentType":5126}]"#;
+    let many = |one: &str| vec![one; 1000].join(",");
+    let mesh = r#"{"primitives":[{"attributes":{"POSITION":0}}]}"#;
+    let documents = [
+        format!(r#""meshes":[{}]"#, many(mesh)),
+        format!(
+            r#""meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"targets":[{}]}}]}}]"#,
+            many(r#"{"POSITION":0}"#)
+        ),
+        format!(
+            r#""meshes":[{mesh}],"nodes":[{}]"#,
+            many(r#"{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}}}"#)
+        ),
+    ];
+    for members in documents {
+        let text = format!(r#"{{"asset":{{"version":"2.0"}},"accessors":{zeros},{members}}}"#);
+        let peak = peak_of(|| {
+            let said = read_bytes(text.as_bytes(), Format::Gltf).unwrap_err().to_string();
+            assert!(said.contains("without a buffer view"), "{said}");
+        });
+        assert!(peak < 16 << 20, "{peak} bytes to refuse {}", text.len());
     }
 }
 

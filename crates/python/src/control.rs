@@ -1,16 +1,18 @@
 //! From a soup to the control mesh that is refined, and the way back: which row of the input each element is from.
 
+use limitmesh::carry::borders;
 use limitmesh::interpolate::{InterpolateOptions, Interpolated, InterpolationMethod, interpolate_observed};
 use limitmesh::mesh::{BoundaryRule, Channel, Diagnosis, Domain, FaceParts};
 use limitmesh::part::{Look, interpolate_unfolded_observed};
 use limitmesh::progress::Observer;
+use limitmesh::refine::ExactOptions;
 use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, PolygonSoup};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::Failure;
-use crate::options::ControlOptions;
+use crate::options::{ControlOptions, Goals};
 
 /// What to make of a soup.
 #[derive(Clone)]
@@ -128,12 +130,12 @@ pub(crate) struct Tables {
 }
 
 impl Control {
-    /// Whether triangles must not reach over several faces: something differs between these.
-    pub(crate) fn tells_faces_apart(&self) -> bool {
-        let is_one = |channel: &Channel| {
-            channel.domain == Domain::Face && channel.indices.iter().all(|&index| index == channel.indices[0])
-        };
-        !self.channels.iter().all(is_one)
+    /// What is asked of exact refinement. Triangles stay within one face where channels have other values in other places of it, and
+    /// else where faces have one value.
+    pub(crate) fn options(&self, goals: &Goals, recipe: &Recipe) -> ExactOptions {
+        let varies = self.channels.iter().any(Channel::varies_within_faces);
+        let options = goals.exact(self.diagonal, varies, recipe.unfolds());
+        options.kept_edges(borders(&self.channels, &self.mesh))
     }
 }
 

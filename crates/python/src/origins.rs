@@ -1,17 +1,62 @@
 //! Where vertices came from, as arrays once somebody asks for them: few do, and to make them takes as long as all else that is handed over.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use limitmesh::Mesh;
 use limitmesh::mesh::FaceParts;
-use limitmesh::refine::Origin;
+use limitmesh::refine::{Origin, UniformOptions, uniform_observed};
+use limitmesh::scheme::Loop;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use crate::control::Tables;
+use crate::run::run;
 use crate::tell;
+
+/// Where vertices came from.
+pub(crate) enum Trail {
+    /// By vertex; nothing is known where there are none.
+    Known(Vec<Origin>),
+    /// As uniform refinement numbers them, which the control mesh's connections alone decide.
+    Uniform { control: Arc<Mesh>, levels: usize },
+}
+
+impl Default for Trail {
+    fn default() -> Self {
+        Self::Known(Vec::new())
+    }
+}
+
+impl Trail {
+    /// That of the vertices of uniform refinement.
+    pub(crate) fn uniform(control: Mesh, levels: usize) -> Self {
+        Self::Uniform { control: Arc::new(control), levels }
+    }
+
+    fn is_unknown(&self) -> bool {
+        matches!(self, Self::Known(origins) if origins.is_empty())
+    }
+
+    fn origins(&self, py: Python<'_>) -> PyResult<Cow<'_, [Origin]>> {
+        match self {
+            Self::Known(origins) => Ok(Cow::Borrowed(origins)),
+            Self::Uniform { control, levels } => {
+                let (control, levels) = (Arc::clone(control), *levels);
+                let options = UniformOptions::default().levels(levels).origins(true);
+                let job = move |observer: &mut _| {
+                    Ok(uniform_observed(&control, &Loop, &options, observer)?.origins)
+                };
+                run(py, 1, None, job).map(Cow::Owned)
+            }
+        }
+    }
+}
 
 /// Where vertices are on the control mesh, and what that was made of.
 #[pyclass(frozen)]
 pub(crate) struct Origins {
-    origins: Vec<Origin>,
+    trail: Trail,
     parts: FaceParts,
     faces: Vec<u32>,
     corners: Vec<u32>,
@@ -22,9 +67,9 @@ type Rows<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray2<i64>>, Bound<'p
 
 impl Origins {
     /// None where the library tells of none.
-    pub(crate) fn new(tables: Tables, origins: Vec<Origin>) -> Option<Self> {
+    pub(crate) fn new(tables: Tables, trail: Trail) -> Option<Self> {
         let Tables { parts, faces, corners, .. } = tables;
-        (!origins.is_empty()).then_some(Self { origins, parts, faces, corners })
+        (!trail.is_unknown()).then_some(Self { trail, parts, faces, corners })
     }
 }
 
@@ -32,11 +77,12 @@ impl Origins {
 impl Origins {
     /// As arrays.
     fn rows<'py>(&self, py: Python<'py>) -> PyResult<Rows<'py>> {
+        let origins = self.trail.origins(py)?;
         let (faces, vertices, barycentric) = py.detach(|| {
-            let count = self.origins.len();
+            let count = origins.len();
             let (mut faces, mut vertices) = (Vec::with_capacity(count), Vec::with_capacity(count));
             let mut barycentric = Vec::with_capacity(count);
-            for origin in &self.origins {
+            for origin in origins.iter() {
                 let (face, weights) = self.parts.on_whole(origin.face, origin.barycentric);
                 let face = face as usize;
                 faces.push(i64::from(self.faces[face]));

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use limitmesh::carry::{borders, carried};
+use limitmesh::carry::carried;
 use limitmesh::refine::{ExactStop, Frame, Frames, exact_frames_observed, exact_observed};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -119,11 +119,7 @@ pub(crate) fn replay<'py>(
         let positions = soup.positions.clone();
         let control = recipe.control(soup, observer)?;
         let sources = Sources::of(&control, &positions)?;
-        let options = goals
-            .exact(control.diagonal, control.tells_faces_apart(), recipe.unfolds())
-            .kept_edges(borders(&control.channels, &control.mesh))
-            .flat_regions(false)
-            .origins(true);
+        let options = control.options(&goals, &recipe).flat_regions(false).origins(true);
         let found = exact_observed(&control.mesh, recipe.scheme, &options, observer)?;
         let own = limitmesh::refine::Replay::new_observed(&control.mesh, recipe.scheme, &found, observer)?;
         let channels = match control.channels.is_empty() {
@@ -166,9 +162,7 @@ pub(crate) fn refine_frames<'py>(
             .enumerate()
             .map(|(frame, own)| sources.positions(own, &format!("frames[{frame}]")))
             .collect::<Result<Vec<_>, _>>()?;
-        let options = goals
-            .exact(control.diagonal, control.tells_faces_apart(), recipe.unfolds())
-            .kept_edges(borders(&control.channels, &control.mesh));
+        let options = control.options(&goals, &recipe);
         let found = exact_frames_observed(&control.mesh, recipe.scheme, &frames, &options, observer)?;
         let Frames { mut refined, replay, errors, .. } = found;
         let worst = errors.iter().map(|error| error.upper).fold(0.0, f64::max);

@@ -61,6 +61,27 @@ def test_three_dimensional_arrays_are_corners(octahedron):
         found.at_vertices("st")
 
 
+def test_flat_regions_end_where_the_values_of_faces_do():
+    # A drum of 24 facets, its ends fans around their middles, which are the last two vertices.
+    turn = np.arange(24) * np.pi / 12
+    ring = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+    vertices = np.concatenate([ring, ring + [0, 0, 1], [[0, 0, 0], [0, 0, 1]]])
+    i, j = np.arange(24), (np.arange(24) + 1) % 24
+    faces = np.concatenate([np.stack(rows, axis=1) for rows in ((i, j, j + 24), (i, j + 24, i + 24), (j, i, 0 * i + 48), (i + 24, j + 24, 0 * i + 49))])
+    refined = lambda **channels: limitmesh.refine(vertices, faces, crease_angle=60, tolerance=1e-4, channels=channels)
+    plain = len(refined().faces)
+    # As trimesh reads STL files.
+    constant = refined(stl=np.zeros(96, dtype=np.int64))
+    assert len(constant.faces) == plain and (constant.channels["stl"][:] == 0).all()
+    assert len(refined(heat=np.ones(50)).faces) == plain
+    half = refined(half=(np.arange(96) % 24 < 12).astype(np.int64))
+    divided = len(limitmesh.refine(vertices, faces, crease_angle=60, tolerance=1e-4, flat_regions=False).faces)
+    assert plain <= len(half.faces) < divided / 2
+    # The facets from 0 to 11 are above the plane y = 0, on which both halves end by symmetry.
+    y = half.vertices[half.faces][:, :, 1].mean(axis=1)
+    np.testing.assert_array_equal(half.channels["half"][:][:, 0], (y > 0).astype(float))
+
+
 def test_results_are_meshes_again(octahedron):
     vertices, faces = octahedron
     once = limitmesh.refine(vertices, faces, tolerance=0.1, channels={"x": vertices[:, 0]})

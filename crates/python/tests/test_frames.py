@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -25,6 +27,24 @@ def places(refined: limitmesh.Refined, faces: np.ndarray) -> tuple[np.ndarray, n
     own = faces[refined.vertex_face]
     same = own[:, :, None] == refined.barycentric_vertices[:, None]
     return refined.vertex_face, (same * refined.barycentric[:, None]).sum(axis=2)
+
+
+def test_replays_and_refined_frames_pickle(octahedron):
+    vertices, faces = octahedron
+    moving = limitmesh.replay(vertices, faces, tolerance=0.01)
+    frames = limitmesh.refine_frames(bent(vertices), faces, tolerance=0.05)
+    for replay in (moving, frames.replay):
+        again = pickle.loads(pickle.dumps(replay))
+        assert again.faces.tobytes() == replay.faces.tobytes() and repr(again) == repr(replay)
+        for positions in bent(vertices):
+            for own, expected in zip(again(positions), replay(positions)):
+                assert own.tobytes() == expected.tobytes()
+        # And once more, from one that was prepared again.
+        assert pickle.loads(pickle.dumps(again))(vertices)[0].tobytes() == replay(vertices)[0].tobytes()
+    again = pickle.loads(pickle.dumps(frames))
+    assert again.vertices.tobytes() == frames.vertices.tobytes() and again.errors == frames.errors
+    # With what was asked for before it was pickled.
+    assert pickle.loads(pickle.dumps(frames)).normals.tobytes() == frames.normals.tobytes()
 
 
 def test_a_replay_is_on_each_frames_own_surface(octahedron):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import subprocess
 import sys
 import textwrap
@@ -228,6 +229,33 @@ def test_threads_end_with_their_front():
     assert len(os.listdir("/proc/self/task")) == during - 6
 
 
+def test_fronts_pickle():
+    front = limitmesh.Front("builtin:bunny", crease_angle=60)
+    front.update(tolerance="1%")
+    again = pickle.loads(pickle.dumps(front))
+    assert surface(again) == surface(front)
+    assert (again.bound, again.certified, again.levels, repr(again)) == (front.bound, front.certified, front.levels, repr(front))
+    for demand in ({"tolerance": "0.5%"}, {"triangles": "9k"}):
+        for one in (front, again):
+            changes = one.update(**demand)
+            assert len(changes.faces) > 0
+        assert surface(again) == surface(front)
+
+
+def test_an_update_within_an_update_is_refused():
+    front = limitmesh.Front("builtin:bunny")
+    met: list[RuntimeError] = []
+
+    def progress(_: limitmesh.Progress) -> None:
+        if not met:
+            with pytest.raises(RuntimeError, match="another thread, or this update's own progress function") as caught:
+                front.update(tolerance="1%")
+            met.append(caught.value)
+
+    front.update(tolerance=0.0, triangles=300_000, progress=progress)
+    assert len(met) == 1 and len(front.faces) <= 300_000
+
+
 def test_two_threads_at_one_front_are_told():
     front = limitmesh.Front("builtin:bunny")
     met: list[BaseException] = []
@@ -243,7 +271,7 @@ def test_two_threads_at_one_front_are_told():
         thread.start()
     for thread in threads:
         thread.join()
-    assert len(met) <= 1
+    assert len(met) <= 1 and all("each thread needs one of its own" in str(why) for why in met)
     front.update(tolerance="1%")
     assert front.bound > 0
 

@@ -37,8 +37,24 @@ def loop_step(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.n
     return np.array(fine), np.array(parts)
 
 
+def limits(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Where the vertices of a closed mesh go in the limit, by the closed form of Loop's."""
+    around: list[set[int]] = [set() for _ in vertices]
+    for face in faces.tolist():
+        for i in range(3):
+            around[face[i]] |= {face[i - 1], face[i - 2]}
+    moved = []
+    for v, ring in enumerate(around):
+        k = len(ring)
+        beta = (5 / 8 - (3 / 8 + np.cos(2 * np.pi / k) / 4) ** 2) / k
+        weight = 1 / (3 / (8 * beta) + k)
+        moved.append((1 - k * weight) * vertices[v] + weight * sum(vertices[u] for u in ring))
+    return np.array(moved)
+
+
 def test_uniform_refinement_is_loops(octahedron):
     expected_vertices, expected_faces = loop_step(*loop_step(*octahedron))
+    expected_vertices = limits(expected_vertices, expected_faces)
     found = limitmesh.refine(*octahedron, method="uniform", levels=2)
     assert found.vertices.shape == expected_vertices.shape
     assert found.faces.shape == expected_faces.shape
@@ -46,6 +62,70 @@ def test_uniform_refinement_is_loops(octahedron):
     order = lambda points: points[np.lexsort(np.round(points, 9).T)]
     np.testing.assert_allclose(order(found.vertices), order(expected_vertices), atol=1e-12)
     assert found.error is None and found.stop == "levels"
+
+
+@pytest.mark.parametrize("levels", [0, 1, 3, 5])
+@pytest.mark.parametrize("index_dtype", [np.int32, np.uint32, np.int64])
+def test_uniform_triangles_come_from_their_faces(octahedron, levels, index_dtype):
+    vertices, faces = octahedron
+    found = limitmesh.refine(vertices, faces, method="uniform", levels=levels, index_dtype=index_dtype)
+    assert found.faces.dtype == index_dtype and len(found.faces) == 8 * 4**levels and found.levels == levels
+    np.testing.assert_array_equal(found.parent_face, np.arange(8).repeat(4**levels))
+    # Corners are where they are on their faces: three of a row of equal parts, a part's area apart.
+    places = np.einsum("nk,nkx->nx", found.barycentric, vertices[found.barycentric_vertices])
+    np.testing.assert_allclose(np.abs(places).sum(axis=1), 1.0)
+    assert (np.sign(places[found.faces].mean(axis=1)) == np.sign(vertices[faces[found.parent_face]].mean(axis=1))).all()
+    sides = np.diff(places[found.faces], axis=1)
+    area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    np.testing.assert_allclose(area, np.sqrt(3.0) / 4**levels)
+    # The surface has the octahedron's symmetries.
+    np.testing.assert_allclose(found.normals[:6], vertices, atol=1e-12)
+    again = pickle.loads(pickle.dumps(found))
+    np.testing.assert_array_equal(again.barycentric, found.barycentric)
+    carried = limitmesh.refine(vertices, faces, method="uniform", levels=levels, channels={"x": vertices[:, 0]})
+    assert carried.vertices.tobytes() == found.vertices.tobytes()
+    np.testing.assert_allclose(carried.at_vertices("x")[:, 0], places[:, 0], atol=1e-12)
+
+
+@pytest.mark.parametrize("count", [5000, 5e3, "5000", "5k", "5K", " 5,000 ", "5_000", "5e3", "0.005M", "5.0k"])
+def test_counts_are_taken_as_people_write_them(count):
+    assert len(limitmesh.refine("builtin:cup", triangles=count).faces) == len(limitmesh.refine("builtin:cup", triangles=5000).faces)
+    with pytest.warns(limitmesh.StoppedShort):
+        assert len(limitmesh.refine("builtin:cup", tolerance=1e-9, max_triangles=count).faces) <= 5000
+
+
+@pytest.mark.parametrize("count", ["", "k", "1.5", "-1", "1,5", "20,00", ",000", "1e-3", "nan", "inf", "20kk", "0x10", "0", "1_0"])
+def test_what_is_no_count_is_refused(count):
+    with pytest.raises(limitmesh.OptionError, match="triangles is .*, expected a whole number of at least 1, such as '20000', '20,000', '20k' or '2e4'"):
+        limitmesh.refine("builtin:cup", triangles=count)
+
+
+def test_meshes_and_results_are_shown_in_a_line(octahedron):
+    vertices, faces = octahedron
+    many = np.zeros((100_000, 3))
+    mesh = limitmesh.Mesh(many, many.astype(int), {"heat": many[:, 0]}, creases=[(0, 1)] * 1000)
+    assert str(mesh) == "Mesh(100000 vertices, 100000 faces, channels=<heat>, creases=<1000 rows>)"
+    assert repr(limitmesh.Mesh(vertices.tolist(), faces.tolist())) == "Mesh(6 vertices, 8 faces)"
+    found = limitmesh.refine(vertices, faces, tolerance=0.01, channels={"x": vertices[:, 0]})
+    assert repr(found.channels["x"]).startswith("Channel(values=<")
+    front = limitmesh.Front(vertices, faces)
+    shown = [
+        found,
+        found.split(),
+        found.channels["x"],
+        limitmesh.simplify(found, triangles=100),
+        limitmesh.repair(vertices, faces),
+        limitmesh.project(vertices, vertices, faces),
+        limitmesh.intersect(2.0 * vertices, -vertices, vertices, faces),
+        limitmesh.limit_surface(vertices, faces, at=[0], barycentric=[[1, 0, 0]]),
+        limitmesh.levels_of_detail(vertices, faces, levels=2),
+        limitmesh.refine_frames([vertices, 2.0 * vertices], faces, tolerance=0.1),
+        front.update(tolerance=0.01),
+        front,
+    ]
+    for one in shown:
+        text = f"{one} {one!r}"
+        assert "\n" not in text and "array" not in text and len(text) < 2500, text
 
 
 def test_limits_are_those_of_many_steps(octahedron):

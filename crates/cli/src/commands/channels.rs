@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use limitmesh::carry::carried;
-use limitmesh::mesh::{Channel, Domain, FaceParts};
+use limitmesh::mesh::{Channel, FaceParts};
 use limitmesh::refine::Traced;
 use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, Triangles};
@@ -110,7 +110,7 @@ impl Channels {
 
     /// Whether one has other values in another place of a face.
     pub(super) fn vary_within_faces(&self) -> bool {
-        self.channels.iter().any(|channel| channel.domain != Domain::Face)
+        self.channels.iter().any(Channel::varies_within_faces)
     }
 
     /// Those of the refined mesh.

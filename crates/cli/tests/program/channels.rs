@@ -199,3 +199,50 @@ fn materials_that_stay_behind_are_told() {
     let beside = run("refine {} -o {}", &[&input, &folder.path().join("out.obj")]).expect(0);
     assert!(!beside.stderr.contains("paint.mtl"), "{}", beside.stderr);
 }
+
+/// A drum of 24 facets in PLY, whose faces have a number as `stl`, as trimesh writes what it reads from STL files.
+fn drum(folder: &TempDir, name: &str, stl: Option<&dyn Fn(u32) -> u32>) -> PathBuf {
+    let mut text = "ply\nformat ascii 1.0\nelement vertex 50\n".to_owned();
+    text += "property double x\nproperty double y\nproperty double z\nelement face 96\n";
+    text += "property list uchar int vertex_indices\n";
+    text += if stl.is_some() { "property ushort stl\nend_header\n" } else { "end_header\n" };
+    for z in 0..2 {
+        for i in 0..24 {
+            let (s, c) = (f64::from(i) * std::f64::consts::TAU / 24.0).sin_cos();
+            writeln!(text, "{c} {s} {z}").expect("text");
+        }
+    }
+    text += "0 0 0\n0 0 1\n";
+    for i in 0..24u32 {
+        let j = (i + 1) % 24;
+        for [a, b, c] in [[i, j, j + 24], [i, j + 24, i + 24], [j, i, 48], [i + 24, j + 24, 49]] {
+            let value = stl.map_or_else(String::new, |stl| format!(" {}", stl(i)));
+            writeln!(text, "3 {a} {b} {c}{value}").expect("text");
+        }
+    }
+    file(folder, name, &text)
+}
+
+/// Numbers of faces that are all alike change nothing; others end flat regions where they differ.
+#[test]
+fn values_of_faces_bound_flat_regions() {
+    let folder = folder();
+    let refined = |name: &str, stl: Option<&dyn Fn(u32) -> u32>, options: &str| {
+        let (input, output) = (drum(&folder, name, stl), folder.path().join("out.ply"));
+        let command = format!("refine {{}} -o {{}} --crease-angle 60 --tolerance 0.01% {options}");
+        run(&command, &[&input, &output]).expect(0);
+        soup(&output)
+    };
+    let plain = refined("plain.ply", None, "").faces.len();
+    let constant = refined("constant.ply", Some(&|_| 0), "");
+    assert_eq!(constant.faces.len(), plain);
+    let halves = refined("halves.ply", Some(&|facet| facet / 12), "");
+    let divided = refined("plain.ply", None, "--divide-flat").faces.len();
+    assert!(plain <= halves.faces.len() && 2 * halves.faces.len() < divided);
+    // By symmetry the halves end where y is 0.
+    let stl = halves.channels.iter().find(|channel| channel.name == "stl").expect("the channel");
+    for (face, corners) in halves.faces.iter().enumerate() {
+        let y: f64 = corners.iter().map(|&v| halves.positions[v as usize][1]).sum();
+        assert_eq!(stl.value(face), [f64::from(y < 0.0)]);
+    }
+}

@@ -3,7 +3,8 @@
 use crate::mesh::{Channel, Domain, Mesh};
 
 /// The edges of a mesh, by their ends, across which the values of a channel of its corners or faces change: seams of textures,
-/// borders of materials. Boundaries are none. Channels that do not fit the mesh count where they do.
+/// borders of materials. Boundaries are none, and channels that are the same everywhere have none. Faces differ where their values do,
+/// corners where they have different values of the table. Channels that do not fit the mesh count where they do.
 ///
 /// ```
 /// use limitmesh::Mesh;
@@ -19,6 +20,8 @@ use crate::mesh::{Channel, Domain, Mesh};
 pub fn borders(channels: &[Channel], mesh: &Mesh) -> Vec<[u32; 2]> {
     let topology = mesh.topology();
     let differs = |channel: &Channel, a: usize, b: usize| channel.indices.get(a) != channel.indices.get(b);
+    let has_other_value = |channel: &Channel, a: usize, b: usize| channel.value(a) != channel.value(b);
+    let channels: Vec<&Channel> = channels.iter().filter(|channel| !channel.is_constant()).collect();
     let mut found = Vec::new();
     for h in topology.half_edges() {
         let Some(twin) = topology.twin(h).filter(|twin| h.0 < twin.0) else { continue };
@@ -28,7 +31,7 @@ pub fn borders(channels: &[Channel], mesh: &Mesh) -> Vec<[u32; 2]> {
                 differs(channel, h.index(), twin.next().index())
                     || differs(channel, h.next().index(), twin.index())
             }
-            Domain::Face => differs(channel, h.face().index(), twin.face().index()),
+            Domain::Face => has_other_value(channel, h.face().index(), twin.face().index()),
         });
         if is_border {
             let [a, b] = topology.ends(h).map(|v| v.0);

@@ -29,7 +29,7 @@ const TOGETHER: usize = 3;
 /// `result` must have origins and parents
 /// ([`ExactOptions::origins`](crate::refine::ExactOptions::origins), [`UniformOptions::origins`](crate::refine::UniformOptions::origins)), and no flat regions
 /// that were triangulated from their rims ([`ExactOptions::flat_regions`](crate::refine::ExactOptions::flat_regions)), unless all channels
-/// are of faces. If it is optimised, [`borders`] must have been kept; its triangles reach over several control faces, so values are exact at
+/// are of faces, whose [`borders`] were kept, or [the same everywhere](Channel::is_constant). If it is optimised, [`borders`] must have been kept; its triangles reach over several control faces, so values are exact at
 /// its corners, and linear channels bend at control edges inside of triangles where these do not.
 ///
 /// ```
@@ -60,7 +60,7 @@ pub fn carried(
     scheme: &dyn Scheme,
     result: &dyn Traced,
 ) -> Result<Vec<Channel>, ChannelError> {
-    let is_by_face = channels.iter().all(|channel| channel.domain == Domain::Face);
+    let is_by_face = channels.iter().all(|channel| !channel.varies_within_faces());
     let places = Places::of(control, result, is_by_face)?;
     channels.iter().map(|channel| one(channel, control, scheme, &places)).collect()
 }
@@ -76,6 +76,11 @@ fn one(
     if channel.domain == Domain::Face {
         let indices = places.parents.iter().map(|&face| channel.indices[face as usize]).collect();
         return Ok(Channel { indices, ..channel.clone() });
+    }
+    if channel.is_constant() {
+        let indices = vec![0; places.corners().len()];
+        let one = Channel { values: channel.value(0).to_vec(), indices, ..channel.clone() };
+        return Ok(Channel { domain: Domain::Corner, ..one });
     }
     let by_corner = by_corner(channel, control);
     match by_corner.interpolation {

@@ -1,9 +1,11 @@
 //! What several rooms need of triangles and sets of numbers, once: edges and their triangles, disjoint sets, the closest
-//! point of a triangle and its solid angle, a tree of boxes, coordinates in which a surface is about as large as 1. Knows no mesh.
+//! point of a triangle and its solid angle, what a rim in the plane encloses, a tree of boxes, coordinates in which a surface is about
+//! as large as 1. Knows no mesh.
 
 pub(crate) mod box_tree;
 mod disjoint_sets;
 mod edges;
+pub(crate) mod planar;
 mod surface_frame;
 mod triangle;
 

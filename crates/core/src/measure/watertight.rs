@@ -3,22 +3,15 @@
 //! Takes any triangles, manifold or not, at most 2^32 / 3 of them, and reads their connections off the vertex indices.
 //! Positions matter only to T-junctions.
 
+mod t_junctions;
+#[cfg(test)]
+mod tests;
+
 use std::borrow::Cow;
 
-use super::bvh::Bvh;
 use crate::geometry::{DisjointSets, for_each_edge};
 use crate::mesh::Triangles;
-use crate::parallel;
 use crate::progress::{Cancelled, Observer, Stage, Watch, uncancelled};
-use crate::vector::vector;
-
-/// How near to a boundary edge, as a share of its length, a vertex counts as lying on it, and how far from its ends
-/// it must be to lie inside. Wide enough for midpoints rounded to single precision in edges down to about a hundredth
-/// of the model; a gap this narrow cannot be told from a crack.
-const ON_EDGE: f64 = 1e-5;
-
-/// Places looked up in one go.
-const PLACES: usize = 1 << 12;
 
 /// What keeps a surface from being a closed, conforming manifold.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -101,7 +94,7 @@ pub fn watertightness_observed(
         degenerate_faces,
         components,
         euler_characteristic: vertices.len() as i64 - edges as i64 + faces as i64,
-        t_junctions: t_junctions(surface.positions, vertices, &boundary, &mut watch)?,
+        t_junctions: t_junctions::count(surface.positions, vertices, &boundary, &mut watch)?,
     })
 }
 
@@ -127,49 +120,3 @@ fn used_vertices(triangles: &[[u32; 3]]) -> Vec<u32> {
     }
     (0..greatest as u32).filter(|&v| used[v as usize]).collect()
 }
-
-/// Number of `vertices` that lie inside an edge of `boundary`.
-///
-/// Vertices at one place are looked up once and edges between the same two places are kept once, so that soups of
-/// unconnected triangles, where many meet in a point, take no longer than others.
-fn t_junctions(
-    positions: &[[f64; 3]],
-    mut vertices: Vec<u32>,
-    boundary: &[[u32; 2]],
-    watch: &mut Watch<'_>,
-) -> Result<usize, Cancelled> {
-    let place = |v: u32| positions.get(v as usize).filter(|p| p.iter().all(|x| x.is_finite()));
-    // Adding zero makes both zeros the same place.
-    let bits = |v: u32| positions[v as usize].map(|x| (x + 0.0).to_bits());
-    let mut edges: Vec<[u32; 3]> = boundary
-        .iter()
-        .filter(|[a, b]| place(*a).is_some() && place(*b).is_some())
-        .map(|&[a, b]| if bits(a) <= bits(b) { [a, b, b] } else { [b, a, a] })
-        .collect();
-    edges.sort_unstable_by_key(|&[a, b, _]| (bits(a), bits(b)));
-    edges.dedup_by_key(|&mut [a, b, _]| (bits(a), bits(b)));
-    if edges.is_empty() {
-        return Ok(0);
-    }
-    vertices.retain(|&v| place(v).is_some());
-    vertices.sort_unstable_by_key(|&v| (bits(v), v));
-    let places: Vec<&[u32]> = vertices.chunk_by(|&a, &b| bits(a) == bits(b)).collect();
-    let tree = Bvh::padded(Triangles { positions, triangles: &edges }, ON_EDGE, watch)?;
-    watch.stage(Stage::Sampling, Some(places.len()))?;
-    let counts = parallel::pieces_polled(places.len(), PLACES, &mut |done| watch.done(done), |range| {
-        let inside = |vertices: &&&[u32]| {
-            let at = vector(positions[vertices[0] as usize]);
-            tree.any_around(at, |[a, b, _], p| {
-                let along = b - a;
-                let t = (p - a).dot(along) / along.length_squared();
-                let apart = (p - a - along * t).length_squared();
-                t > ON_EDGE && t < 1.0 - ON_EDGE && apart <= ON_EDGE * ON_EDGE * along.length_squared()
-            })
-        };
-        places[range].iter().filter(inside).map(|vertices| vertices.len()).sum::<usize>()
-    })?;
-    Ok(counts.into_iter().sum())
-}
-
-#[cfg(test)]
-mod tests;

@@ -246,6 +246,16 @@ impl Channel {
         self.values.get(start..start.saturating_add(self.arity)).unwrap_or_default()
     }
 
+    /// Whether all elements have one value.
+    pub fn is_constant(&self) -> bool {
+        (1..self.indices.len()).all(|element| self.value(element) == self.value(0))
+    }
+
+    /// Whether it has other values in other places of one face.
+    pub fn varies_within_faces(&self) -> bool {
+        self.domain != Domain::Face && !self.is_constant()
+    }
+
     /// Whether the channel fits a mesh of so many vertices, corners and faces.
     ///
     /// # Errors

@@ -41,14 +41,15 @@ pub struct ExactOptions {
     /// the same distance. For a tolerance, a number of triangles, or both; not with [`Self::balance`]. Default: no.
     pub optimize: bool,
     /// Edges of the control mesh, by their ends, along which edges stay when they are collapsed ([`Self::optimize`]), as they do along
-    /// creases and boundaries: seams of textures, borders of materials ([`crate::carry::borders`]). Default: none.
+    /// creases and boundaries: seams of textures, borders of materials ([`crate::carry::borders`]). They bound [`Self::flat_regions`], too.
+    /// Default: none.
     pub kept_edges: Vec<[u32; 2]>,
     /// Tells where each vertex came from, [`Exact::origins`](super::Exact::origins), which is a quarter of what a result takes.
     /// Default: yes.
     pub origins: bool,
     /// Regions of control faces whose limit surface lies in a plane are triangulated from their rims alone, with no vertices
     /// inside but those of the control mesh. Triangles that lie in one plane side by side though the surface is curved elsewhere, as on a
-    /// cylinder's side, are put together, too. Else all follow the hierarchy. With [`Self::balance`] only regions for which [`Self::unfold`] takes what their
+    /// cylinder's side, are put together, too. None of these triangles reaches over one of [`Self::kept_edges`]. Else all follow the hierarchy. With [`Self::balance`] only regions for which [`Self::unfold`] takes what their
     /// rims enclose. Default: yes.
     pub flat_regions: bool,
     /// Where the scheme's rules fold the surface over in a flat region, as they do where slivers of a fan meet a hole, what the

@@ -11,6 +11,7 @@ mod exact_options;
 mod exact_result;
 mod input_distance;
 mod junctions;
+mod kept_faces;
 mod level;
 mod levels_of_detail;
 mod limit_distance;

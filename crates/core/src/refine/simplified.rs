@@ -5,6 +5,7 @@
 
 use super::adaptive::adaptive;
 use super::corner_sources::{SharpLines, corner_sources, features};
+use super::kept_faces::KeptFaces;
 use super::{ErrorBounds, Exact, ExactOptions, ExactStop, Origin, RefineError, Traced};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::measure::{MeasureError, distances_to_observed};
@@ -12,7 +13,6 @@ use crate::mesh::{Mesh, MeshError};
 use crate::progress::{Cancelled, Observer};
 use crate::scheme::Scheme;
 use crate::simplify::{Features, Simplified, SimplifyOptions, simplify_observed};
-use std::collections::HashSet;
 
 /// The part of the tolerance that the fine mesh takes: less leaves more to the collapse and costs more triangles to
 /// collapse.
@@ -61,8 +61,7 @@ pub(super) fn simplified(
     if allowance.is_some() && collapsed.mesh.face_count() > most {
         collapsed = collapse((&fine.mesh, &features), None, fewest, observer)?;
     }
-    let unoptimised =
-        ExactOptions { optimize: false, flat_regions: fine_options.flat_regions, ..options.clone() };
+    let unoptimised = ExactOptions { optimize: false, ..options.clone() };
     // Where no more edges can go, refinement alone keeps the number of triangles; where nothing is proven, it proves.
     let is_over = collapsed.mesh.face_count() > most;
     if is_over || collapsed.bound.is_none() {
@@ -124,50 +123,6 @@ fn collapse(
 ) -> Result<Simplified, RefineError> {
     let goals = SimplifyOptions::default().tolerance(tolerance).triangles(triangles);
     Ok(simplify_observed(fine, features, &goals, observer)?)
-}
-
-/// Pairs of control faces that meet in edges that are kept.
-struct KeptFaces(HashSet<[u32; 2]>);
-
-impl KeptFaces {
-    fn of(control: &Mesh, kept: &[[u32; 2]]) -> Result<Self, RefineError> {
-        let topology = control.topology();
-        let exists = |v: u32| (v as usize) < topology.vertex_count();
-        let mut pairs = HashSet::new();
-        for &[a, b] in kept {
-            let edge = (exists(a) && exists(b)).then(|| topology.edge_between(VertexId(a), VertexId(b)));
-            let Some(edge) = edge.flatten() else {
-                let place = format!("edge from vertex {a} to vertex {b}");
-                return Err(MeshError::Broken {
-                    place,
-                    what: "an edge that is kept is one of the control mesh",
-                }
-                .into());
-            };
-            if let Some(twin) = topology.twin(edge) {
-                pairs.insert(ordered(edge.face().0, twin.face().0));
-            }
-        }
-        Ok(Self(pairs))
-    }
-
-    /// The edges of a refined mesh along those.
-    fn edges(&self, fine: &Exact) -> Vec<[u32; 2]> {
-        if self.0.is_empty() {
-            return Vec::new();
-        }
-        let topology = fine.mesh.topology();
-        let is_kept = |h: HalfEdgeId| {
-            let Some(twin) = topology.twin(h).filter(|twin| h.0 < twin.0) else { return false };
-            let [one, other] = [h, twin].map(|h| fine.parents[h.face().index()]);
-            one != other && self.0.contains(&ordered(one, other))
-        };
-        topology.half_edges().filter(|&h| is_kept(h)).map(|h| topology.ends(h).map(|v| v.0)).collect()
-    }
-}
-
-fn ordered(a: u32, b: u32) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }
 
 /// What the corners and triangles of the collapsed mesh have of the fine one's, each on its side of sharp edges.

@@ -64,6 +64,11 @@ impl<'a> At<'a> {
         Ok(items.iter().enumerate().map(move |(i, value)| Self { value, place: format!("{place}[{i}]") }))
     }
 
+    /// An item of an array; `None` where there is none.
+    pub(super) fn item(&self, index: usize) -> Option<Self> {
+        Some(Self { value: self.value.get(index)?, place: format!("{}[{index}]", self.place) })
+    }
+
     /// The items of an array that may be missing.
     pub(super) fn list(&self, key: &str) -> Result<Vec<Self>> {
         self.get(key).map_or_else(|| Ok(Vec::new()), |at| Ok(at.items()?.collect()))

@@ -43,6 +43,7 @@ mod tangents;
 mod unused;
 mod uri;
 mod write;
+mod zeros;
 
 pub use attributes::CornerAttribute;
 pub use flaw::GltfFlaw;
@@ -214,9 +215,8 @@ impl Asset {
         with_attributes: bool,
         is_wanted: impl Fn(usize) -> bool,
     ) -> Flawed<MeshSoup> {
-        let meshes = self.source.root().list("meshes")?;
-        let Some(at) = meshes.get(mesh) else {
-            let expected = format!("a number below {}", meshes.len());
+        let Some(at) = self.source.root().get("meshes").and_then(|all| all.item(mesh)) else {
+            let expected = format!("a number below {}", self.mesh_count());
             return Err(GltfFlaw::new("meshes", mesh.to_string(), expected));
         };
         let mut primitives = Vec::new();
@@ -312,8 +312,7 @@ impl Asset {
     /// By primitive of a mesh, the number of its material.
     fn materials_of(&self, mesh: usize) -> Flawed<Vec<Option<usize>>> {
         let root = self.source.root();
-        let meshes = root.list("meshes")?;
-        let Some(mesh) = meshes.get(mesh) else { return Ok(Vec::new()) };
+        let Some(mesh) = root.get("meshes").and_then(|all| all.item(mesh)) else { return Ok(Vec::new()) };
         let of = |primitive: &json::At<'_>| match primitive.get("material") {
             None => Ok(None),
             Some(material) => Ok(Some(material.item_of(&root, "materials")?.0)),

@@ -10,7 +10,7 @@ use super::parts::MeshSoup;
 use super::source::Source;
 use crate::affine::{self, Affine, IDENTITY};
 
-const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// How a node puts a mesh into the scene.
 #[derive(Clone, Debug)]

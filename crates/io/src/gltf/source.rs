@@ -28,6 +28,8 @@ pub(super) struct Source {
     folder: Option<PathBuf>,
     buffers: Vec<OnceCell<Result<Vec<u8>>>>,
     views: Vec<OnceCell<Result<Vec<u8>>>>,
+    /// Whether it claims no more zeros than any document needs.
+    pub(super) zeros_are_few: OnceCell<Result<()>>,
     /// Bytes that may still be decoded.
     room: Cell<usize>,
 }
@@ -60,7 +62,8 @@ impl Source {
         let cells = |key: &str| Ok((0..root.list(key)?.len()).map(|_| OnceCell::new()).collect());
         let (buffers, views) = (cells("buffers")?, cells("bufferViews")?);
         let room = Cell::new(MOST_DECODED);
-        Ok(Self { json, container, folder: folder.map(Path::to_owned), buffers, views, room })
+        let zeros_are_few = OnceCell::new();
+        Ok(Self { json, container, folder: folder.map(Path::to_owned), buffers, views, zeros_are_few, room })
     }
 
     /// Where files beside the document are.

@@ -1,18 +1,21 @@
 //! Geomview OFF in text: the keyword, three counts, vertices, faces.
 //!
-//! The keyword may carry `C`, `N`, `ST` for columns of colours, normals and texture coordinates, and may be
-//! missing altogether. Colours of vertices and of faces (`off/colours`) become channels; normals, texture coordinates and lines after
-//! the last face are passed over, and what there was is told. Indices count from 0.
+//! The keyword may carry `C`, `N`, `ST` for columns of colours, normals and texture coordinates, may be in small letters, may
+//! touch the first count, and may be missing altogether. What vertices have beside their positions (`off/vertex_columns`) and
+//! colours of faces (`off/colours`) become channels; lines after the last face are passed over and reported. Indices count
+//! from 0.
 
 mod colours;
+mod vertex_columns;
 
 use super::left_out::{Kind, LeftOut};
 use super::{check_count, push_face};
 use crate::error::Flaw;
-use crate::format::off_prefix;
+use crate::format::{OffKeyword, off_keyword};
 use crate::scan::{Scanner, Syntax, integer, quoted};
 use colours::Colours;
 use limitmesh::mesh::{Domain, PolygonFaces, PolygonSoup};
+use vertex_columns::VertexColumns;
 
 /// Least bytes of a vertex: `0 0 0` and the end of its line.
 const LEAST_VERTEX: usize = 6;
@@ -23,26 +26,17 @@ const LEAST_INDEX: usize = 2;
 
 pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     let mut scanner = Scanner::new(bytes, Syntax { comments: true, continuations: false });
-    let (prefix, vertices, faces) = read_header(&mut scanner)?;
+    let (keyword, vertices, faces) = read_header(&mut scanner)?;
     let mut left_out = LeftOut::default();
-    // Normals stand before colours.
-    let normals = if prefix.contains(&b'N') { 3 } else { 0 };
-    let mut colours = Colours::default();
-    let (positions, has_columns) = read_vertices(&mut scanner, vertices, normals, &mut colours)?;
-    if has_columns {
-        note_columns(prefix, &mut left_out);
-    }
+    let mut columns = VertexColumns::new(&keyword);
+    let positions = read_vertices(&mut scanner, vertices, &mut columns)?;
     let mut of_faces = Colours::default();
     let faces = read_faces(&mut scanner, faces, vertices, &mut of_faces)?;
     scanner.skip_empty_lines();
     if !scanner.is_at_end() {
         left_out.other("what stands after the last face".to_owned());
     }
-    let mut channels = Vec::new();
-    match colours.channel(crate::channels::COLOUR, Domain::Vertex, vertices) {
-        Ok(channel) => channels.extend(channel),
-        Err(_) => left_out.note(Kind::Colours),
-    }
+    let mut channels = columns.channels(vertices, &mut left_out);
     match of_faces.channel(crate::channels::FACE_COLOUR, Domain::Face, faces.len()) {
         Ok(channel) => channels.extend(channel),
         Err(_) => left_out.note(Kind::FaceColours),
@@ -50,30 +44,20 @@ pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     Ok(PolygonSoup { positions, faces, channels, left_out: left_out.in_words(), ..PolygonSoup::default() })
 }
 
-/// What the columns after the coordinates are that have no place, by the letters before the keyword.
-fn note_columns(prefix: &[u8], left_out: &mut LeftOut) {
-    for (letter, kind) in [(b'N', Kind::Normals), (b'T', Kind::TextureCoordinates)] {
-        if prefix.contains(&letter) {
-            left_out.note(kind);
-        }
-    }
-}
-
-/// The keyword and the counts, on one line or several; gives the letters before the keyword and the numbers of vertices
-/// and faces.
-fn read_header<'a>(scanner: &mut Scanner<'a>) -> Result<(&'a [u8], usize, usize), Flaw> {
+/// The keyword and the counts, on one line or several; gives the keyword and the numbers of vertices and faces.
+fn read_header<'a>(scanner: &mut Scanner<'a>) -> Result<(OffKeyword<'a>, usize, usize), Flaw> {
     let first = scanner.first_word();
     let mut vertices = first;
-    let mut letters: &[u8] = b"";
-    if let Some(prefix) = first.and_then(off_prefix) {
-        if prefix.ends_with(b"n") || prefix.ends_with(b"4") {
+    let mut keyword = OffKeyword::default();
+    if let Some(found) = first.and_then(off_keyword) {
+        if found.has_other_dimension {
             return Err(scanner.unexpected(first, "three coordinates a vertex (OFF, COFF, NOFF, STOFF)"));
         }
-        letters = prefix;
-        vertices = scanner.first_word();
+        vertices = if found.glued.is_empty() { scanner.first_word() } else { Some(found.glued) };
         if vertices == Some(b"BINARY") {
             return Err(Flaw::saying(scanner.place(), "binary OFF files are not read"));
         }
+        keyword = found;
     } else if first.and_then(integer).is_none() {
         return Err(scanner.unexpected(first, "the keyword OFF"));
     }
@@ -82,7 +66,7 @@ fn read_header<'a>(scanner: &mut Scanner<'a>) -> Result<(&'a [u8], usize, usize)
     let faces = count(scanner, faces, "faces")?;
     // The third count, of edges, is always passed over and sometimes missing.
     scanner.next_line();
-    Ok((letters, vertices, faces))
+    Ok((keyword, vertices, faces))
 }
 
 fn count(scanner: &Scanner<'_>, word: Option<&[u8]>, what: &str) -> Result<usize, Flaw> {
@@ -99,27 +83,33 @@ fn room(scanner: &Scanner<'_>, count: usize, least: usize) -> usize {
     count.min(scanner.remaining() / least + 1)
 }
 
-/// The positions, and whether anything follows them on their lines: after so many numbers of normals, colours.
-fn read_vertices(
-    scanner: &mut Scanner<'_>,
+/// The positions; what follows them on their lines goes to `columns`.
+fn read_vertices<'a>(
+    scanner: &mut Scanner<'a>,
     count: usize,
-    normals: usize,
-    colours: &mut Colours,
-) -> Result<(Vec<[f64; 3]>, bool), Flaw> {
+    columns: &mut VertexColumns,
+) -> Result<Vec<[f64; 3]>, Flaw> {
     let mut positions = Vec::with_capacity(room(scanner, count, LEAST_VERTEX));
-    let mut has_columns = false;
+    let mut words: Vec<&'a [u8]> = Vec::new();
     for index in 0..count {
         scanner.skip_empty_lines();
         let point = scanner.point().map_err(|flaw| flaw.element("vertex", index))?;
         positions.push(point);
-        let mut skipped = 0;
-        while skipped < normals && scanner.word().is_some() {
-            skipped += 1;
-        }
-        has_columns |= skipped > 0 || colours.read(scanner, index);
+        words_of_line(scanner, &mut words);
+        columns.read(&words, index);
         scanner.next_line();
     }
-    Ok((positions, has_columns))
+    Ok(positions)
+}
+
+/// Leaves the other words of the line in `words`, as far as they can mean something.
+fn words_of_line<'a>(scanner: &mut Scanner<'a>, words: &mut Vec<&'a [u8]>) {
+    words.clear();
+    while let Some(word) = scanner.word() {
+        if words.len() < vertex_columns::MOST {
+            words.push(word);
+        }
+    }
 }
 
 fn read_faces(
@@ -131,11 +121,12 @@ fn read_faces(
     let lines = room(scanner, count, LEAST_FACE);
     // Most faces are triangles.
     let mut faces = PolygonFaces::with_capacity(lines, room(scanner, 3 * count, LEAST_INDEX));
-    let mut polygon = Vec::new();
+    let (mut polygon, mut words) = (Vec::new(), Vec::new());
     for index in 0..count {
         read_face(scanner, vertices, &mut polygon).map_err(|flaw| flaw.element("face", index))?;
         push_face(&mut faces, &polygon, || scanner.place())?;
-        colours.read(scanner, index);
+        words_of_line(scanner, &mut words);
+        colours.read(&words, index);
         scanner.next_line();
     }
     Ok(faces)

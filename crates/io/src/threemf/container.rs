@@ -1,6 +1,7 @@
 //! The archive: parts are read from it, and all but those that changed are copied as they are, compressed.
 //!
-//! What the archive says of its own sizes is not believed: a part is given up where it becomes larger than [`MOST_BYTES`].
+//! What the archive says of its own sizes is not believed: a part is given up where it becomes larger than [`MOST_BYTES`], or than text ever does
+//! that was compressed to the archive's size ([`MOST_TIMES`]).
 
 use super::flaw::{self, PackageFlaw};
 use super::xml::{Element, attribute};
@@ -13,6 +14,11 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 /// Bytes of all parts together that are read, at most: as much as some thirty million triangles take.
 pub(super) const MOST_BYTES: u64 = 1 << 31;
+
+/// How many times as large as the archive all parts together may be, and how many bytes they may be in any case. Triangles as text take five to
+/// thirty times what they take compressed; bytes that are all alike take a thousand times as much.
+const MOST_TIMES: u64 = 100;
+const ALWAYS: u64 = 1 << 25;
 
 /// Parts at most.
 const MOST_PARTS: usize = 100_000;
@@ -64,12 +70,17 @@ impl Container {
         let flaw =
             |why: &dyn std::fmt::Display| PackageFlaw::new(name, format!("it cannot be unpacked: {why}"));
         let file = archive.by_index(part).map_err(|why| flaw(&why))?;
-        let most = MOST_BYTES - *read;
+        let most = MOST_BYTES.min(ALWAYS.saturating_add(MOST_TIMES * self.bytes.len() as u64));
         let mut bytes = Vec::new();
-        file.take(most + 1).read_to_end(&mut bytes).map_err(|why| flaw(&why))?;
+        file.take(most - *read + 1).read_to_end(&mut bytes).map_err(|why| flaw(&why))?;
         *read += bytes.len() as u64;
-        if *read > MOST_BYTES {
-            return Err(PackageFlaw::new(name, "with this part the models have more than 2 GiB"));
+        if *read > most {
+            let problem = format!(
+                "with this part the models have more than {} MiB; they may have 2 GiB, and 32 MiB with {MOST_TIMES} times the \
+                 archive's size",
+                most >> 20
+            );
+            return Err(PackageFlaw::new(name, problem));
         }
         // What some programs put before text in UTF-8 stays: it is part of what is edited.
         String::from_utf8(bytes).map_err(|error| {

@@ -3,7 +3,7 @@
 #![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
 
 use limitmesh::Triangles;
-use limitmesh::mesh::{Channel, CornerTag, CreaseTag, PolygonSoup};
+use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Domain, PolygonSoup};
 use limitmesh_io::{Format, Output, WriteOptions, read_bytes, write_to};
 
 fn obj(text: &str) -> PolygonSoup {
@@ -259,12 +259,76 @@ fn off_in_many_dresses() {
         format!("COFF\r\n4 2 5\r\n{}3 0 1 2 255 0 0\r\n4 0 1 2 3 0.5 0.5 0.5 1\r\n", with("255 0 0 255")),
         format!("NOFF\n4 2 5\n{}3 0 1 2 7\n4 0 1 2 3\n", with("0 0 1")),
         format!("STCNOFF\n4 2 5\n{}3 0 1 2\n4 0 1 2 3\n", with("0 0 1 1 0 0 1 .5 .5")),
+        format!("off\n4 2 5\n{square}3 0 1 2\n4 0 1 2 3\n"),
+        format!("OFF4 2 5\n{square}3 0 1 2\n4 0 1 2 3\n"),
+        format!("\nOff4\n2\n{square}3 0 1 2\n4 0 1 2 3\n").replace("4\n2", "4 2"),
+        format!("cnoff4 2 0\n{}3 0 1 2\n4 0 1 2 3\n", with("0 0 1 1 0 0 1")),
     ];
     for file in files {
         let soup = read_bytes(file.as_bytes(), Format::Off).unwrap_or_else(|error| panic!("{error}\n{file}"));
         assert_eq!(soup.positions, SQUARE, "{file}");
         assert_eq!(polygons(&soup), [&[0, 1, 2][..], &[0, 1, 2, 3]], "{file}");
     }
+}
+
+/// Normals, colours and texture coordinates follow the position in this order, whatever the order of the keyword's letters.
+#[test]
+fn off_columns_are_read_under_all_keywords() {
+    let (normal, colour, texture) = ([0.6, 0.0, -0.8], [0.25, 0.5, 1.0, 0.75], [3.5, -2.0]);
+    for keyword in [
+        "OFF", "NOFF", "COFF", "STOFF", "CNOFF", "NCOFF", "STNOFF", "NSTOFF", "STCOFF", "CSTOFF", "STCNOFF",
+        "STNCOFF", "CNSTOFF", "noff", "stoff", "stcnoff", "StCnOff",
+    ] {
+        for glued in [" ", "\n", ""] {
+            for opacity in [3, 4] {
+                let letters = keyword.to_ascii_uppercase();
+                let has = |letter: &str| letters.trim_end_matches("OFF").contains(letter);
+                let mut columns: Vec<f64> = Vec::new();
+                if has("N") {
+                    columns.extend(normal);
+                }
+                if has("C") {
+                    columns.extend(&colour[..opacity]);
+                }
+                if has("T") {
+                    columns.extend(texture);
+                }
+                let columns: String = columns.iter().map(|x| format!(" {x}")).collect();
+                let text = format!(
+                    "{keyword}{glued}3 1 3\n0 0 0{columns}\n1 0 0{columns}\n0 1 0{columns}\n3 0 1 2\n"
+                );
+                let soup =
+                    read_bytes(text.as_bytes(), Format::Off).unwrap_or_else(|why| panic!("{why}\n{text}"));
+                let mut expected: Vec<(&str, &[f64])> = Vec::new();
+                expected.extend(has("N").then_some(("normals", &normal[..])));
+                expected.extend(has("T").then_some(("texture coordinates", &texture[..])));
+                expected.extend(has("C").then_some(("colours", &colour[..opacity])));
+                let found: Vec<(&str, &[f64])> =
+                    soup.channels.iter().map(|own| (own.name.as_str(), own.value(2))).collect();
+                assert_eq!(found, expected, "{text}");
+                assert!(
+                    soup.channels.iter().all(|own| own.domain == Domain::Vertex && own.indices.len() == 3)
+                );
+                assert_eq!(soup.left_out, if has("N") { vec!["normals"] } else { vec![] }, "{text}");
+            }
+        }
+    }
+}
+
+/// The tetrahedron of a file that begins as ModelNet's do: its volume is a sixth, by hand.
+#[test]
+fn off_keyword_that_touches_the_counts() {
+    let soup = read_bytes(include_bytes!("../data/glued.off"), Format::Off).unwrap();
+    let volume: f64 = polygons(&soup)
+        .iter()
+        .map(|face| {
+            let [a, b, c] = [0, 1, 2].map(|i| soup.positions[face[i] as usize]);
+            let cross = [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]];
+            (0..3).map(|i| a[i] * cross[i]).sum::<f64>() / 6.0
+        })
+        .sum();
+    assert_eq!((soup.positions.len(), soup.faces.len()), (4, 4));
+    assert!((volume - 1.0 / 6.0).abs() < 1e-15, "{volume}");
 }
 
 #[test]
@@ -535,7 +599,13 @@ fn what_an_off_file_held_and_a_soup_cannot_is_named() {
         assert_eq!(off("OFF", column, column, ""), ["colours", "colours of faces"], "{column}");
     }
     assert_eq!(off("NOFF", " 0 0 1", "", ""), ["normals"]);
-    assert_eq!(off("STCNOFF", " 255 0 0 255 0 0 1 0.5 0.5", "", ""), ["texture coordinates", "normals"]);
+    // The normal comes first, so that the colour is 255 0 0 1.
+    assert_eq!(off("STCNOFF", " 0 0 1 255 0 0 1 0.5 0.5", "", ""), ["normals"]);
+    assert_eq!(off("NOFF", " 0 0", "", ""), ["normals"]);
+    assert_eq!(off("STOFF", " 0.5", "", ""), ["texture coordinates"]);
+    assert_eq!(off("STOFF", " 0.5 x", "", ""), ["texture coordinates"]);
+    // Announced, and not there.
+    assert!(off("STNOFF", "", "", "").is_empty());
     assert_eq!(off("OFF", "", "", "3 0 1 2\n"), ["what stands after the last face"]);
 }
 

@@ -76,6 +76,24 @@ fn obj_tags() {
 const XYZ: &str = "property float x\nproperty float y\nproperty float z\n";
 const FACE: &str = "property list uchar int vertex_indices\n";
 
+/// So many that to compare each with all others would take minutes.
+#[test]
+fn ply_headers_of_hundreds_of_thousands_of_lines() {
+    let lines = |line: &dyn Fn(usize) -> String| (0..200_000).map(line).collect::<String>();
+    let properties = lines(&|i| format!("property float p{i}\n"));
+    refuses(
+        Format::Ply,
+        format!("ply\nformat ascii 1.0\nelement vertex 1\n{properties}end_header\n"),
+        "PLY line 1004: met one more property 'p1000', expected at most 1000 in an element",
+    );
+    let elements = lines(&|i| format!("element e{i} 0\n"));
+    refuses(
+        Format::Ply,
+        format!("ply\nformat ascii 1.0\n{elements}end_header\n"),
+        "PLY line 1003: met one more element 'e1000', expected at most 1000 of them",
+    );
+}
+
 #[test]
 fn ply_headers() {
     let refuses = |text: &str, message: &str| refuses(Format::Ply, text, message);

@@ -10,7 +10,7 @@ from typing import Any
 from . import _limitmesh, _options, _short
 from ._inputs import MeshLike, as_mesh
 from ._limitmesh import OptionError
-from ._options import Boundary, Length, Method, ProgressCallback, Scheme
+from ._options import Boundary, Count, Length, Method, ProgressCallback, Scheme
 from ._refined import Refined
 from ._simplify import repair
 from ._write import write
@@ -59,7 +59,7 @@ def refine_file(
     target: str | os.PathLike[str],
     *,
     tolerance: Length | None = None,
-    triangles: int | None = None,
+    triangles: Count | None = None,
     angle: float | None = None,
     interpolate: bool | Length | None = None,
     creases: str | None = None,
@@ -77,7 +77,7 @@ def refine_file(
     split_normals: bool = False,
     provenance: bool = False,
     ascii: bool = False,
-    max_triangles: int | None = None,
+    max_triangles: Count | None = None,
     max_levels: int | None = None,
     max_memory: float | str | None = "50%",
     strict: bool = False,

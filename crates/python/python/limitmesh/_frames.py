@@ -3,27 +3,33 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arrays, _inputs, _limitmesh, _options, _short
-from ._arrays import Floats
+from ._arrays import Floats, MeshIn
 from ._inputs import MeshLike
 from ._limitmesh import MeshError
 from ._mesh import Channel
-from ._options import Boundary, Camera, Length, ProgressCallback, Scheme
+from ._options import Boundary, Camera, Count, Length, ProgressCallback, Scheme
 from ._refined import AnyIntegers, ErrorBounds, Refined
+from ._shown import Shown
+
+
+_Again: TypeAlias = Callable[[int], _limitmesh.Replay]
+"""Prepares a replay again, on so many threads."""
 
 
 class Replay:
     """Gives the vertices of a refined mesh for other positions of its control vertices: call it with these.
 
     Every vertex is on the true limit surface of what it is given, and the triangles stay; how far those are from that surface is
-    not known, but for frames of `refine_frames`. A call takes a small part of a refinement.
+    not known, but for frames of `refine_frames`. A call takes a small part of a refinement. A pickle holds what it was made from, so that
+    the first call of one that was unpickled takes a refinement more.
 
     Attributes
     ----------
@@ -35,8 +41,12 @@ class Replay:
 
     refined: Refined
 
-    def __init__(self, native: _limitmesh.Replay, refined: Refined, count: int) -> None:
-        self._native, self.refined, self._count = native, refined, count
+    def __init__(self, native: _limitmesh.Replay, refined: Refined, count: int, again: _Again) -> None:
+        self._native: _limitmesh.Replay | None = native
+        self.refined, self._count, self._again = refined, count, again
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_native": None}
 
     @property
     def faces(self) -> AnyIntegers:
@@ -52,7 +62,10 @@ class Replay:
         """
         rows = _arrays.vertices_of(positions, "positions")
         _check(rows, self._count, "positions")
-        return self._native.at(rows, _options.threads_of(threads))
+        workers = _options.threads_of(threads)
+        if self._native is None:
+            self._native = self._again(workers)
+        return self._native.at(rows, workers)
 
     def __repr__(self) -> str:
         return f"Replay({self._count} control vertices, {len(self.refined.vertices)} vertices, {len(self.faces)} triangles)"
@@ -63,7 +76,7 @@ def replay(
     faces: Any = None,
     *,
     tolerance: Length | None = None,
-    triangles: int | None = None,
+    triangles: Count | None = None,
     angle: float | None = None,
     pixels: float | None = None,
     cameras: Camera | Iterable[Camera] | None = None,
@@ -76,7 +89,7 @@ def replay(
     weld: float | None = 0.0,
     repair: bool = True,
     index_dtype: npt.DTypeLike = np.int64,
-    max_triangles: int | None = None,
+    max_triangles: Count | None = None,
     max_levels: int | None = None,
     max_memory: float | str | None = "50%",
     strict: bool = False,
@@ -124,11 +137,16 @@ def replay(
     told, own = _limitmesh.replay(native, control, goals, dtype == np.int64, *_options.work_of(threads, progress))
     refined = Refined._of_native(told, dtype)
     _short.tell(_short.why(refined, goals), refined, strict)
-    return Replay(own, refined, len(native["vertices"]))
+    again = functools.partial(_replay_again, native, control, goals)
+    return Replay(own, refined, len(native["vertices"]), again)
 
 
-@dataclass(frozen=True, eq=False)
-class RefinedFrames:
+def _replay_again(native: MeshIn, control: dict[str, Any], goals: dict[str, Any], threads: int) -> _limitmesh.Replay:
+    return _limitmesh.replay(native, control, goals, False, threads, None)[1]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RefinedFrames(Shown):
     """An animation refined with the same triangles.
 
     Attributes
@@ -191,7 +209,7 @@ def refine_frames(
     weld: float | None = 0.0,
     repair: bool = True,
     index_dtype: npt.DTypeLike = np.int64,
-    max_triangles: int | None = None,
+    max_triangles: Count | None = None,
     max_levels: int | None = None,
     max_memory: float | str | None = "50%",
     strict: bool = False,
@@ -249,7 +267,14 @@ def refine_frames(
     refined = Refined._of_native(told, dtype)
     _short.tell(_short.why(refined, goals), refined, strict)
     bounds = tuple(ErrorBounds(*error) for error in errors)
-    return RefinedFrames(refined, bounds, Replay(own, refined, rows.shape[1]), rows)
+    again = functools.partial(_refine_again, native, rows, control, goals)
+    return RefinedFrames(refined, bounds, Replay(own, refined, rows.shape[1], again), rows)
+
+
+def _refine_again(
+    native: MeshIn, rows: Floats, control: dict[str, Any], goals: dict[str, Any], threads: int
+) -> _limitmesh.Replay:
+    return _limitmesh.refine_frames(native, rows.reshape(-1, 3), control, goals, False, threads, None)[2]
 
 
 def _frames_of(frames: Any) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -13,11 +14,12 @@ from . import _inputs, _limitmesh, _options
 from ._arrays import Floats, Integers
 from ._inputs import MeshLike
 from ._limitmesh import OptionError
-from ._options import Boundary, Camera, Length, ProgressCallback, Scheme
+from ._options import Boundary, Camera, Count, Length, ProgressCallback, Scheme
+from ._shown import Shown
 
 
-@dataclass(frozen=True, eq=False)
-class Changes:
+@dataclass(frozen=True, eq=False, repr=False)
+class Changes(Shown):
     """What an update changed in a front's ``vertices`` and ``faces``: rows that are not named are as they were.
 
     Attributes
@@ -41,7 +43,7 @@ class Front:
     What it is depends on the demand alone, but for the order of its rows. It begins with the control mesh's own triangles, their
     corners on the limit surface. An update that ends before its time, by Ctrl-C or by its ``progress``, leaves all as it was here, or,
     where it was done already, as it is then; the next one goes on from where that was, to the same mesh as a fresh front's. It may name all rows
-    as changed, as it does after a fork.
+    as changed, as it does after a fork. One that was pickled is as it was, and its next update names all rows as changed.
 
     Parameters
     ----------
@@ -92,12 +94,20 @@ class Front:
         )
         native["channels"] = []
         workers, callback = _options.work_of(threads, progress)
-        self._native = _limitmesh.Front(native, control, workers, callback)
+        self._source = (native, control, workers)
+        self._native: _limitmesh.Front | None = _limitmesh.Front(*self._source, callback)
+        self._busy = threading.Lock()
         self._vertices: Floats = np.zeros((0, 3))
         self._faces: Integers = np.zeros((0, 3), dtype=np.int64)
         # Whether the arrays here are what the last update left.
         self._is_told = False
         self._update(None, callback)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_native": None, "_busy": None, "_is_told": False}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, _busy=threading.Lock())
 
     def update(
         self,
@@ -105,7 +115,7 @@ class Front:
         tolerance: Length | None = None,
         pixels: float | None = None,
         cameras: Camera | Iterable[Camera] | None = None,
-        triangles: int | None = None,
+        triangles: Count | None = None,
         max_levels: int | None = None,
         progress: ProgressCallback | None = None,
     ) -> Changes:
@@ -131,7 +141,7 @@ class Front:
         OptionError
             Nothing is asked for, or what makes no sense.
         RuntimeError
-            Another thread is updating it.
+            Another thread is updating it, or this is called by its own ``progress``.
 
         Examples
         --------
@@ -158,7 +168,17 @@ class Front:
         return self._update(demand, _options.callback_of(progress))
 
     def _update(self, demand: dict[str, Any] | None, callback: Any) -> Changes:
+        if not self._busy.acquire(blocking=False):
+            raise RuntimeError("another thread, or this update's own progress function, updates the front; each thread needs one of its own")
+        try:
+            return self._updated(demand, callback)
+        finally:
+            self._busy.release()
+
+    def _updated(self, demand: dict[str, Any] | None, callback: Any) -> Changes:
         is_told, self._is_told = self._is_told, False
+        if self._native is None:
+            self._native = _limitmesh.Front(*self._source, callback)
         try:
             told = self._native.update(demand, callback, is_told)
         except OptionError:

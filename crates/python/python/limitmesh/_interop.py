@@ -14,9 +14,9 @@ from ._refined import Refined
 from ._simplify import repair
 
 
-def _outgoing_of(mesh: Refined | Any) -> Outgoing:
+def _outgoing_of(mesh: Refined | Any, *, sides: bool = True) -> Outgoing:
     if isinstance(mesh, Refined):
-        return mesh._outgoing()
+        return mesh._outgoing(sides=sides)
     mended = repair(as_mesh(mesh))
     return Outgoing(mended.vertices, mended.faces, None, {}, {}, frozenset(), None)
 
@@ -24,7 +24,9 @@ def _outgoing_of(mesh: Refined | Any) -> Outgoing:
 def to_trimesh(mesh: Refined | Any, *, visual: Any = None) -> Any:
     """A ``trimesh.Trimesh`` of a result, with its limit normals, texture coordinates, colours and attributes.
 
-    Where texture coordinates have seams, or edges are sharp, vertices stand once for each side, as trimesh has one value a vertex.
+    Where texture coordinates have seams, vertices stand once for each side, as trimesh has one value a vertex. Sharp edges do not
+    divide them, so that a closed part is watertight; trimesh finds the normals of a mesh with sharp edges itself, and
+    ``Refined.corner_normals`` has those of the limit surface.
 
     Parameters
     ----------
@@ -37,10 +39,10 @@ def to_trimesh(mesh: Refined | Any, *, visual: Any = None) -> Any:
     --------
     >>> import limitmesh
     >>> trimesh = __import__("pytest").importorskip("trimesh")
-    >>> limitmesh.to_trimesh(limitmesh.refine("builtin:cup")).is_watertight
+    >>> limitmesh.to_trimesh(limitmesh.refine("builtin:cube", crease_angle=30)).is_watertight
     True
     """
-    return _outgoing.to_trimesh(_outgoing_of(mesh), visual)
+    return _outgoing.to_trimesh(_outgoing_of(mesh, sides=False), visual)
 
 
 def to_pyvista(mesh: Refined | Any) -> Any:

@@ -11,10 +11,11 @@ from ._arrays import Floats
 from ._limitmesh import OptionError
 from ._options import Camera
 from ._refined import AnyIntegers, ErrorBounds, Refined, by_corner
+from ._shown import Shown
 
 
-@dataclass(frozen=True, eq=False)
-class Level:
+@dataclass(frozen=True, eq=False, repr=False)
+class Level(Shown):
     """One of several meshes of a limit surface, each nested in the next: control vertices keep their numbers on all.
 
     Attributes

@@ -13,7 +13,7 @@ from ._inputs import MeshLike
 from ._level import Level
 from ._limitmesh import OptionError
 from ._mesh import Channel
-from ._options import Boundary, Length, ProgressCallback, Scheme
+from ._options import Boundary, Count, Length, ProgressCallback, Scheme
 from ._refined import Refined
 
 
@@ -37,7 +37,7 @@ def levels_of_detail(
     weld: float | None = 0.0,
     repair: bool = True,
     index_dtype: npt.DTypeLike = np.int64,
-    max_triangles: int | None = None,
+    max_triangles: Count | None = None,
     max_memory: float | str | None = "50%",
     strict: bool = False,
     threads: int | None = None,

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from . import _arrays
 from ._arrays import Floats, MeshIn
 from ._limitmesh import OptionError
+from ._shown import Shown, shown
 
 Domain: TypeAlias = Literal["vertex", "corner", "face"]
 Semantic: TypeAlias = Literal["texture", "colour", "skin-weight", "displacement", "label", "other"]
@@ -36,8 +37,8 @@ _USUAL: dict[str, Interpolation] = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class Channel:
+@dataclass(frozen=True, eq=False, repr=False)
+class Channel(Shown):
     """What a mesh carries: a table of values, and for each vertex, corner or face which of them it has.
 
     Two corners at one vertex that name different rows have a *seam* between them.
@@ -166,8 +167,8 @@ def _semantic(name: str, array: npt.NDArray[Any]) -> Semantic:
     return "label" if array.dtype.kind in "iub" else "other"
 
 
-@dataclass(frozen=True, eq=False)
-class Mesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class Mesh(Shown):
     """A mesh as a file or another library has it: nothing of it is looked at before it is used.
 
     Parameters
@@ -195,6 +196,8 @@ class Mesh:
     >>> mesh = limitmesh.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
     >>> limitmesh.info(mesh)["watertight"]
     True
+    >>> mesh
+    Mesh(4 vertices, 4 faces)
     """
 
     vertices: Any
@@ -205,6 +208,11 @@ class Mesh:
     material_libraries: Sequence[str] = ()
     texture_files: Sequence[str] = ()
     left_out: Sequence[str] = ()
+
+    def __repr__(self) -> str:
+        carried = {"channels": self.channels, "creases": self.creases, "corners": self.corners, "left_out": self.left_out}
+        told = "".join(f", {name}={text}" for name, value in carried.items() if (text := shown(value)))
+        return f"Mesh({len(self.vertices)} vertices, {len(self.faces)} faces{told})"
 
     def with_channels(self, channels: Mapping[str, Channel | npt.ArrayLike] | None) -> Mesh:
         """The same with further channels, or others of the same names.

@@ -18,6 +18,9 @@ from ._limitmesh import OptionError
 Length: TypeAlias = float | str
 """A length in the mesh's unit, or with ``"%"`` a part of the diagonal of the mesh's bounding box."""
 
+Count: TypeAlias = int | str
+"""A whole number; as a text it may be written "20k", "1.5M", "2e4" or "20,000"."""
+
 Boundary: TypeAlias = Literal["smooth", "corners", "fixed"]
 Scheme: TypeAlias = Literal["loop", "loop-warren", "butterfly"]
 RefiningScheme: TypeAlias = Literal["loop", "loop-warren", "butterfly", "sqrt3"]
@@ -101,9 +104,31 @@ def positive(value: Any, name: str) -> float:
 
 
 def whole(value: Any, name: str, least: int) -> int:
-    """A whole number; counts may be written as floats are, such as 2e4."""
-    found = number(value, name, f"a whole number of at least {least}", lambda x: x >= least and x == np.floor(x) < 2**62)
-    return int(found)
+    """A whole number; counts may be written as floats are, such as 2e4, and as people write them, such as "20k"."""
+    expected = f"a whole number of at least {least}"
+
+    def fits(x: float) -> bool:
+        return bool(x >= least and x == np.floor(x) < 2**62)
+
+    if isinstance(value, str):
+        found = _count_of(value)
+        if not fits(found):
+            raise OptionError(f"{name} is {value!r}, expected {expected}, such as '20000', '20,000', '20k' or '2e4'")
+        return int(found)
+    return int(number(value, name, expected, fits))
+
+
+_THOUSANDS = {"": 1, "k": 10**3, "m": 10**6, "g": 10**9}
+
+
+def _count_of(text: str) -> float:
+    """A number with k, M or G for thousands, millions and thousands of millions, and separators between thousands; NaN where it is none."""
+    found = re.fullmatch(r"\s*(\d{1,3}(?:,\d{3})+|\d{1,3}(?:_\d{3})+|\d+\.?\d*(?:e\+?\d+)?)\s*([kmg]?)\s*", text, re.IGNORECASE)
+    if not found:
+        return float("nan")
+    amount = float(re.sub("[,_]", "", found[1])) * _THOUSANDS[found[2].lower()]
+    # 1.1 M is a whole number but for what rounding makes of it.
+    return np.round(amount) if np.isfinite(amount) and abs(amount - np.round(amount)) <= 1e-9 * amount else amount
 
 
 def extent(value: Length, name: str, *, zero: bool = False) -> tuple[float, bool]:
@@ -428,7 +453,7 @@ def goals_of(
     sqrt3: bool = False,
     levels: int | None = None,
     tolerance: Length | None = None,
-    triangles: int | None = None,
+    triangles: Count | None = None,
     angle: float | None = None,
     pixels: float | None = None,
     cameras: Camera | Iterable[Camera] | None = None,
@@ -439,7 +464,7 @@ def goals_of(
     balance: bool = False,
     flat_regions: bool = True,
     origins: bool = True,
-    max_triangles: int | None = None,
+    max_triangles: Count | None = None,
     max_levels: int | None = None,
     max_memory: float | str | None = None,
 ) -> dict[str, Any]:

@@ -14,10 +14,11 @@ import numpy.typing as npt
 from ._arrays import Floats
 from ._library import COLOUR, UV, library
 from ._mesh import Channel
+from ._shown import Shown
 
 
-@dataclass(frozen=True, eq=False)
-class Outgoing:
+@dataclass(frozen=True, eq=False, repr=False)
+class Outgoing(Shown):
     """What goes out: vertices with one value each, and values by face.
 
     Attributes

@@ -11,10 +11,11 @@ from . import _inputs, _limitmesh, _options
 from ._arrays import Floats, Integers
 from ._inputs import MeshLike
 from ._options import Boundary, Length, ProgressCallback, Scheme
+from ._shown import Shown
 
 
-@dataclass(frozen=True)
-class Projected:
+@dataclass(frozen=True, repr=False)
+class Projected(Shown):
     """The closest points of a limit surface, one for each of those that were given.
 
     Attributes

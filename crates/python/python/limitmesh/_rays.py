@@ -13,10 +13,11 @@ from ._arrays import Floats, Integers
 from ._inputs import MeshLike
 from ._limitmesh import OptionError
 from ._options import Boundary, Length, ProgressCallback, Scheme
+from ._shown import Shown
 
 
-@dataclass(frozen=True, eq=False)
-class Intersections:
+@dataclass(frozen=True, eq=False, repr=False)
+class Intersections(Shown):
     """Where rays meet a limit surface: a row for each hit, ray by ray, and along each ray in their order.
 
     Attributes

@@ -13,7 +13,7 @@ from . import _inputs, _limitmesh, _options, _short
 from ._inputs import MeshLike
 from ._limitmesh import OptionError
 from ._mesh import Channel
-from ._options import Boundary, Camera, Length, Method, ProgressCallback, RefiningScheme, Scheme
+from ._options import Boundary, Camera, Count, Length, Method, ProgressCallback, RefiningScheme, Scheme
 from ._refined import Refined
 
 
@@ -22,7 +22,7 @@ def refine(
     faces: Any = None,
     *,
     tolerance: Length | None = None,
-    triangles: int | None = None,
+    triangles: Count | None = None,
     angle: float | None = None,
     pixels: float | None = None,
     cameras: Camera | Iterable[Camera] | None = None,
@@ -46,7 +46,7 @@ def refine(
     weld: float | None = 0.0,
     repair: bool = True,
     index_dtype: npt.DTypeLike = np.int64,
-    max_triangles: int | None = None,
+    max_triangles: Count | None = None,
     max_levels: int | None = None,
     max_memory: float | str | None = "50%",
     strict: bool = False,
@@ -68,7 +68,7 @@ def refine(
     tolerance
         Greatest distance between mesh and limit surface, either way: a length, or a part of the diagonal such as "0.1%".
     triangles
-        The best mesh with at most so many.
+        The best mesh with at most so many, such as 20000, "20k" or "20,000".
     angle
         Greatest angle between triangles and limit normals, in degrees.
     pixels, cameras
@@ -93,7 +93,7 @@ def refine(
         divides triangles by their centres, to tolerance, angle and triangles, or uniformly; it carries no channels.
     method
         "exact"; or, with ``levels`` steps (default 3), "limit-normal" (the paper's) or "amresh" with ``angle`` (default 10), or
-        "uniform". To be compared with, over restricted quadtrees: "planarity", to ``angle`` (default 10) between triangles and limit
+        "uniform", whose vertices are on the limit surface but for "sqrt3". To be compared with, over restricted quadtrees: "planarity", to ``angle`` (default 10) between triangles and limit
         normals, or to ``tolerance`` in height, at samples; "vertex-error", to ``tolerance`` between control points and their limits
         (default "0.1%"); both with at most ``triangles``. Nothing but "exact" says how far the result is from the limit surface.
     view, eye, dilatation
@@ -205,7 +205,7 @@ def estimate(
     faces: Any = None,
     *,
     tolerance: Length | None = None,
-    triangles: int | None = None,
+    triangles: Count | None = None,
     angle: float | None = None,
     pixels: float | None = None,
     cameras: Camera | Iterable[Camera] | None = None,

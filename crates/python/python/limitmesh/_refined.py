@@ -19,6 +19,7 @@ from ._mesh import Channel, told_channels
 from ._options import threads_of
 from ._outgoing import Outgoing, restored
 from ._plot import plot
+from ._shown import Shown
 from ._write import write
 
 AnyIntegers = npt.NDArray[np.integer[Any]]
@@ -92,8 +93,8 @@ class Refined:
     Attributes
     ----------
     vertices
-        (n, 3) positions, all on the limit surface unless ``balance`` or another method was asked for. Those of the control mesh
-        come first.
+        (n, 3) positions, all on the limit surface unless ``balance`` or a method other than "exact" and "uniform" was asked for. Those
+        of the control mesh come first.
     faces
         (m, 3) vertex numbers, counter-clockwise seen from outside, of the type ``index_dtype``.
     normals
@@ -176,7 +177,12 @@ class Refined:
 
     @functools.cached_property
     def parent_face(self) -> AnyIntegers | None:
-        return None if self._parents is None else self._parents.astype(self.faces.dtype, copy=False)
+        if self._parents is None:
+            return None
+        # Of uniform refinement the triangles of a face stand together.
+        each = len(self.faces) // max(len(self._parents), 1)
+        parents = self._parents if each == 1 else self._parents.repeat(each)
+        return parents.astype(self.faces.dtype, copy=False)
 
     @property
     def vertex_face(self) -> AnyIntegers | None:
@@ -367,13 +373,15 @@ class Refined:
         """
         return plot((self.vertices, self.faces), self._outgoing, backend=backend, show=show, options=options)
 
-    def _outgoing(self) -> Outgoing:
-        split = self.split()
+    def _outgoing(self, *, sides: bool = True) -> Outgoing:
+        """With a vertex for each side of sharp edges, or without; then there are no normals if any edge is sharp."""
+        split = self.split(normals=sides)
+        has_normals = sides or not len(self._sides[0])
         faces = {name: channel for name, channel in self.channels.items() if channel.domain == "face"}
         return Outgoing(
             split.vertices,
             split.faces,
-            split.normals,
+            split.normals if has_normals else None,
             {name: restored(value, self.channels[name]) for name, value in split.values.items()},
             {name: restored(channel[slice(None)], channel) for name, channel in faces.items()},
             frozenset(name for name, channel in self.channels.items() if channel.semantic == "texture"),
@@ -396,8 +404,8 @@ def _escaped(text: str) -> str:
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
-@dataclass(frozen=True, eq=False)
-class Split:
+@dataclass(frozen=True, eq=False, repr=False)
+class Split(Shown):
     """A mesh whose vertices have one value and one normal each.
 
     Attributes

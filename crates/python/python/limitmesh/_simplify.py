@@ -13,12 +13,13 @@ from . import _inputs, _limitmesh, _options
 from ._arrays import Floats
 from ._inputs import MeshLike
 from ._mesh import Channel, told_channels
-from ._options import Boundary, Length, ProgressCallback
+from ._options import Boundary, Count, Length, ProgressCallback
 from ._refined import AnyIntegers, Diagnosis
+from ._shown import Shown
 
 
-@dataclass(frozen=True, eq=False)
-class Simplified:
+@dataclass(frozen=True, eq=False, repr=False)
+class Simplified(Shown):
     """A mesh with fewer triangles.
 
     Attributes
@@ -48,7 +49,7 @@ def simplify(
     faces: Any = None,
     *,
     tolerance: Length | None = None,
-    triangles: int | None = None,
+    triangles: Count | None = None,
     certify: bool = True,
     crease_angle: float | None = None,
     creases: Any = None,
@@ -114,8 +115,8 @@ def simplify(
     )
 
 
-@dataclass(frozen=True, eq=False)
-class Repaired:
+@dataclass(frozen=True, eq=False, repr=False)
+class Repaired(Shown):
     """A mended mesh: triangles, oriented alike, manifold.
 
     Attributes

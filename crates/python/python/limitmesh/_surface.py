@@ -13,10 +13,11 @@ from ._arrays import Floats, Integers
 from ._inputs import MeshLike
 from ._limitmesh import OptionError
 from ._options import Boundary, Length, ProgressCallback, Scheme
+from ._shown import Shown
 
 
-@dataclass(frozen=True)
-class SurfacePoints:
+@dataclass(frozen=True, repr=False)
+class SurfacePoints(Shown):
     """Points of a limit surface, one a place; NaN for what is not there.
 
     Attributes

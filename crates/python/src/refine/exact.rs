@@ -1,6 +1,6 @@
 //! Exact refinement: within a proven distance, an angle, pixels, or with a number of triangles.
 
-use limitmesh::carry::{borders, carried};
+use limitmesh::carry::carried;
 use limitmesh::progress::Observer;
 use limitmesh::refine::{Exact, ExactStop, exact_observed};
 
@@ -8,6 +8,7 @@ use super::{Indices, Refined};
 use crate::control::{Control, Recipe, Tables};
 use crate::errors::Failure;
 use crate::options::Goals;
+use crate::origins::Trail;
 
 /// Refines a control mesh to goals.
 pub(super) fn refined(
@@ -16,9 +17,7 @@ pub(super) fn refined(
     goals: &Goals,
     observer: &mut Observer<'_>,
 ) -> Result<Refined, Failure> {
-    let options = goals
-        .exact(control.diagonal, control.tells_faces_apart(), recipe.unfolds())
-        .kept_edges(borders(&control.channels, &control.mesh));
+    let options = control.options(goals, recipe);
     let found = exact_observed(&control.mesh, recipe.scheme, &options, observer)?;
     let channels = match control.channels.is_empty() {
         true => Vec::new(),
@@ -41,7 +40,7 @@ impl Refined {
             normals: found.normals,
             side_corners,
             side_normals,
-            origins: found.origins,
+            origins: Trail::Known(found.origins),
             channels: Vec::new(),
             error: Some((error.lower, error.upper, error.certified, error.at.into())),
             stop,

@@ -1,16 +1,18 @@
 //! Refinement, and what it would give: by distances that are proven ([`exact`]), by the criteria of the literature in steps ([`stepwise`]) and
-//! over restricted quadtrees ([`restricted`]), and by √3-subdivision ([`sqrt3`]).
+//! over restricted quadtrees ([`restricted`]), by √3-subdivision ([`sqrt3`]), and
+//! uniformly ([`uniform`]).
 
 mod exact;
 mod restricted;
 mod sqrt3;
 mod stepwise;
+mod uniform;
 
 use std::time::Instant;
 
 use limitmesh::limit::SidedNormals;
 use limitmesh::mesh::Channel;
-use limitmesh::refine::{Origin, exact_estimate_observed};
+use limitmesh::refine::exact_estimate_observed;
 use limitmesh::{HalfEdgeId, Mesh};
 use numpy::PyArray1;
 use pyo3::intern;
@@ -22,7 +24,7 @@ use crate::channels;
 use crate::control::{Recipe, Tables};
 use crate::errors::OptionError;
 use crate::options::{ControlOptions, Goals};
-use crate::origins::Origins;
+use crate::origins::{Origins, Trail};
 use crate::run::run;
 use crate::soup::MeshIn;
 use crate::tell;
@@ -37,8 +39,8 @@ pub(crate) struct Refined {
     /// Corners, three a triangle, whose normal is not that of their vertex, and these normals.
     side_corners: Vec<u32>,
     side_normals: Vec<[f64; 3]>,
-    origins: Vec<Origin>,
-    /// By triangle, the input's face; none where triangles reach over several.
+    origins: Trail,
+    /// By triangle, the input's face; none where triangles reach over several, and one for each of so many that stand together.
     parents: Option<Vec<u32>>,
     channels: Vec<Channel>,
     /// Lower, upper, whether that is proven, and where the lower one was found.
@@ -86,7 +88,8 @@ pub(crate) fn refine<'py>(
             }
             Method::Sqrt3 => sqrt3::to_goals(control, &goals, observer)?,
             Method::Sqrt3Uniform => sqrt3::by_steps(control, &goals, observer)?,
-            Method::LimitNormal | Method::Amresh | Method::Uniform => {
+            Method::Uniform => uniform::refined(control, &recipe, &goals, observer)?,
+            Method::LimitNormal | Method::Amresh => {
                 stepwise::refined(control, &recipe, (method, &goals), observer)?
             }
         };
@@ -110,7 +113,7 @@ pub(crate) fn estimate(
     let (soup, recipe) = (mesh.soup()?, Recipe::new(control)?);
     run(py, threads, progress, move |observer| {
         let control = recipe.control(soup, observer)?;
-        let options = goals.exact(control.diagonal, control.tells_faces_apart(), recipe.unfolds());
+        let options = control.options(&goals, &recipe);
         let found = exact_estimate_observed(&control.mesh, recipe.scheme, &options, observer)?;
         Ok((found.triangles, found.memory_bytes, found.is_counted))
     })
@@ -152,7 +155,15 @@ impl Method {
 impl Refined {
     /// A mesh of which no more is told.
     fn of_mesh(mesh: Mesh, normals: Normals, tables: Tables) -> Self {
-        let (positions, triangles) = mesh.into_positions_and_triangles();
+        Self::of_triangles(mesh.into_positions_and_triangles(), normals, tables)
+    }
+
+    /// Triangles of which no more is told.
+    fn of_triangles(
+        (positions, triangles): (Vec<[f64; 3]>, Vec<[u32; 3]>),
+        normals: Normals,
+        tables: Tables,
+    ) -> Self {
         Self {
             tables,
             positions,
@@ -160,7 +171,7 @@ impl Refined {
             normals: normals.by_vertex,
             side_corners: normals.corners,
             side_normals: normals.of_corners,
-            origins: Vec::new(),
+            origins: Trail::default(),
             parents: None,
             channels: Vec::new(),
             error: None,

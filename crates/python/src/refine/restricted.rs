@@ -44,7 +44,7 @@ pub(super) fn refined(
     let normals = normals(&found, &control, recipe)?;
     Ok(Refined {
         parents: control.tables.input_faces(found.parents),
-        origins: if goals.origins { found.origins } else { Vec::new() },
+        origins: Trail::Known(if goals.origins { found.origins } else { Vec::new() }),
         channels,
         stop,
         levels,

@@ -10,6 +10,7 @@ use super::{Normals, Refined, exact, stepwise};
 use crate::control::Control;
 use crate::errors::Failure;
 use crate::options::Goals;
+use crate::origins::Trail;
 
 /// A triangle of an adaptive refinement in bytes, with those that it came from and what is known of them: measured, rounded up.
 const BYTES_PER_ADAPTIVE: usize = 2500;
@@ -33,7 +34,7 @@ pub(super) fn to_goals(
     let at = found.mesh.positions().first().copied().unwrap_or_default();
     Ok(Refined {
         parents: control.tables.input_faces(found.parents),
-        origins: found.origins,
+        origins: Trail::Known(found.origins),
         error: found.estimated_distance.map(|distance| (0.0, distance, false, at.into())),
         stop: match found.stop {
             ExactStop::TriangleCap => goals.cap_name(BYTES_PER_ADAPTIVE),
@@ -61,7 +62,7 @@ pub(super) fn by_steps(
     let normals = found.normals.map_or_else(none, of_sides);
     Ok(Refined {
         parents: control.tables.input_faces(found.parents),
-        origins: found.origins,
+        origins: Trail::Known(found.origins),
         stop: stepwise::stop_name(&found.stop, goals),
         levels: found.steps.len(),
         ..Refined::of_mesh(found.mesh, normals, control.tables)

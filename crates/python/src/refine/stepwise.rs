@@ -1,15 +1,16 @@
-//! Refinement step by step: by the paper's criterion, by the one it is compared with, and uniform.
+//! Refinement step by step: by the paper's criterion, and by the one it is compared with.
 
 use limitmesh::carry::carried;
 use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal};
 use limitmesh::limit::LimitTable;
 use limitmesh::progress::Observer;
-use limitmesh::refine::{StepwiseOptions, Stop, UniformOptions, stepwise_observed, uniform_observed};
+use limitmesh::refine::{StepwiseOptions, Stop, stepwise_observed};
 
 use super::{Method, Normals, Refined};
 use crate::control::{Control, Recipe};
 use crate::errors::Failure;
 use crate::options::Goals;
+use crate::origins::Trail;
 
 /// The angle where none is given, in degrees: the paper's middle one.
 const USUAL_ANGLE: f64 = 10.0;
@@ -25,28 +26,16 @@ pub(super) fn refined(
     observer: &mut Observer<'_>,
 ) -> Result<Refined, Failure> {
     let angle = goals.angle.unwrap_or(USUAL_ANGLE).to_radians();
-    let criterion: Option<Box<dyn Criterion>> = match method {
-        Method::LimitNormal => {
-            let criterion = LimitNormal::new(angle);
-            let viewer = goals.viewer();
-            Some(Box::new(viewer.map_or(criterion, |view| criterion.view(view))))
-        }
-        Method::Amresh => Some(Box::new(NeighbourNormal::new(angle))),
-        _ => None,
+    let criterion: Box<dyn Criterion> = match (method, goals.viewer()) {
+        (Method::Amresh, _) => Box::new(NeighbourNormal::new(angle)),
+        (_, Some(view)) => Box::new(LimitNormal::new(angle).view(view)),
+        (_, None) => Box::new(LimitNormal::new(angle)),
     };
     let (mesh, scheme, cap) = (&control.mesh, recipe.scheme, goals.cap(BYTES_PER_TRIANGLE));
     let carries = !control.channels.is_empty();
-    let traces = carries || goals.origins;
-    let found = match criterion {
-        Some(criterion) => {
-            let options = StepwiseOptions::default().levels(goals.levels).origins(traces).max_triangles(cap);
-            stepwise_observed(mesh, scheme, criterion.as_ref(), &options, observer)?
-        }
-        None => {
-            let options = UniformOptions::default().levels(goals.levels).origins(traces).max_triangles(cap);
-            uniform_observed(mesh, scheme, &options, observer)?
-        }
-    };
+    let options =
+        StepwiseOptions::default().levels(goals.levels).origins(carries || goals.origins).max_triangles(cap);
+    let found = stepwise_observed(mesh, scheme, criterion.as_ref(), &options, observer)?;
     let channels = match carries {
         true => carried(&control.channels, mesh, scheme, &found)?,
         false => Vec::new(),
@@ -54,7 +43,7 @@ pub(super) fn refined(
     let normals = Normals::of_sides(&found.mesh, LimitTable::new(scheme).sided_normals(&found.mesh)?);
     Ok(Refined {
         parents: control.tables.input_faces(found.parents),
-        origins: found.origins,
+        origins: Trail::Known(found.origins),
         channels,
         stop: stop_name(&found.stop, goals),
         levels: found.steps.len(),

@@ -36,9 +36,9 @@ pub(super) struct Goals {
     pub(super) triangles: Option<usize>,
     pub(super) pixels: Option<f64>,
     pub(super) cameras: Vec<Camera>,
-    /// Whether triangles must not reach over several control faces.
+    /// Whether triangles must not reach over several control faces, of whatever values.
     tells_faces_apart: bool,
-    /// Edges of the control mesh along which edges stay when they are collapsed.
+    /// Edges of the control mesh that no triangle reaches over.
     kept_edges: Vec<[u32; 2]>,
     /// Whether the result tells where vertices and triangles came from.
     pub(super) keeps_origins: bool,
@@ -90,7 +90,7 @@ impl Goals {
         arguments: &RefineArguments,
     ) -> anyhow::Result<Self> {
         self.kept_edges = borders(channels.all(), control);
-        self.tells_faces_apart = channels.vary_within_faces() || !self.kept_edges.is_empty();
+        self.tells_faces_apart = channels.vary_within_faces();
         self.attributes.add_channels(channels, control, &arguments.channels)?;
         Ok(self)
     }

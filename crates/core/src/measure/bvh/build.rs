@@ -23,12 +23,8 @@ pub(super) const MARGIN: f32 = 1.0 / 4_194_304.0;
 /// Ranges shorter than this are cut to the end in one go.
 const CUT_AT_ONCE: usize = 8192;
 
-/// Builds the tree of a checked surface; each triangle's box is enlarged by `padding` times its diagonal.
-pub(super) fn build<'a>(
-    surface: Triangles<'a>,
-    padding: f64,
-    watch: &mut Watch<'_>,
-) -> Result<Bvh<'a>, Cancelled> {
+/// Builds the tree of a checked surface.
+pub(super) fn build<'a>(surface: Triangles<'a>, watch: &mut Watch<'_>) -> Result<Bvh<'a>, Cancelled> {
     watch.triangles(surface.triangles.len());
     watch.stage(Stage::Indexing, Some(surface.triangles.len()))?;
     let bounds = bounds(surface);
@@ -47,7 +43,7 @@ pub(super) fn build<'a>(
         Slot { corners: surface.triangles[face as usize], face }
     })?;
     drop(centres);
-    let (nodes, starts) = boxes(surface, &frame, &slots, padding, watch)?;
+    let (nodes, starts) = boxes(surface, &frame, &slots, watch)?;
     watch.done(surface.triangles.len())?;
     Ok(Bvh { surface, frame, bounds, slots, nodes, starts })
 }
@@ -139,7 +135,6 @@ fn boxes(
     surface: Triangles<'_>,
     frame: &Frame,
     slots: &[Slot],
-    padding: f64,
     watch: &mut Watch<'_>,
 ) -> Result<(Vec<Node>, Vec<usize>), Cancelled> {
     let mut sizes = vec![slots.len().div_ceil(WIDTH)];
@@ -159,8 +154,7 @@ fn boxes(
             for (i, node) in chunk.iter_mut().enumerate() {
                 let first = (piece * 256 + i) * WIDTH;
                 if level + 1 == sizes.len() {
-                    *node =
-                        box_triangles(surface, frame, &slots[first..slots.len().min(first + WIDTH)], padding);
+                    *node = box_triangles(surface, frame, &slots[first..slots.len().min(first + WIDTH)]);
                 } else {
                     *node = box_nodes(&below[first..sizes[level + 1].min(first + WIDTH)]);
                 }
@@ -171,13 +165,11 @@ fn boxes(
 }
 
 /// The node over up to four triangles.
-fn box_triangles(surface: Triangles<'_>, frame: &Frame, slots: &[Slot], padding: f64) -> Node {
+fn box_triangles(surface: Triangles<'_>, frame: &Frame, slots: &[Slot]) -> Node {
     let mut node = Node::EMPTY;
     for (lane, slot) in slots.iter().enumerate() {
         let [a, b, c] = slot.corners.map(|v| frame.centre_point(vector(surface.positions[v as usize])));
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let pad = if padding > 0.0 { DVec3::splat((high - low).length() * padding) } else { DVec3::ZERO };
-        let (low, high) = ((low - pad).to_array(), (high + pad).to_array());
+        let (low, high) = (a.min(b).min(c).to_array(), a.max(b).max(c).to_array());
         for axis in 0..3 {
             node.low[axis][lane] = low[axis] as f32 - MARGIN;
             node.high[axis][lane] = high[axis] as f32 + MARGIN;

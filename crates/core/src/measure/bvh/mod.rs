@@ -17,7 +17,7 @@ use super::MeasureError;
 use super::frame::{Frame, Located, distance};
 use crate::geometry::{Foot, closest_to_origin};
 use crate::mesh::Triangles;
-use crate::progress::{Cancelled, Observer, Stage, Watch, unobserved};
+use crate::progress::{Observer, Stage, Watch, unobserved};
 use crate::vector::{DVec3, diagonal, vector};
 
 /// Children of a node.
@@ -132,44 +132,7 @@ impl<'a> Bvh<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<Self, MeasureError> {
         super::check(surface, which)?;
-        Ok(build::build(surface, 0.0, &mut Watch::new(observer, Stage::Indexing))?)
-    }
-
-    /// A hierarchy of boxes enlarged by a share of the triangle's size, to find triangles near which a point lies.
-    /// The surface has triangles, and all that they name exists and is finite.
-    pub(super) fn padded(
-        surface: Triangles<'a>,
-        share: f64,
-        watch: &mut Watch<'_>,
-    ) -> Result<Self, Cancelled> {
-        build::build(surface, share, watch)
-    }
-
-    /// Whether `test` holds for any triangle whose box contains the point. It is given the corners and the point,
-    /// scaled alike.
-    pub(super) fn any_around(&self, point: DVec3, test: impl Fn([DVec3; 3], DVec3) -> bool) -> bool {
-        let at = self.frame.locate(point);
-        let deepest = self.starts.len() - 2;
-        let local = at.local.to_array().map(|x| Vec4::splat(x as f32));
-        let mut stack = [(0, 0); STACK];
-        let mut waiting = 1;
-        while waiting > 0 {
-            waiting -= 1;
-            let (level, index) = stack[waiting % STACK];
-            let squared = self.nodes[self.starts[level] + index].squared_distances(local);
-            let mut around = squared.cmple(Vec4::ZERO).bitmask();
-            while around != 0 {
-                let child = index * WIDTH + around.trailing_zeros() as usize;
-                around &= around - 1;
-                if level < deepest {
-                    stack[waiting % STACK] = (level + 1, child);
-                    waiting += 1;
-                } else if test(self.scaled_corners(child), at.scaled) {
-                    return true;
-                }
-            }
-        }
-        false
+        Ok(build::build(surface, &mut Watch::new(observer, Stage::Indexing))?)
     }
 
     /// The surface.

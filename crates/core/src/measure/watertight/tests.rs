@@ -174,3 +174,71 @@ fn bad_indices_and_collapsed_faces_are_no_trouble() {
     assert_eq!(w.degenerate_faces, 1);
     assert_eq!(counts(&examine(&[], &[])), (0, 0, 0, 0, 0, 0));
 }
+
+/// Numbers from 0 to 1 that look like any.
+fn scattered(i: usize) -> [f64; 3] {
+    [0.618_033_988_7, 0.754_877_666_2, 0.569_840_290_9].map(|step| (0.3 + step * i as f64).fract())
+}
+
+/// Vertices on edges that lead to two vertices from everywhere, and on edges of a line that hold one another, found one by one.
+#[test]
+fn t_junctions_are_those_that_looking_at_all_finds() {
+    for count in [5usize, 40, 300] {
+        let mut positions = vec![[0.0; 3], [0.0, 0.0, 1.0]];
+        positions.extend((0..count).map(scattered));
+        let mut triangles: Vec<[u32; 3]> = (0..count as u32).map(|i| [0, 1, i + 2]).collect();
+        // Some in the middle of an edge, some beside one.
+        for i in (0..count).step_by(3) {
+            let shift = if i % 2 == 0 { 0.0 } else { 1e-3 };
+            let on_edge = scattered(i).map(|x| 0.4 * x);
+            let first = positions.len() as u32;
+            positions.extend([
+                [on_edge[0] + shift, on_edge[1], on_edge[2]],
+                [2.0 + i as f64, 0.0, 0.0],
+                [3.0, 1.0, 0.0],
+            ]);
+            triangles.push([first, first + 1, first + 2]);
+        }
+        let surface = Triangles { positions: &positions, triangles: &triangles };
+        let sides: Vec<[u32; 2]> = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        let is_boundary = |&&[a, b]: &&[u32; 2]| {
+            sides.iter().filter(|&&[c, d]| [c, d] == [a, b] || [d, c] == [a, b]).count() == 1
+        };
+        let boundary: Vec<[[f64; 3]; 2]> =
+            sides.iter().filter(is_boundary).map(|side| side.map(|v| positions[v as usize])).collect();
+        let lies_inside = |p: &&[f64; 3]| {
+            boundary.iter().any(|&[a, b]| {
+                let (along, from) = ([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| p[i] - a[i]));
+                let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+                let t = dot(from, along) / dot(along, along);
+                let apart = [0, 1, 2].map(|i| from[i] - t * along[i]);
+                t > 1e-5 && t < 1.0 - 1e-5 && dot(apart, apart) < 1e-10 * dot(along, along)
+            })
+        };
+        let expected = positions.iter().filter(lies_inside).count();
+        assert!(expected > 0);
+        assert_eq!(watertightness(surface).t_junctions, expected, "{count}");
+    }
+}
+
+/// Sixty thousand triangles on one edge, and as many on a line whose edges hold one another: each ends in well under a second.
+#[test]
+fn very_many_edges_side_by_side_take_little_time() {
+    const COUNT: usize = 60_000;
+    // Directions a hundredth apart, every other one twice as far: no edge comes near to a vertex of another.
+    let around = |i: usize| {
+        let (turn, z) = (2.399_963_229_728_653 * i as f64, 1.0 - (2 * i + 1) as f64 / COUNT as f64);
+        let (far, (s, c)) = ((1 + i % 2) as f64, turn.sin_cos());
+        [c * (1.0 - z * z).sqrt(), s * (1.0 - z * z).sqrt(), z].map(|x| far * x)
+    };
+    let mut positions = vec![[0.0; 3], [0.0, 0.0, 1e-3]];
+    positions.extend((0..COUNT).map(around));
+    let triangles: Vec<[u32; 3]> = (0..COUNT as u32).map(|i| [0, 1, i + 2]).collect();
+    let w = examine(&positions, &triangles);
+    assert_eq!((w.non_manifold_edges, w.boundary_edges, w.t_junctions), (1, 2 * COUNT, 0));
+    let mut positions = vec![[0.0; 3]];
+    positions.extend((0..COUNT).flat_map(|i| [[1.0 + i as f64, 0.0, 0.0], [i as f64, 1.0 + i as f64, 1.0]]));
+    let triangles: Vec<[u32; 3]> = (0..COUNT as u32).map(|i| [0, 2 * i + 1, 2 * i + 2]).collect();
+    // All on the line but the last, and on slanting edges none.
+    assert_eq!(examine(&positions, &triangles).t_junctions, COUNT - 1);
+}

@@ -2,8 +2,8 @@
 //!
 //! Takes the soup's polygons over welded vertices; gives triangles and the input face of each. A quad is cut
 //! along a diagonal that lies inside it, the shorter one if both do. More corners are cut by ears in the
-//! polygon's best-fit plane (through Newell's normal), with the diagonals then flipped until they are Delaunay, but for
-//! those of thousands of corners. Corners in the middle of a straight side are kept, because the neighbouring face
+//! polygon's best-fit plane (through Newell's normal), with the diagonals then flipped until they are Delaunay; hundreds
+//! of corners get the constrained Delaunay triangulation at once, which takes n log n. Corners in the middle of a straight side are kept, because the neighbouring face
 //! may have them too. A polygon that crosses itself seen along its normal is twisted in space, or worse: it gets
 //! the triangulation of least area.
 
@@ -12,15 +12,15 @@ use earcut::{Earcut, Refiner};
 use super::super::collinear::are_on_one_line;
 use super::super::topology::MAX_FACES;
 use super::super::{Diagnosis, MeshError, PolygonSoup};
+use crate::geometry::planar;
 use crate::vector::{DVec3, unit_or_zero, vector};
 
-/// Up to this many corners diagonals are flipped, whose number may grow with the square of the corners': a saw of
-/// 16,000 with teeth from both sides takes seconds.
-const MOST_FLIPPED: usize = 4000;
+/// Up to this many corners polygons are cut by ears, in time that grows with the cube of their number where they cross themselves.
+/// Measured: five microseconds a corner at most.
+const MOST_EARS: usize = 512;
 
-/// Polygons of more corners than [`MOST_LEAST_AREA`] that come to each vertex twice or more, on the average, are no outline of
-/// anything: even one with holes, that are joined to its rim by slits, comes to three fifths of them once.
-const MOST_VISITS: usize = 2;
+/// The area that is covered may differ from the polygon's by this part.
+const SAME_AREA: f64 = 1e-9;
 
 /// Up to this many corners a twisted polygon gets its triangulation of least area, in time that grows with the
 /// cube of their number.
@@ -157,22 +157,20 @@ impl Cutter {
             return (1..polygon.len() - 1)
                 .all(|i| is_flat(positions, [polygon[0], polygon[i], polygon[i + 1]]));
         }
-        if polygon.len() > MOST_LEAST_AREA && self.distinct(polygon) * MOST_VISITS <= polygon.len() {
-            self.cut_fan(corners);
-            return false;
+        if polygon.len() > MOST_EARS {
+            let proper = self.cut_delaunay(polygon).is_some();
+            if !proper {
+                self.cut_fan(corners);
+            }
+            return proper;
         }
-        // Measured: 64,000 corners take from 5 milliseconds (a circle) to 1.3 seconds (a saw with teeth from both sides),
-        // 16,000 that cross each other at random half a second. A plane sweep is n log n, but its code was longer than
-        // all the rest, and it failed on polygons that touch themselves.
         self.earcut.earcut_slice(&self.plane, &[], &mut self.indices);
         self.orient();
         if self.indices.len() / 3 < polygon.len() - 2 {
             self.restore_straight_corners(corners);
         }
         if self.is_proper(corners) {
-            if polygon.len() <= MOST_FLIPPED {
-                self.refiner.refine(&mut self.indices, &self.plane);
-            }
+            self.refiner.refine(&mut self.indices, &self.plane);
             return true;
         }
         if polygon.len() <= MOST_LEAST_AREA {
@@ -183,13 +181,26 @@ impl Cutter {
         false
     }
 
-    /// Number of different vertices among the corners.
-    fn distinct(&mut self, polygon: &[u32]) -> usize {
+    /// The constrained Delaunay triangulation of what the polygon encloses; nothing where it crosses itself, goes round anything
+    /// twice, or has a corner inside of a side. It may come to a vertex or along an edge twice, as at slits to holes.
+    fn cut_delaunay(&mut self, polygon: &[u32]) -> Option<()> {
+        // By vertex, the first corner there; by corner, the number of its vertex.
+        let mut firsts: Vec<(u32, u32)> = polygon.iter().copied().zip(0..).collect();
+        firsts.sort_unstable();
+        firsts.dedup_by_key(|&mut (vertex, _)| vertex);
+        let number = |vertex: &u32| firsts.partition_point(|(own, _)| own < vertex) as u32;
+        let numbers: Vec<u32> = polygon.iter().map(number).collect();
+        let points: Vec<[f64; 2]> = firsts.iter().map(|&(_, corner)| self.plane[corner as usize]).collect();
+        let next = numbers.iter().cycle().skip(1);
+        let rim: Vec<[u32; 2]> = numbers.iter().zip(next).map(|(&from, &to)| [from, to]).collect();
+        let triangles = planar::triangulated(&points, &rim, &|| false)?;
         self.indices.clear();
-        self.indices.extend(polygon);
-        self.indices.sort_unstable();
-        self.indices.dedup();
-        self.indices.len()
+        self.indices.extend(triangles.as_flattened().iter().map(|&point| firsts[point as usize].1));
+        let covered: f64 = self.indices.chunks_exact(3).map(|t| self.area(t)).sum();
+        let whole: f64 = (1..polygon.len() as u32 - 1).map(|i| self.area(&[0, i, i + 1])).sum();
+        // By Euler's formula, whatever its holes.
+        let is_whole = triangles.len() == polygon.len() - 2 && (covered - whole).abs() <= SAME_AREA * covered;
+        is_whole.then_some(())
     }
 
     /// The triangulation of least area, by dynamic programming over the pairs of corners (G. T. Klincsek,

@@ -11,6 +11,7 @@ use crate::limit::SidedNormals;
 use crate::mesh::{Mesh, Sharpness};
 use crate::patch::large_rings::LargeRings;
 use crate::patch::{LimitPoint, Patch, Rules, root_patch};
+use crate::refine::kept_faces::KeptFaces;
 use crate::vector::{DVec3, vector};
 
 /// What is known of the control mesh, and what is asked.
@@ -30,6 +31,8 @@ pub(super) struct Control<'a> {
     pub(super) criteria: Option<Criteria>,
     /// What looks away from those who look.
     pub(super) back_faces: BackFaces,
+    /// The faces that no triangle reaches over together.
+    pub(super) kept: &'a KeptFaces,
     /// What is divided in any case.
     pub(super) demands: &'a Demands,
 }

@@ -1,8 +1,8 @@
 //! Regions of control faces whose limit surface is a part of a plane, such as the ends of a cylinder with creased rims.
 //!
 //! There the quadtrees only follow the rim: what they put inside adds nothing. Once everything is emitted, a region's triangles
-//! give way to the constrained Delaunay triangulation of its rim and its control vertices ([`merge`], [`planar`]). So do those of
-//! [`strips`].
+//! give way to the constrained Delaunay triangulation of its rim and its control vertices ([`merge`]). So do those of
+//! [`strips`]. Neither reaches over an edge that is to be kept ([`ExactOptions::kept_edges`]).
 //!
 //! **By their rims.** Where the surface is what the rim's curves enclose, and the triangles are what its chords do, a point of the one and not
 //! of the other is between a curve and its chord, in the convex hull of the curve, so no farther from the chord than that curve's
@@ -25,7 +25,6 @@ mod flattened;
 mod gaps;
 mod joined;
 mod merge;
-mod planar;
 mod replace;
 mod strips;
 mod unfolded;
@@ -160,7 +159,7 @@ impl FlatRegions {
                 let open = control.open(face);
                 for edge in (0..3u32).filter(|&edge| !open[edge as usize]) {
                     let Some(beside) = edges.twin(3 * face + edge).map(|twin| twin / 3) else { continue };
-                    if !is_left[beside as usize] {
+                    if !is_left[beside as usize] || control.kept.part(face, beside) {
                         continue;
                     }
                     if let Some(found) = height(beside) {
@@ -397,7 +396,9 @@ impl FlatRegions {
     /// Whether a half-edge of a flat face is on the rim of its region.
     fn is_rim(&self, (control, edges): (&Control<'_>, &Edges<'_>), h: u32) -> bool {
         let is_sharp = control.lasting.edge(HalfEdgeId(h)) > 0.0;
-        is_sharp || edges.twin(h).is_none_or(|twin| self.region(twin / 3) != self.region(h / 3))
+        let ends_at =
+            |twin: u32| self.region(twin / 3) != self.region(h / 3) || control.kept.part(h / 3, twin / 3);
+        is_sharp || edges.twin(h).is_none_or(ends_at)
     }
 }
 

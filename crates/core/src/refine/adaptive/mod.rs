@@ -67,6 +67,7 @@ use super::RefineError;
 use super::exact_options::ExactOptions;
 use super::exact_result::{Exact, ExactStop};
 use super::junctions::join_copies;
+use super::kept_faces::KeptFaces;
 use crate::criterion::{Criteria, Distance, LimitNormal, Pixels};
 use crate::limit::{LimitTable, Stencils};
 use crate::mesh::{Mesh, Sharpness};
@@ -225,6 +226,7 @@ fn with_engine<T>(
     let sharpness = Sharpness::of(mesh);
     let lasting = sharpness.lasting();
     let edges = Edges::of(mesh);
+    let kept = KeptFaces::of(mesh, &options.kept_edges)?;
     let mut control = Control {
         mesh,
         sharpness: &sharpness,
@@ -236,6 +238,7 @@ fn with_engine<T>(
         flat: FlatRegions::default(),
         criteria: None,
         back_faces: BackFaces::default(),
+        kept: &kept,
         demands,
     };
     if options.flat_regions && (!options.balance || options.unfold) && options.attributes.is_empty() {
@@ -431,7 +434,8 @@ impl Engine<'_> {
         let sharp = settle::sharp_edges(&emission, self.watch)?;
         let Emission { positions, triangles, twins, parents, starts, .. } = &emission;
         let corners = self.control.mesh.vertex_count();
-        let net = Net { positions, triangles, twins, parents, starts, sharp: &sharp, corners };
+        let kept = self.control.kept;
+        let net = Net { positions, triangles, twins, parents, starts, sharp: &sharp, kept, corners };
         let saved = flat.saved(&net, self.watch)?;
         // Whoever emits it next need not write it again, but for those who look at what was changed since the last time.
         if !self.is_settled_later() {

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod channels;
 mod folding;
 use std::f64::consts::TAU;
 

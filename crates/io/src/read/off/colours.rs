@@ -1,9 +1,8 @@
 //! Colours at the end of lines: three or four numbers, whole ones from 0 to 255, or from 0 to 1.
 //!
-//! A file has one kind: if a number has a point, or none is above 1, they are from 0 to 1. A texture coordinate may follow, so what stands
-//! after four numbers is passed over. A single number is an index into a map of colours that is nowhere told.
+//! A file has one kind: if a number has a point, or none is above 1, they are from 0 to 1. What stands after four numbers is passed over. A single number is an index into a map of colours that is nowhere told.
 
-use crate::scan::{Scanner, number};
+use crate::scan::number;
 use limitmesh::mesh::{Channel, Domain, Semantic, Storage};
 
 /// Colours of the elements of a file.
@@ -26,30 +25,26 @@ const NONE: [f64; 4] = [f64::NAN; 4];
 const GREY: f64 = 0.666;
 
 impl Colours {
-    /// Reads the rest of an element's line; whether there is any.
-    pub(super) fn read(&mut self, scanner: &mut Scanner<'_>, element: usize) -> bool {
+    /// Takes the words of an element's line that may be a colour.
+    pub(super) fn read(&mut self, words: &[&[u8]], element: usize) {
         let mut colour = [0.0, 0.0, 0.0, f64::NAN];
-        let mut count = 0;
-        while let Some(word) = scanner.word() {
-            if count < 4 {
-                match number(word).filter(|x: &f64| x.is_finite()) {
-                    Some(value) => colour[count] = value,
-                    None => self.is_wrong = true,
-                }
-                self.has_fraction |= word.iter().any(|byte| b".eE".contains(byte));
+        for (own, word) in colour.iter_mut().zip(words) {
+            match number(word).filter(|x: &f64| x.is_finite()) {
+                Some(value) => *own = value,
+                None => self.is_wrong = true,
             }
-            count += 1;
+            self.has_fraction |= word.iter().any(|byte| b".eE".contains(byte));
         }
+        let count = words.len();
         // A lone 0 says that there is no colour.
         if count == 0 || count == 1 && colour[0] == 0.0 {
-            return count > 0;
+            return;
         }
         self.is_wrong |= count < 3;
         self.has_opacity |= count > 3;
         self.has_whole |= colour.iter().any(|&x| x > 1.0);
         self.values.resize(element, NONE);
         self.values.push(colour);
-        true
     }
 
     /// The channel of so many elements, if any has a colour.

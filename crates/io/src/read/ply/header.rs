@@ -8,6 +8,9 @@ use crate::scan::{integer, quoted};
 /// What comes before the name of a picture in a comment, as MeshLab writes it.
 const TEXTURE_FILE: &[u8] = b"TextureFile";
 
+/// Elements of a header, and properties of an element, at most: more than any program writes, few enough to be compared with each other.
+const MOST_DECLARED: usize = 1000;
+
 /// How the values after the header are written.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Encoding {
@@ -182,6 +185,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, Flaw> {
                 if elements.iter().any(|e| e.name == element.name) {
                     return Err(lines.saying(format!("the header has a second element {}", quoted(name))));
                 }
+                if elements.len() >= MOST_DECLARED {
+                    let met = format!("one more element {}", quoted(name));
+                    return Err(lines.flaw(met, format!("at most {MOST_DECLARED} of them")));
+                }
                 elements.push(element);
             }
             [b"property", ref words @ ..] => {
@@ -192,6 +199,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, Flaw> {
                 if element.properties.iter().any(|p| p.name == property.name) {
                     let name = quoted(property.name.as_bytes());
                     return Err(lines.saying(format!("the element has a second property {name}")));
+                }
+                if element.properties.len() >= MOST_DECLARED {
+                    let met = format!("one more property {}", quoted(property.name.as_bytes()));
+                    return Err(lines.flaw(met, format!("at most {MOST_DECLARED} in an element")));
                 }
                 element.properties.push(property);
             }

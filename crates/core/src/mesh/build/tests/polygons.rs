@@ -288,3 +288,72 @@ fn polygons_with_slits_are_no_twists() {
     assert!(diagnosis.twisted_polygons.is_empty(), "{:?}", found(&diagnosis));
     assert_eq!(mesh.triangles().len(), face.len() - 2);
 }
+
+/// Thousands of holes, each joined to the same corner by a slit: the triangles cover what is between them.
+#[test]
+fn thousands_of_slits_to_one_corner_are_no_twist() {
+    let (mut points, mut face) = (vec![[0.0, 0.0]], vec![0u32]);
+    let mut holes = 0.0;
+    for hole in 0..3000 {
+        let angle = 0.0001 + 0.0005 * f64::from(hole);
+        let at = |turn: f64, far: f64| [far * (angle + turn).cos(), far * (angle + turn).sin()];
+        let first = points.len() as u32;
+        points.extend([at(0.0, 1.0), at(0.0001, 2.0), at(0.0002, 1.5)]);
+        holes += area(&points, [first, first + 1, first + 2]).abs();
+        face.extend([first, first + 1, first + 2, first, 0]);
+    }
+    let first = points.len() as u32;
+    points.extend([[0.0, 9.0], [9.0, 9.0], [9.0, 0.0]]);
+    face.extend([first, first + 1, first + 2]);
+    // Clockwise so far.
+    face.reverse();
+    let (mesh, diagnosis) = build_soup(&soup(&flat(&points), &[&face]));
+    assert!(diagnosis.twisted_polygons.is_empty(), "{:?}", found(&diagnosis));
+    assert_eq!(mesh.triangles().len(), face.len() - 2);
+    let areas: Vec<f64> = mesh.triangles().iter().map(|&triangle| area(&points, triangle)).collect();
+    assert!(areas.iter().all(|&area| area > 0.0));
+    assert!((areas.iter().sum::<f64>() - (81.0 - holes)).abs() < 1e-9);
+}
+
+/// Two turns of a strip, ten thousand corners on either side.
+#[test]
+fn a_long_spiral_is_tiled() {
+    let arm = |far: f64| (0..10_000).map(move |i| (0.1 * f64::from(i), far + 0.02 * f64::from(i)));
+    let points = arm(1.0).map(|(turn, far)| [far * turn.cos(), far * turn.sin()]);
+    let back = arm(1.05).map(|(turn, far)| [far * turn.cos(), far * turn.sin()]);
+    let mut points: Vec<[f64; 2]> = points.chain(back.collect::<Vec<_>>().into_iter().rev()).collect();
+    points.reverse();
+    if polygon_area(&points) < 0.0 {
+        points.reverse();
+    }
+    let face: Vec<u32> = (0..points.len() as u32).collect();
+    let (mesh, diagnosis) = build_soup(&soup(&flat(&points), &[&face]));
+    assert!(diagnosis.twisted_polygons.is_empty());
+    assert_tiles(&points, mesh.triangles());
+}
+
+/// Curves of ten thousand corners that cross themselves a few times, everywhere, or at corners alone. Each ends in well under a second.
+#[test]
+fn large_polygons_that_cross_are_twisted() {
+    const CORNERS: u32 = 10_000;
+    let turn = |i: u32| core::f64::consts::TAU * f64::from(i) / f64::from(CORNERS);
+    let scattered = |i: u32, step: f64| (step * f64::from(i)).fract();
+    let circles = |i: u32| {
+        let (half, turn) = (CORNERS / 2, 2.0 * turn(i));
+        let far = if i < half { 1.0 } else { -1.3 };
+        [far * (1.0 - turn.cos()), turn.sin()]
+    };
+    let curves: [&dyn Fn(u32) -> [f64; 2]; 5] = [
+        &|i| [(7.0 * turn(i) + 0.3).sin(), (6.0 * turn(i)).sin()],
+        &|i| [turn(i).sin(), (2.0 * turn(i)).sin() + 0.3 * turn(i).cos()],
+        &|i| [scattered(i, 0.618_033_988_7), scattered(i, 0.754_877_666_2)],
+        &|i| [(4999.0 * turn(i)).cos(), (4999.0 * turn(i)).sin()],
+        &circles,
+    ];
+    for (number, curve) in curves.into_iter().enumerate() {
+        let points: Vec<[f64; 2]> = (0..CORNERS).map(curve).collect();
+        let face: Vec<u32> = (0..CORNERS).collect();
+        let (_, diagnosis) = build_soup(&soup(&flat(&points), &[&face]));
+        assert_eq!(diagnosis.twisted_polygons.count, 1, "curve {number}");
+    }
+}

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::{Plane, planar};
+use super::Plane;
+use crate::geometry::planar;
 use crate::parallel::{IsStopped, asking};
 use crate::vector::{DVec3, vector};
 

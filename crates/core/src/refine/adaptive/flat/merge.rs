@@ -58,7 +58,7 @@ impl FlatRegions {
         if self.regions.is_empty() && self.straight.is_empty() {
             return Ok((whole, 0));
         }
-        let net = whole.net((starts, sharp), corners);
+        let net = whole.net((starts, sharp), mesh.0.kept, corners);
         let mut regions = self.regions(&net, watch)?;
         let coverings = self.coverings(mesh, &net, &mut regions, watch)?;
         if coverings.iter().all(Option::is_none) {

@@ -6,6 +6,7 @@ use crate::mesh::{Junctions, NONE, Tags};
 use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::Origin;
+use crate::refine::kept_faces::KeptFaces;
 use std::collections::{HashMap, HashSet};
 
 /// Triangles and half-edges that are numbered anew together: less than a millisecond.
@@ -30,10 +31,11 @@ impl Assembled {
     pub(super) fn net<'a>(
         &'a self,
         (starts, sharp): (&'a [u32], &'a HashSet<u32>),
+        kept: &'a KeptFaces,
         corners: usize,
     ) -> Net<'a> {
         let Self { positions, triangles, twins, parents, .. } = self;
-        Net { positions, triangles, twins, parents, starts, sharp, corners }
+        Net { positions, triangles, twins, parents, starts, sharp, kept, corners }
     }
 }
 

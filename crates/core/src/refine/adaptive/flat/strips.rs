@@ -21,6 +21,7 @@ use crate::patch::{Patch, VertexSector};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
 use crate::refine::adaptive::quadtree::Edges;
+use crate::refine::kept_faces::KeptFaces;
 use crate::vector::{DVec3, unit_normal, unit_or_zero, vector};
 use std::collections::{HashMap, HashSet};
 
@@ -50,6 +51,8 @@ pub(in super::super) struct Net<'a> {
     pub(in super::super) starts: &'a [u32],
     /// The half-edges along sharp edges.
     pub(in super::super) sharp: &'a HashSet<u32>,
+    /// The control faces that no triangle reaches over together.
+    pub(in super::super) kept: &'a KeptFaces,
     /// Control vertices, which stand first and all stay.
     pub(in super::super) corners: usize,
 }
@@ -74,10 +77,13 @@ impl Net<'_> {
         [triangle[h as usize % 3], triangle[(h as usize + 1) % 3]]
     }
 
-    /// The half-edge on the other side of one that is neither sharp nor on a boundary.
+    /// The half-edge on the other side of one that is neither sharp nor kept nor on a boundary.
     pub(super) fn beyond(&self, h: u32) -> Option<u32> {
         let twin = self.twins[h as usize];
-        (twin != NONE && (self.sharp.is_empty() || !self.sharp.contains(&h))).then_some(twin)
+        let is_open = twin == NONE
+            || !self.sharp.is_empty() && self.sharp.contains(&h)
+            || self.kept.part(self.face(h / 3), self.face(twin / 3));
+        (!is_open).then_some(twin)
     }
 
     fn plane(&self, triangle: u32) -> Plane {

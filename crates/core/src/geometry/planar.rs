@@ -13,7 +13,8 @@ const ORDER: u32 = 16;
 
 /// Triangles that cover what lies to the left of the directed rim edges, with all points for vertices. `None` where two points are
 /// at one place or rim edges cross or touch, and when stopped. Points are at most some units from the origin.
-pub(super) fn triangulated(
+/// Coordinates too small to be told from 0 are 0.
+pub(crate) fn triangulated(
     points: &[[f64; 2]],
     rim: &[[u32; 2]],
     is_stopped: &IsStopped<'_>,
@@ -25,7 +26,8 @@ pub(super) fn triangulated(
     }
     let mut handles = vec![FixedVertexHandle::from_index(0); points.len()];
     for (at, &point) in order.iter().enumerate() {
-        let [x, y] = points[point as usize];
+        let is_told = |x: &f64| x.abs() >= spade::MIN_ALLOWED_VALUE;
+        let [x, y] = points[point as usize].map(|x| if is_told(&x) { x } else { 0.0 });
         let handle = net.insert(Point2::new(x, y)).ok()?;
         if handle.index() != at || at.is_multiple_of(ASKED) && is_stopped() {
             return None;
