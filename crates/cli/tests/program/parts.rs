@@ -338,34 +338,35 @@ fn files_with_sharpness_of_their_own_are_not_looked_at() {
     assert!(!is_part(&file(&folder, "cage.obj", quads)));
 }
 
-/// What was found in a part says where its surface passes by vertices.
+/// Through vertices close together, the surface would turn over; it passes by them and says where.
 #[test]
 fn where_the_surface_would_fold_it_passes_by() {
     let folder = folder();
-    // A ring of vertices very near to the rim of a peg.
-    let mut solid = Solid::default();
     let at = |i: usize, z: f64| {
         let (sine, cosine) = (TAU * (i % 16) as f64 / 16.0).sin_cos();
         [5.0 * cosine, 5.0 * sine, z]
     };
-    let heights = [0.0, 0.3, 0.302, 4.0, 8.0];
-    for pair in heights.windows(2) {
-        for i in 0..16 {
-            let shift = if i % 2 == 0 && pair[0] == 0.302 { 0.0005 } else { 0.0 };
-            let next = if i % 2 == 1 && pair[0] == 0.302 { 0.0005 } else { 0.0 };
-            let above = if pair[1] == 0.302 { [shift, next] } else { [0.0; 2] };
-            let _ = above;
+    let mut solid = Solid::default();
+    for pair in [0.0, 3.95, 4.05, 8.0].windows(2) {
+        (0..16).for_each(|i| {
             solid.quad([at(i, pair[0]), at(i + 1, pair[0]), at(i + 1, pair[1]), at(i, pair[1])]);
-        }
+        });
     }
     for i in 1..15 {
         solid.0.push([at(0, 0.0), at(i + 1, 0.0), at(i, 0.0)]);
         solid.0.push([at(0, 8.0), at(i, 8.0), at(i + 1, 8.0)]);
     }
-    let input = solid.stl(&folder, "uneven.stl");
-    let (through, ..) = refine(&input, "--crease-angle 30 --interpolate");
-    println!("{}", through.stderr);
-    let (run, _, report) = refine(&input, "");
-    println!("{}", run.stderr);
+    let input = solid.stl(&folder, "rings.stl");
+    let (_, _, through) = refine(&input, "--crease-angle 30 --interpolate");
+    assert!(number(&through["output"]["inverted_triangles"]) > 0.0);
+    let (run, found, report) = refine(&input, "");
     assert_eq!(report["output"]["inverted_triangles"], 0);
+    assert_eq!(report["interpolation"]["folded_regions"], 1);
+    let said = "the surface passes by 32 vertices: through them it would fold in 1 region; it has 32 faces, from (-5, -5, 3.95) to (5, 5, 4.05)";
+    assert!(run.stderr.contains(said), "{}", run.stderr);
+    // Triangles all look outwards, and the rims keep their radius.
+    assert!((volume(&found) / (PI * 200.0) - 1.0).abs() < 0.03, "{}", volume(&found));
+    let rims = found.positions.iter().filter(|p| p[2].abs() < 1e-6 || (p[2] - 8.0).abs() < 1e-6);
+    let radii = rims.map(|p| p[0].hypot(p[1])).filter(|radius| *radius > 4.5);
+    assert!(radii.clone().count() >= 32 && radii.clone().all(|radius| (radius - 5.0).abs() < 1e-3));
 }

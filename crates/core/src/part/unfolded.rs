@@ -95,7 +95,7 @@ pub fn interpolate_unfolded_observed(
         if let Some(anyway) = &anyway {
             folding.retain(|face| anyway.binary_search(face).is_err());
         }
-        if folding.is_empty() && attempt > 0 {
+        if folding.is_empty() && anyway.is_some() {
             folding = turned_over(&interpolated.mesh, scheme, observer)?;
         }
         if folding.is_empty() || attempt == MOST_ATTEMPTS {
@@ -110,8 +110,7 @@ pub fn interpolate_unfolded_observed(
     }
 }
 
-/// The control faces of triangles that are turned over after all in a refined surface, where a part of it did fold: what the levels above did
-/// not show.
+/// The control faces of triangles that are turned over after all in a finely refined surface, where flat regions are what their rims enclose.
 fn turned_over(
     control: &Mesh,
     scheme: &dyn Scheme,
