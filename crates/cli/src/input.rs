@@ -375,15 +375,3 @@ pub(crate) fn nearly_closed(
 pub(crate) fn describe(name: &str, error: MeshError) -> anyhow::Error {
     anyhow::Error::new(error).context(format!("{name} gives no control mesh"))
 }
-
-/// One name for one file, as far as can be known without making it: links are followed.
-pub(crate) fn full_path(path: &Path) -> PathBuf {
-    if let Ok(there) = path.canonicalize() {
-        return there;
-    }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    match (folder.canonicalize(), path.file_name()) {
-        (Ok(folder), Some(name)) => folder.join(name),
-        _ => std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),
-    }
-}

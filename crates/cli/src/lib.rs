@@ -14,6 +14,7 @@ mod creases;
 mod dihedral;
 mod embedded;
 mod failure;
+mod file_identity;
 mod format;
 mod input;
 mod interrupt;

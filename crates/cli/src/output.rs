@@ -1,6 +1,6 @@
 //! Writing: text and JSON to standard output, files whole or not at all.
 
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::arguments::OverwriteArguments;
 use crate::failure::usage;
-use crate::input;
+use crate::file_identity::FileIdentity;
 use crate::interrupt;
 
 /// Stands for standard output where a file is expected.
@@ -86,8 +86,8 @@ pub(crate) fn check_replaced(
     inputs: &[&Path],
     asked: Option<OverwriteArguments>,
 ) -> anyhow::Result<()> {
-    let inputs: HashSet<PathBuf> = inputs.iter().map(|path| input::full_path(path)).collect();
-    let is_input = |path: &Path| !is_standard_output(path) && inputs.contains(&input::full_path(path));
+    let inputs: BTreeSet<FileIdentity> = inputs.iter().map(|path| FileIdentity::of(path)).collect();
+    let is_input = |path: &Path| !is_standard_output(path) && inputs.contains(&FileIdentity::of(path));
     let replaced = written.iter().find(|path| is_input(path)).map(|path| path.display());
     match (replaced, asked) {
         (None, _) | (_, Some(OverwriteArguments { overwrite: true })) => Ok(()),
@@ -100,8 +100,8 @@ pub(crate) fn check_replaced(
 
 /// Refuses to write a file twice.
 pub(crate) fn check_once(written: &[&Path]) -> anyhow::Result<()> {
-    let mut seen = HashSet::new();
-    match written.iter().find(|path| !seen.insert(input::full_path(path))) {
+    let mut seen = BTreeSet::new();
+    match written.iter().find(|path| !seen.insert(FileIdentity::of(path))) {
         Some(path) => usage(format!("{} would be written twice", path.display())),
         None => Ok(()),
     }

@@ -58,6 +58,13 @@ fn an_input_is_replaced_only_where_that_is_asked_for() {
         refused("refine {} -o {} --tolerance 5%", &[&input, &link]);
         refused("refine {} -o {} --tolerance 5%", &[&link, &input]);
     }
+    let hard = folder.path().join("hard.obj");
+    std::fs::hard_link(&input, &hard).expect("a link");
+    refused("refine {} -o {} --tolerance 5%", &[&input, &hard]);
+    // Another input would be gone before it is read.
+    let smooth = file(&folder, "a-smooth.obj", TETRAHEDRON);
+    run("refine {} {} --tolerance 5% --overwrite", &[&input, &smooth]).expect(2).saying("is an input, too");
+    assert!(is_unchanged(&smooth));
     let ply = folder.path().join("c.ply");
     run("refine {} -o {} --tolerance 5%", &[&input, &ply]).expect(0);
     let before = std::fs::read(&ply).expect("a file");

@@ -2,13 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
-use std::path::{Path, PathBuf, is_separator};
+use std::path::{Path, is_separator};
 
 use clap::CommandFactory;
 use serde_json::value::RawValue;
 
 use crate::arguments::Arguments;
-use crate::input::full_path;
+use crate::file_identity::FileIdentity;
 
 /// Options of `refine` that are no matter of a job: the report is in its result, and the batch has the others.
 const NOT_OF_JOBS: [&str; 6] = ["output", "report", "threads", "quiet", "help", "version"];
@@ -184,19 +184,19 @@ impl Value {
 #[derive(Default)]
 pub(super) struct Claims {
     /// By line; none for the batch's own.
-    written: BTreeMap<PathBuf, Option<usize>>,
-    read: BTreeSet<PathBuf>,
+    written: BTreeMap<FileIdentity, Option<usize>>,
+    read: BTreeSet<FileIdentity>,
 }
 
 impl Claims {
     /// The batch itself has this file.
     pub(super) fn take(&mut self, path: &Path) {
-        self.written.insert(full_path(path), None);
+        self.written.insert(FileIdentity::of(path), None);
     }
 
     /// A job reads this file.
     pub(super) fn read(&mut self, path: &Path) {
-        self.read.insert(full_path(path));
+        self.read.insert(FileIdentity::of(path));
     }
 
     /// The job on that line writes its files, when all jobs have said what they read.
@@ -204,7 +204,8 @@ impl Claims {
     /// # Errors
     /// One of them is another's, in words.
     pub(super) fn write(&mut self, job: &Job, line: usize) -> Result<(), String> {
-        let files: Vec<(PathBuf, &Path)> = job.written().map(|path| (full_path(path), path)).collect();
+        let files: Vec<(FileIdentity, &Path)> =
+            job.written().map(|path| (FileIdentity::of(path), path)).collect();
         for (i, (file, path)) in files.iter().enumerate() {
             let name = path.display();
             if files[..i].iter().any(|(earlier, _)| earlier == file) {

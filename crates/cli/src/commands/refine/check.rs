@@ -1,5 +1,6 @@
 //! What makes no sense on a command line of `limitmesh refine`, found before any work is done.
 
+use std::collections::BTreeMap;
 use std::io::IsTerminal;
 use std::path::Path;
 
@@ -8,6 +9,7 @@ use limitmesh_io::Format;
 use super::picture;
 use crate::arguments::{Method, MorphTolerance, RefineArguments, Way};
 use crate::failure::usage;
+use crate::file_identity::FileIdentity;
 use crate::format::thousands;
 use crate::output;
 
@@ -70,7 +72,21 @@ pub(super) fn together(arguments: &RefineArguments, jobs: &[RefineArguments]) ->
     let written: Vec<&Path> = jobs.iter().filter_map(|job| job.output.as_deref()).collect();
     let inputs: Vec<&Path> = jobs.iter().map(RefineArguments::input).collect();
     output::check_replaced(&written, &inputs, Some(arguments.overwrite))?;
-    output::check_once(&written)
+    output::check_once(&written)?;
+    // Where that is asked for a result may replace its own input, but not what another result is to be made from.
+    let read: BTreeMap<FileIdentity, usize> =
+        inputs.iter().enumerate().map(|(number, input)| (FileIdentity::of(input), number)).collect();
+    for (number, job) in jobs.iter().enumerate() {
+        let Some(output) = job.output.as_deref() else { continue };
+        if read.get(&FileIdentity::of(output)).is_some_and(|&other| other != number) {
+            return usage(format!(
+                "{} is an input, too, which the result of {} would replace",
+                output.display(),
+                job.input().display()
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses glTF assets and 3MF packages, which are edited mesh by mesh, where that cannot be.
