@@ -26,11 +26,6 @@ pub(crate) fn length(a: [f64; 3]) -> f64 {
     if SAFE.contains(&squared) { squared.sqrt() } else { a[0].hypot(a[1]).hypot(a[2]) }
 }
 
-/// How far two points are from each other.
-pub(crate) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    length(minus(a, b))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

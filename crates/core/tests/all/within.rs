@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use crate::support::*;
 use limitmesh::progress::Progress;
 use limitmesh::refine::{RefineError, Within, WithinOptions, within, within_observed};
-use limitmesh::scheme::{Butterfly, Loop};
+use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{Mesh, PolygonSoup, Triangles};
 
 /// The outer faces of the voxels of size 1 around the whole-numbered points for which `is_inside` holds, within `n` of the origin.
@@ -315,6 +315,6 @@ fn what_makes_no_sense_is_refused() {
     }
     let refused = within(&mesh, &Loop, &WithinOptions::default().within(0.1).tolerance(Some(0.2)));
     assert!(matches!(refused, Err(RefineError::Mesh(_))));
-    let refused = within(&mesh, &Butterfly, &WithinOptions::default().within(0.1));
+    let refused = within(&mesh, &ModifiedButterfly, &WithinOptions::default().within(0.1));
     assert!(refused.is_err_and(|error| error.to_string().contains("butterfly")));
 }
