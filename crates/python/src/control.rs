@@ -67,10 +67,11 @@ impl Recipe {
             }
             _ => (mesh, None, false),
         };
-        let (mesh, concave) = match options.divides_concave_corners {
-            true => mesh.with_divided_concave_corners()?,
-            false => (mesh, Default::default()),
+        let (whole, (mesh, concave)) = match options.divides_concave_corners {
+            true => (Some(mesh.clone()), mesh.with_divided_concave_corners()?),
+            false => (None, (mesh, Default::default())),
         };
+        let whole = whole.filter(|_| !concave.parts.is_empty());
         diagnosis.concave_corners = concave.corners;
         let diagonal = mesh.diagonal();
         let (mesh, interpolated) = match options.interpolate {
@@ -99,13 +100,15 @@ impl Recipe {
             crease_angle,
             interpolated,
         };
-        Ok(Control { mesh, tables, vertices, channels, diagonal })
+        Ok(Control { mesh, whole, tables, vertices, channels, diagonal })
     }
 }
 
 /// A control mesh and where it came from.
 pub(crate) struct Control {
     pub(crate) mesh: Mesh,
+    /// The mesh before faces were divided, where some were.
+    pub(crate) whole: Option<Mesh>,
     pub(crate) tables: Tables,
     /// By vertex of the input, the mesh's; none where no face of it was kept, the first of copies.
     pub(crate) vertices: Vec<Option<u32>>,

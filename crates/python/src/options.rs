@@ -107,6 +107,8 @@ pub(crate) struct Goals {
     /// Steps of the stepwise methods.
     pub(crate) levels: usize,
     pub(crate) tolerance: Option<Extent>,
+    /// The greatest distance from the input; in place of a tolerance.
+    pub(crate) within: Option<Extent>,
     pub(crate) triangles: Option<usize>,
     /// In degrees.
     pub(crate) angle: Option<f64>,
@@ -120,7 +122,7 @@ pub(crate) struct Goals {
     balance: bool,
     flat_regions: bool,
     pub(crate) origins: bool,
-    max_triangles: Option<usize>,
+    pub(crate) max_triangles: Option<usize>,
     pub(crate) max_levels: Option<usize>,
     max_memory: Option<usize>,
 }

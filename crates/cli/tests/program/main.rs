@@ -43,4 +43,5 @@ mod sqrt3;
 mod streams;
 mod units;
 mod usage;
+mod within;
 mod writing;

@@ -59,6 +59,7 @@ def refine_file(
     target: str | os.PathLike[str],
     *,
     tolerance: Length | None = None,
+    within: Length | None = None,
     triangles: Count | None = None,
     angle: float | None = None,
     interpolate: bool | Length | None = None,
@@ -105,7 +106,7 @@ def refine_file(
     creases
         "auto" keeps the edges of parts sharp and leads their surface through the vertices, as the program does by default, where the
         file does not say itself which edges are sharp.
-    tolerance, triangles, angle, interpolate, crease_angle, boundary, concave_corners, scheme, method, levels, optimize, balance, \
+    tolerance, within, triangles, angle, interpolate, crease_angle, boundary, concave_corners, scheme, method, levels, optimize, balance, \
 weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         As for `refine`.
 
@@ -142,7 +143,7 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         weld=weld,
     )
     goals = _options.goals_of(
-        method=method, levels=levels, tolerance=tolerance, triangles=triangles, angle=angle, optimize=optimize,
+        method=method, levels=levels, tolerance=tolerance, within=within, triangles=triangles, angle=angle, optimize=optimize,
         balance=balance, max_triangles=max_triangles, max_levels=max_levels, max_memory=max_memory,
     )
     arguments = [_name(source, "source"), f"--output={_name(target, 'target')}", f"--method={method}", f"--uv={uv}"]
@@ -154,6 +155,7 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         arguments.append(f"--interpolate-within={interpolate}")
     for name, value in (
         ("tolerance", tolerance),
+        ("within", within),
         ("crease-angle", creases or ("none" if crease_angle is None else crease_angle)),
         ("angle", angle),
         ("concave-corners", concave_corners),

@@ -386,9 +386,14 @@ def of_refinement(
     sqrt3 = scheme == "sqrt3"
     if sqrt3 and interpolate not in (False, None):
         raise OptionError("interpolate does not go with scheme='sqrt3'; it is for the schemes that divide triangles in four")
+    is_near = goals.get("within") is not None
+    if is_near and interpolate not in (False, None):
+        raise OptionError("interpolate does not go with within, which leads the surface as near to the vertices as it has to be")
+    if is_near and scheme == "butterfly":
+        raise OptionError("within smooths by moving control points; scheme='butterfly' passes through them")
     control = control_of(
-        # It has no control points that lead the surface of a part.
-        interpolate=False if sqrt3 else interpolate,
+        # Neither leads the surface of a part through its vertices.
+        interpolate=False if sqrt3 or is_near else interpolate,
         auto_creases=auto_creases,
         crease_angle=crease_angle,
         boundary=boundary,
@@ -453,6 +458,7 @@ def goals_of(
     sqrt3: bool = False,
     levels: int | None = None,
     tolerance: Length | None = None,
+    within: Length | None = None,
     triangles: Count | None = None,
     angle: float | None = None,
     pixels: float | None = None,
@@ -483,7 +489,13 @@ def goals_of(
         "eye": eye is not None,
     }
     _refuse(method, sqrt3, given)
-    if not any(given[name] for name in ("tolerance", "triangles", "angle", "pixels")):
+    if within is not None:
+        if sqrt3 or method != "exact":
+            raise OptionError("within is a goal of method='exact' and the schemes that divide triangles in four")
+        for name in ("tolerance", "optimize"):
+            if given[name]:
+                raise OptionError(f"{name} does not go with within, which is how near the input the result has to be")
+    if within is None and not any(given[name] for name in ("tolerance", "triangles", "angle", "pixels")):
         if method in ("exact", "vertex-error"):
             tolerance = "0.1%"
         elif method == "planarity":
@@ -495,6 +507,7 @@ def goals_of(
         "sqrt3": sqrt3,
         "levels": 3 if levels is None else whole(levels, "levels", 0),
         "tolerance": None if tolerance is None else extent(tolerance, "tolerance"),
+        "within": None if within is None else extent(within, "within"),
         "triangles": None if triangles is None else whole(triangles, "triangles", 1),
         "angle": None if angle is None else angle_of(angle, "angle"),
         "pixels": None if pixels is None else positive(pixels, "pixels"),

@@ -22,6 +22,7 @@ def refine(
     faces: Any = None,
     *,
     tolerance: Length | None = None,
+    within: Length | None = None,
     triangles: Count | None = None,
     angle: float | None = None,
     pixels: float | None = None,
@@ -67,6 +68,10 @@ def refine(
         (m, 3) vertex numbers, counter-clockwise seen from outside; or polygons, as (m, k) or a list of lists.
     tolerance
         Greatest distance between mesh and limit surface, either way: a length, or a part of the diagonal such as "0.1%".
+    within
+        Greatest distance between the result and the mesh that is given, either way, written as ``tolerance``: the smoothest surface
+        that is certainly so near, for scans and voxels. Closed parts keep their volume. Takes the place of ``tolerance`` and
+        ``interpolate``; ``input_distance`` of the result is what is proven.
     triangles
         The best mesh with at most so many, such as 20000, "20k" or "20,000".
     angle
@@ -118,7 +123,7 @@ def refine(
         Caps; what was reached by then is the result, and a `StoppedShort` warning says so. ``max_memory`` is in bytes, such as
         "2GB", or a part of the machine's; None for no cap.
     strict
-        Raises `ToleranceNotMet` where a cap came first.
+        Raises `ToleranceNotMet` where a cap came first, and with ``within`` where triangles are turned over.
     threads
         Default: ``LIMITMESH_NUM_THREADS``, or all processors. The result is the same to the bit for any number.
     progress
@@ -159,6 +164,7 @@ def refine(
         method=method,
         levels=levels,
         tolerance=tolerance,
+        within=within,
         triangles=triangles,
         angle=angle,
         pixels=pixels,
@@ -177,7 +183,7 @@ def refine(
     dtype = _options.index_dtype_of(index_dtype)
     work = _options.work_of(threads, progress)
     result = Refined._of_native(_limitmesh.refine(mesh._native(), control, goals, dtype == np.int64, *work), dtype)
-    _short.tell(_short.why(result, goals), result, strict)
+    _short.tell(_short.why(result, goals, strict), result, strict)
     return result
 
 

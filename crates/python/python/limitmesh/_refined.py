@@ -112,8 +112,11 @@ class Refined:
         What was carried along, by name; with corners as domain, so that seams stay seams.
     error
         How near the mesh is to the limit surface, of √3-subdivision an estimate; None for methods that do not say.
+    input_distance
+        The distance between the mesh and the one that was given, either way, with ``within``: some point is at least so far off, and
+        none farther than that, proven; else None.
     stop
-        Why it ended: "met"; "triangles" where their number was a goal; "triangle-cap", "level-cap", "memory-cap" or "rounding"
+        Why it ended: "met"; "input-distance" where the mesh is farther from the one that was given than ``within``; "triangles" where their number was a goal; "triangle-cap", "level-cap", "memory-cap" or "rounding"
         where that was before the goals; "cones" where triangles stay outside the angle that no division brings nearer;
         "levels" or "satisfied" for the stepwise methods.
     diagnosis
@@ -150,6 +153,7 @@ class Refined:
     normals: Floats
     channels: Mapping[str, Channel]
     error: ErrorBounds | None
+    input_distance: tuple[float, float] | None
     stop: str
     diagnosis: Diagnosis
     levels: int
@@ -397,7 +401,7 @@ def by_corner(normals: Floats, faces: AnyIntegers, sides: tuple[AnyIntegers, Flo
     return found
 
 
-_SHORT = ("triangle-cap", "level-cap", "memory-cap", "rounding")
+_SHORT = ("triangle-cap", "level-cap", "memory-cap", "rounding", "input-distance")
 
 
 def _escaped(text: str) -> str:

@@ -35,8 +35,12 @@ class StoppedShort(UserWarning):
     """A cap ended a refinement before its goals were met: the result's ``stop`` says which."""
 
 
-def why(result: Refined, goals: dict[str, Any]) -> str | None:
-    """Why a result is less than what was asked for, if it is."""
+def why(result: Refined, goals: dict[str, Any], strict: bool = False) -> str | None:
+    """Why a result is less than what was asked for, if it is; with ``strict`` no triangle near the input may be turned over."""
+    if result.stop == "input-distance" and result.input_distance is not None:
+        return f"within could not be kept: the result is within {result.input_distance[1]:.4g} of the input"
+    if strict and goals.get("within") is not None and result.inverted:
+        return f"{result.inverted} triangles are turned over"
     if result.stop == "met":
         return None
     count = len(result.faces)

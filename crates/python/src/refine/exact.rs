@@ -4,6 +4,7 @@ use limitmesh::carry::carried;
 use limitmesh::progress::Observer;
 use limitmesh::refine::{Exact, ExactStop, exact_observed};
 
+use super::within::Near;
 use super::{Indices, Refined};
 use crate::control::{Control, Recipe, Tables};
 use crate::errors::Failure;
@@ -12,18 +13,29 @@ use crate::origins::Trail;
 
 /// Refines a control mesh to goals.
 pub(super) fn refined(
-    control: Control,
+    mut control: Control,
     recipe: &Recipe,
     goals: &Goals,
     observer: &mut Observer<'_>,
 ) -> Result<Refined, Failure> {
-    let options = control.options(goals, recipe);
+    let near =
+        goals.within.map(|within| Near::of(&mut control, within, (recipe, goals), observer)).transpose()?;
+    let mut options = control.options(goals, recipe);
+    if let Some(near) = &near {
+        options = near.asked_of(options);
+    }
     let found = exact_observed(&control.mesh, recipe.scheme, &options, observer)?;
+    let distance =
+        near.as_ref().map(|near| near.distance(&found, &control.tables.parts, observer)).transpose()?;
     let channels = match control.channels.is_empty() {
         true => Vec::new(),
         false => carried(&control.channels, &control.mesh, recipe.scheme, &found)?,
     };
-    Ok(Refined::of_exact(found, control.tables).with_channels(channels))
+    let mut refined = Refined::of_exact(found, control.tables).with_channels(channels);
+    if let (Some(near), Some(distance)) = (near, distance) {
+        near.tell(distance, &mut refined);
+    }
+    Ok(refined)
 }
 
 impl Refined {
@@ -42,6 +54,7 @@ impl Refined {
             side_normals,
             origins: Trail::Known(found.origins),
             channels: Vec::new(),
+            input_distance: None,
             error: Some((error.lower, error.upper, error.certified, error.at.into())),
             stop,
             levels: found.levels,

@@ -1,12 +1,13 @@
 //! Refinement, and what it would give: by distances that are proven ([`exact`]), by the criteria of the literature in steps ([`stepwise`]) and
 //! over restricted quadtrees ([`restricted`]), by √3-subdivision ([`sqrt3`]), and
-//! uniformly ([`uniform`]).
+//! uniformly ([`uniform`]); exactly and near the input ([`mod@within`]).
 
 mod exact;
 mod restricted;
 mod sqrt3;
 mod stepwise;
 mod uniform;
+mod within;
 
 use std::time::Instant;
 
@@ -45,6 +46,8 @@ pub(crate) struct Refined {
     channels: Vec<Channel>,
     /// Lower, upper, whether that is proven, and where the lower one was found.
     error: Option<(f64, f64, bool, Point)>,
+    /// Lower and upper, where it was to be near the input.
+    input_distance: Option<(f64, f64)>,
     stop: &'static str,
     levels: usize,
     pixels: Option<f64>,
@@ -175,6 +178,7 @@ impl Refined {
             parents: None,
             channels: Vec::new(),
             error: None,
+            input_distance: None,
             stop: "",
             levels: 0,
             pixels: None,
@@ -222,6 +226,7 @@ impl Refined {
         let channels = self.channels.into_iter().map(|channel| channels::told(py, channel));
         dict.set_item(intern!(py, "channels"), PyList::new(py, channels.collect::<PyResult<Vec<_>>>()?)?)?;
         dict.set_item(intern!(py, "error"), self.error)?;
+        dict.set_item(intern!(py, "input_distance"), self.input_distance)?;
         dict.set_item(intern!(py, "stop"), self.stop)?;
         dict.set_item(intern!(py, "levels"), self.levels)?;
         dict.set_item(intern!(py, "pixels"), self.pixels)?;
