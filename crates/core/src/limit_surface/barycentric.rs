@@ -86,10 +86,10 @@ mod tests {
     fn others_are_refused_with_their_sum() {
         for (weights, words) in [
             ([0.333, 0.333, 0.333], "add up to 0.999"),
-            ([0.5, 0.6, 0.0], "add up to 1.1,"),
-            ([1e300, 0.0, 0.0], "add up to 1e300,"),
-            ([f64::NAN, 0.5, 0.5], "add up to NaN,"),
-            ([f64::INFINITY, 0.5, 0.5], "add up to inf,"),
+            ([0.5, 0.6, 0.0], "add up to 1.1 "),
+            ([1e300, 0.0, 0.0], "add up to 1e300 "),
+            ([f64::NAN, 0.5, 0.5], "add up to NaN "),
+            ([f64::INFINITY, 0.5, 0.5], "add up to inf "),
             ([f64::NEG_INFINITY, 0.5, 0.5], "-inf is below 0"),
         ] {
             let why = barycentric(weights).expect_err("no place").to_string();

@@ -200,7 +200,7 @@ fn goals_that_make_no_sense_are_refused() {
     for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         refused(coarse(&mesh).attributes(values(&mesh, tolerance)), "tolerance of an attribute");
     }
-    refused(coarse(&mesh).attributes(values(&other, 1.0)), "number of an attribute's faces is 40");
+    refused(coarse(&mesh).attributes(values(&other, 1.0)), "but is 40");
     for options in [coarse(&mesh).triangles(100), coarse(&mesh).balance(true), coarse(&mesh).optimize(true)] {
         refused(options.attributes(values(&mesh, 1.0)), "none with a number of triangles");
     }

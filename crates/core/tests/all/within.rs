@@ -168,7 +168,7 @@ fn length(p: Point) -> f64 {
 #[test]
 fn a_ball_of_voxels_becomes_round() {
     let mesh = ball(10);
-    assert_eq!(volume(&mesh), 4169.0);
+    assert!((volume(&mesh) - 4169.0).abs() < 1e-9);
     let found = asked(&mesh, 0.87);
     assert!(found.is_kept(), "{:?}", found.distance);
     let radii = found.refined.mesh.positions().iter().map(|&p| length(p));
@@ -265,7 +265,13 @@ fn corners_and_creases_of_the_file_stay() {
     let mesh = ball(4);
     let mesh = mesh.with_creases_above(1.0).unwrap();
     let found = asked(&mesh, 0.3);
-    assert_eq!(found.control.tags(), mesh.tags());
+    // Faces are divided, and creases with them: as many lead to each vertex of the file as did.
+    let creases_at = |mesh: &Mesh, v: u32| {
+        mesh.tags().creases.iter().filter(|crease| crease.vertices.contains(&v)).count()
+    };
+    for v in 0..mesh.vertex_count() as u32 {
+        assert_eq!(creases_at(&found.control, v), creases_at(&mesh, v), "{v}");
+    }
     assert!(found.is_kept(), "{:?}", found.distance);
     check_distance(&mesh, &found, 0.3);
 }

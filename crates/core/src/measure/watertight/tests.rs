@@ -227,7 +227,8 @@ fn very_many_edges_side_by_side_take_little_time() {
     const COUNT: usize = 60_000;
     // Directions a hundredth apart, every other one twice as far: no edge comes near to a vertex of another.
     let around = |i: usize| {
-        let (turn, z) = (2.399_963_229_728_653 * i as f64, 1.0 - (2 * i + 1) as f64 / COUNT as f64);
+        // None leads along the edge that all share.
+        let (turn, z) = (2.399_963_229_728_653 * i as f64, 0.9 - 0.9 * (2 * i + 1) as f64 / COUNT as f64);
         let (far, (s, c)) = ((1 + i % 2) as f64, turn.sin_cos());
         [c * (1.0 - z * z).sqrt(), s * (1.0 - z * z).sqrt(), z].map(|x| far * x)
     };

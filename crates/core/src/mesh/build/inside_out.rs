@@ -16,7 +16,9 @@ const ROUNDING: f64 = 1e-12;
 /// A component without boundary.
 struct Closed<'a> {
     faces: &'a [u32],
-    /// Negative where its normals point inwards, 0 where that is not certain.
+    /// Half of what it takes up along the axis of which that is most.
+    size: f64,
+    /// By the cube of its size: negative where its normals point inwards, 0 where that is not certain.
     volume: f64,
     low: DVec3,
     high: DVec3,
@@ -54,20 +56,24 @@ pub(super) fn turn_inside_out(
 impl<'a> Closed<'a> {
     fn of(faces: &'a [u32], corners: impl Fn(u32) -> [DVec3; 3]) -> Self {
         let point = faces.first().map_or(DVec3::ZERO, |&face| corners(face)[0]);
-        let mut closed = Self { faces, volume: 0.0, low: point, high: point, point };
-        let mut magnitude = 0.0;
-        for &face in faces {
-            let [a, b, c] = corners(face);
+        let mut closed = Self { faces, size: 0.0, volume: 0.0, low: point, high: point, point };
+        for [a, b, c] in faces.iter().map(|&face| corners(face)) {
             closed.low = closed.low.min(a).min(b).min(c);
             closed.high = closed.high.max(a).max(b).max(c);
+        }
+        // Cubes of very large and very small coordinates would overflow or vanish.
+        let size = (0.5 * closed.high - 0.5 * closed.low).max_element();
+        let mut magnitude = 0.0;
+        for face in faces.iter().map(|&face| corners(face)) {
+            let [a, b, c] = face.map(|corner| corner / size - point / size);
             // Of the tetrahedron between the triangle and the point.
-            let volume = (a - point).dot((b - point).cross(c - point)) / 6.0;
+            let volume = a.dot(b.cross(c)) / 6.0;
             closed.volume += volume;
             magnitude += volume.abs();
         }
-        if closed.volume.abs() <= ROUNDING * magnitude {
-            closed.volume = 0.0;
-        }
+        let is_certain = closed.volume.abs() > ROUNDING * magnitude;
+        closed.volume = if is_certain { closed.volume } else { 0.0 };
+        closed.size = size;
         closed
     }
 }
@@ -81,12 +87,12 @@ struct InsideOut<'a, F> {
 impl<F: Fn(u32) -> [DVec3; 3]> InsideOut<'_, F> {
     /// The faces of each component that is to be turned.
     fn found(&self) -> Vec<&[u32]> {
-        if self.closed.iter().all(|own| own.volume >= 0.0) {
+        if !self.closed.iter().any(|own| own.volume < 0.0) {
             return Vec::new();
         }
         // What lies inside another is smaller.
         let mut order: Vec<usize> = (0..self.closed.len()).collect();
-        order.sort_by(|&a, &b| self.closed[b].volume.abs().total_cmp(&self.closed[a].volume.abs()));
+        order.sort_by(|&a, &b| self.closed[b].size.total_cmp(&self.closed[a].size));
         let mut signs = vec![1.0; self.closed.len()];
         for (place, &own) in order.iter().enumerate() {
             if signs[own] * self.closed[own].volume >= 0.0 {

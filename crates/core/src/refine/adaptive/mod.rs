@@ -53,7 +53,6 @@ mod probe;
 mod quadtree;
 mod result;
 mod rim;
-mod sample;
 mod settle;
 mod sides;
 mod surface;
@@ -61,7 +60,6 @@ mod trial;
 mod walk;
 
 pub(super) use nested::nested;
-pub(super) use sample::count_in;
 
 use super::RefineError;
 use super::exact_options::ExactOptions;

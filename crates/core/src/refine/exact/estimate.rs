@@ -1,6 +1,6 @@
-//! Predicts what an exact refinement would give: within a tolerance from a few control faces, for other goals from how a coarser one grows.
+//! Predicts what an exact refinement would give, from how a coarser one grows.
 
-use super::{sampled, scale};
+use super::scale;
 use crate::mesh::Mesh;
 use crate::progress::{Observer, unobserved};
 use crate::refine::exact_options::{BYTES_PER_TRIANGLE, ExactOptions};
@@ -32,9 +32,8 @@ const MOST_GROWTH: f64 = 4.0;
 
 /// The triangles and the memory that [`super::exact`] would come to with the same options.
 ///
-/// What a tolerance takes is seen at a few control faces, within a few per cent on most meshes. For other goals, numbers of triangles
-/// follow a power of the goal once the triangles are small against the surface's features; they are extrapolated from the last two
-/// halvings that could be counted quickly. What collapses leave of them is seen at a tolerance
+/// Numbers of triangles follow a power of the tolerance once the triangles are small against the surface's features; they
+/// are extrapolated from the last two halvings that could be counted quickly. What collapses leave of them is seen at a tolerance
 /// that takes few; it hardly depends on it.
 ///
 /// # Errors
@@ -71,10 +70,6 @@ pub fn exact_estimate_observed(
     let quality = options.tolerance.is_some() || options.angle.is_some() || options.pixels.is_some();
     if !quality {
         return Ok(of(options.budget().0, false));
-    }
-    if let Some(tolerance) = options.tolerance.filter(|_| options.asks_for_distances_alone()) {
-        let (triangles, is_counted) = sampled::triangles(control, scheme, options, tolerance, observer)?;
-        return Ok(of(triangles, is_counted));
     }
     let coarsest = coarsest(control, options);
     approached((control.face_count(), coarsest), of, |times| {

@@ -4,7 +4,6 @@
 
 mod estimate;
 mod frames;
-mod sampled;
 pub(super) mod scale;
 mod tighter;
 

@@ -270,11 +270,12 @@ fn the_smaller_part_is_turned() {
     let mut faces = SIDES;
     faces[0] = &[0, 1, 2];
     assert_eq!(build_soup(&soup(&TETRAHEDRON, &faces)).1.flipped_faces, finding(&[0]));
-    // Two against two: the part with the lowest face stays. Inside-out components are left alone.
+    // Two against two: the part with the lowest face stays, which is inside out here.
     let faces: [&[u32]; 4] = [&[0, 1, 2], &[0, 3, 1], &[1, 2, 3], &[2, 0, 3]];
     let (mesh, diagnosis) = build_soup(&soup(&TETRAHEDRON, &faces));
     assert_eq!(diagnosis.flipped_faces, finding(&[2, 3]));
-    assert_eq!(mesh.triangles()[0], [0, 1, 2]);
+    assert_eq!(diagnosis.inside_out_components, finding(&[0]));
+    assert_eq!(mesh.triangles()[0], [0, 2, 1]);
 }
 
 #[test]
