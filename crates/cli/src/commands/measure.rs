@@ -265,8 +265,9 @@ fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
     input::check_once(given.into_iter().flatten())?;
     certified::check(arguments)?;
     if let Some(heatmap) = &arguments.heatmap {
+        heatmap::check_name(heatmap)?;
         let inputs: Vec<&Path> = given.into_iter().flatten().map(PathBuf::as_path).collect();
         output::check_replaced(&[heatmap], &inputs, None)?;
     }
-    arguments.heatmap.as_deref().map_or(Ok(()), heatmap::check_name)
+    Ok(())
 }

@@ -71,13 +71,17 @@ fn tolerances_are_the_scenes() {
     ] {
         let input = cube(&folder, "in.gltf", nodes, "");
         // Per cent of the scene: the same mesh at every scale.
-        let report = run("refine {} -o {} --tolerance 1% --report -", &[&input, &output]).expect(0).json();
+        let report = run("refine {} -o {} --tolerance 1% --report - --crease-angle none", &[&input, &output])
+            .expect(0)
+            .json();
         let mesh = &report["meshes"][0];
         triangles.push(mesh["output"]["triangles"].as_u64().expect("a number"));
         let upper = mesh["error"]["upper"].as_f64().expect("a number");
         // The file's scene as another command reads it.
         let measured =
-            run("measure {} --limit-of {} --certified --json", &[&output, &input]).expect(0).json();
+            run("measure {} --limit-of {} --certified --json --crease-angle none", &[&output, &input])
+                .expect(0)
+                .json();
         let found = measured["hausdorff"]["lower"].as_f64().expect("a number");
         let most = measured["hausdorff"]["upper"].as_f64().expect("a number");
         assert!(found <= upper && most >= 0.5 * upper, "{found} to {most}, told {upper}");
@@ -185,7 +189,9 @@ fn skins_are_carried_along() {
     let output = folder.path().join("out.glb");
     let nodes = r#"{"mesh":0,"skin":0},{},{"translation":[0,0,5]}],"skins":[{"joints":[1,2]}"#;
     let input = cube(&folder, "in.gltf", nodes, r#","JOINTS_0":4,"WEIGHTS_0":5"#);
-    for options in ["--tolerance 1% --optimize", "--method uniform --limit", "--tolerance 1%"] {
+    for options in
+        ["--tolerance 1% --optimize --crease-angle none", "--method uniform --limit", "--tolerance 1%"]
+    {
         run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(0);
         check_weights(&first_mesh(&output));
     }
@@ -217,7 +223,7 @@ fn targets_are_carried_through_collapses_and_steps() {
     let text = std::fs::read_to_string(&input).expect("text");
     let input =
         file(&folder, "in.gltf", &text.replace(r#""indices":"#, r#""targets":[{"POSITION":0}],"indices":"#));
-    for options in ["--tolerance 1% --optimize", "--method uniform --limit"] {
+    for options in ["--tolerance 1% --optimize --crease-angle none", "--method uniform --limit"] {
         run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(0);
         let found = Glb::read(&output);
         let primitive = found.primitive(0);

@@ -140,7 +140,7 @@ fn a_bent_tube_is_smooth() {
     };
     let input = asset(&folder, |z| vec![(0, 1.0 - weight(z)), (1, weight(z))]);
     let output = folder.path().join("out.glb");
-    run("refine {} -o {} --tolerance 0.002%", &[&input, &output]).expect(0);
+    run("refine {} -o {} --tolerance 0.002% --crease-angle none", &[&input, &output]).expect(0);
     let glb = Glb::read(&output);
     let attributes = &glb.primitive(0)["attributes"];
     let (points, triangles) = (glb.points(&attributes["POSITION"]), glb.triangles(0));
@@ -226,9 +226,9 @@ fn weights_below_0_are_counted() {
     let input =
         asset(&folder, |z| vec![(0, f64::from(u8::from(z < 0.0))), (1, f64::from(u8::from(z >= 0.0)))]);
     let output = folder.path().join("out.glb");
-    let loops = run("refine {} -o {} --tolerance 0.05%", &[&input, &output]).expect(0);
+    let loops = run("refine {} -o {} --tolerance 0.05% --crease-angle none", &[&input, &output]).expect(0);
     assert!(!loops.stderr.contains("below 0"), "{}", loops.stderr);
-    let command = "refine {} -o {} --tolerance 0.05% --scheme butterfly";
+    let command = "refine {} -o {} --tolerance 0.05% --scheme butterfly --crease-angle none";
     run(command, &[&input, &output]).expect(0).saying("weights below 0 count as 0 at");
     assert!(
         influences(&Glb::read(&output)).iter().flatten().all(|&(_, weight)| (0.0..=1.0).contains(&weight))

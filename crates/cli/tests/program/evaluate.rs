@@ -98,7 +98,7 @@ fn places_that_are_none_are_errors() {
         .saying("no face 8: the control mesh has 8 triangles");
     run("evaluate {} --at 0,0.5,0.5,0.5", &[&control])
         .expect(2)
-        .saying("'0,0.5,0.5,0.5': the weights add up to 1.5,");
+        .saying("'0,0.5,0.5,0.5': the weights add up to 1.5 ");
     run("evaluate {} --at 0,0.333,0.333,0.333", &[&control]).expect(2).saying("add up to 0.999");
     run("evaluate {} --at 0,1.5,-0.5,0", &[&control]).expect(2).saying("the weight -0.5 ");
     run("evaluate {} --at 0,1,0", &[&control]).expect(2).saying("2 weights");

@@ -217,7 +217,7 @@ fn cameras_that_cannot_be_used_are_refused() {
     let words = "refine builtin:sphere -o {} --camera-path {}";
     run(words, &[&output, &path]).expect(1).saying("path.txt, line 2").saying("upward direction");
     let empty = file(&folder, "empty.txt", "# nothing\n");
-    run(words, &[&output, &empty]).expect(1).saying("no camera in it");
+    run(words, &[&output, &empty]).expect(1).saying("empty.txt has no camera");
     run(words, &[&output, &folder.path().join("none.txt")]).expect(1).saying("none.txt cannot be read");
     let inside = "refine builtin:sphere -o {} --camera 0,0,0.1,0,0,5,0,1,0,40,800x600";
     run(inside, &[&output]).expect(2).saying("stands inside the mesh");

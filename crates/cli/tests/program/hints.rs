@@ -140,7 +140,7 @@ fn normals_of_assets_say_so() {
     // As the scene shows it.
     let whole = 8.0 * 1.5;
     assert!((refine("--creases-from normals") - whole).abs() < 1e-9);
-    assert!(refine("") < 0.7 * whole);
+    assert!(refine("--crease-angle none") < 0.7 * whole);
     run("refine {} -o {}", &[&input, &output])
         .expect(0)
         .saying("12 edges have different normals on both sides");

@@ -30,11 +30,11 @@ fn a_result_without_a_name_stands_by_its_input_as_smooth() {
 #[test]
 fn a_built_in_model_without_a_name_goes_to_the_current_folder() {
     let folder = folder();
-    let status = crate::common::command("refine builtin:octahedron --tolerance 5% --quiet", &[])
+    let status = crate::common::command("refine builtin:tetrahedron --tolerance 5% --quiet", &[])
         .current_dir(folder.path())
         .status();
     assert!(status.expect("it runs").success());
-    assert_eq!(names(folder.path()), ["octahedron-smooth.ply"]);
+    assert_eq!(names(folder.path()), ["tetrahedron-smooth.ply"]);
 }
 
 #[test]

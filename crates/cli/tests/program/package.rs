@@ -99,7 +99,7 @@ fn triangles_inherit_what_their_side_carries() {
         assert_eq!(rest, expected.strip_prefix(" pid"), "{tag}");
     }
     // The round cube: from each side two thirds and more of the surface where it was.
-    run("refine {} -o {} --tolerance 0.5%", &[&input, &output]).expect(0);
+    run("refine {} -o {} --tolerance 0.5% --crease-angle none", &[&input, &output]).expect(0);
     let found = triangles(&output);
     assert!(found.len() > 100);
     for (corners, tag) in &found {
@@ -131,7 +131,7 @@ fn paint_in_parts_is_taken_at_the_centre() {
         if side == 5 { " slic3rpe:mmu_segmentation=\"80043\"".to_owned() } else { String::new() }
     };
     let input = cube(&folder, "in.3mf", &of_side, "", ITEM);
-    let found = run("refine {} -o {} --tolerance 0.2%", &[&input, &output]).expect(0);
+    let found = run("refine {} -o {} --tolerance 0.2% --crease-angle none", &[&input, &output]).expect(0);
     found.saying("took paint at the centre");
     let found = triangles(&output);
     let paint = |tag: &str| value(tag, "slic3rpe:mmu_segmentation").to_owned();
@@ -158,18 +158,22 @@ fn lengths_are_the_builds() {
     let large = "<item objectid=\"1\"/><item objectid=\"1\" transform=\"0 0 30 0 1 0 -1 0 0 100 0 0\"/>";
     let large = cube(&folder, "large.3mf", &plain, "", large);
     let [few, many] = [&small, &large].map(|input: &PathBuf| {
-        run("refine {} -o {} --tolerance 0.5mm", &[input, &output]).expect(0);
+        run("refine {} -o {} --tolerance 0.5mm --crease-angle none", &[input, &output]).expect(0);
         triangles(&output).len()
     });
     assert!(many > 4 * few, "{many} and {few}");
     // The file says what it is in.
     run("refine {} -o {} --unit mm", &[&small, &output]).expect(2).saying("says that it is in cm");
-    let report = run("refine {} -o {} --tolerance 0.5mm --report -", &[&small, &output]).expect(0).json();
+    let report = run("refine {} -o {} --tolerance 0.5mm --report - --crease-angle none", &[&small, &output])
+        .expect(0)
+        .json();
     let mesh = &report["meshes"][0];
     assert_eq!(mesh["parameters"]["exact"]["tolerance"], 0.05);
     assert!(mesh["error"]["upper"].as_f64().expect("a number") <= 0.05);
     // What another command finds between the files.
-    let measured = run("measure {} --limit-of {} --certified --json", &[&output, &small]).expect(0).json();
+    let measured = run("measure {} --limit-of {} --certified --json --crease-angle none", &[&output, &small])
+        .expect(0)
+        .json();
     assert!(measured["hausdorff"]["upper"].as_f64().expect("a number") <= 0.0501);
     // All items together, in another format and from one.
     let stl = folder.path().join("out.stl");

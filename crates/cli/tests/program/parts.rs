@@ -240,11 +240,11 @@ fn all_commands_speak_of_one_surface() {
     let peg = Solid::peg(16, 5.0, 8.0).stl(&folder, "peg.stl");
     // The first facet's corner at (5, 0, 0).
     let found = run("evaluate {} --at 0,1,0,0 --json", &[&peg]).expect(0).saying("looks like a part").json();
-    let point = [0, 1, 2].map(|i| number(&found[0]["position"][i]));
+    let point = [0, 1, 2].map(|i| number(&found[0]["point"][i]));
     assert!((point[0] - 5.0).abs() < 1e-9 && point[1].abs() < 1e-9 && point[2].abs() < 1e-9, "{point:?}");
     let at = file(&folder, "points.csv", "5,0,0\n0,5,8\n");
     let found = run("project {} --onto {} --json", &[&at, &peg]).expect(0).saying("looks like a part").json();
-    assert!(number(&found["distance"]["max"]) < 1e-6, "{found}");
+    assert!(number(&found["distance"]["greatest"]) < 1e-6, "{found}");
     let limit = run("info {} --limit --json", &[&peg]).expect(0).saying("looks like a part").json();
     assert!((number(&limit["limit"]["volume"]) / (PI * 200.0) - 1.0).abs() < 1e-3, "{limit}");
     let levels = folder.path().join("levels.ply");

@@ -104,7 +104,7 @@ fn what_cannot_be_is_told() {
     let error = run("project {} --onto {} -o map.png", &[&points, &control]).expect(2).stderr;
     assert!(error.contains("no triangles"), "{error}");
     assert!(run("project {} --onto {} -o map.stl", &[&points, &control]).expect(2).stderr.contains(".ply"));
-    let error = run("project {} --onto {} --scheme butterfly", &[&points, &control]).expect(1).stderr;
+    let error = run("project {} --onto {} --scheme butterfly", &[&points, &control]).expect(2).stderr;
     assert!(error.contains("butterfly"), "{error}");
     let error = run("project {} --onto {} --tolerance 0", &[&points, &control]).expect(2).stderr;
     assert!(error.contains("tolerance"), "{error}");

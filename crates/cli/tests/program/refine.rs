@@ -90,7 +90,7 @@ fn defaults_of_the_paper_s_method_are_ten_degrees_three_levels_loop_all() {
         refine("builtin:shoe", &folder.path().join("out.ply"), "--method limit-normal")["parameters"].clone();
     let expected = serde_json::json!({
         "method": "limit-normal", "angle_degrees": 10.0, "levels": 3, "scheme": "loop", "seam": "all",
-        "exact": null, "view": null, "limit": false, "boundary": "smooth", "crease_angle_degrees": null, "crease_angle_auto": false, "interpolate_within": null,
+        "exact": null, "view": null, "limit": false, "boundary": "smooth", "crease_angle_degrees": null, "crease_angle_auto": false, "interpolate_within": null, "within": null,
         "creases_from": "none", "concave_corners": "as-tagged",
         "max_triangles": 50_000_000, "weld": 0.0, "strict": false
     });

@@ -22,8 +22,10 @@ fn pictures_differ_by_what_is_asked_for() {
         assert!(!pictures.contains(&png), "{options}");
         pictures.push(png);
     }
-    run("render builtin:head -o {} --size 160x120 --smooth --threads 1", &[&path]).expect(0);
-    assert!(pictures[0] == std::fs::read(&path).expect("a picture"), "smooth is the default");
+    run("render builtin:head -o {} --size 160x120 --crease-angle 30 --threads 1", &[&path]).expect(0);
+    assert!(pictures[0] == std::fs::read(&path).expect("a picture"), "edges beyond 30° show by default");
+    run("render builtin:head -o {} --size 160x120 --smooth", &[&path]).expect(0);
+    assert!(pictures[0] != std::fs::read(&path).expect("a picture"), "and not where all is smooth");
 }
 
 #[test]

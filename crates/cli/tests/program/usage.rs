@@ -6,7 +6,7 @@ use crate::common::{folder, names, run};
 fn nothing_to_do_is_a_usage_error() {
     run("", &[]).expect(2).saying("Usage: limitmesh");
     run("polish x.obj", &[]).expect(2).saying("polish");
-    run("refine builtin:head", &[]).expect(2).saying("--output");
+    run("refine", &[]).expect(2).saying("INPUT");
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn a_mesh_may_be_refined_in_place() {
     let mesh = folder.path().join("mesh.off");
     run("refine builtin:cube -o {} --levels 0 --method uniform", &[&mesh]).expect(0);
     assert_eq!(soup(&mesh).faces.len(), 12);
-    run("refine {} -o {} --levels 1 --method uniform", &[&mesh, &mesh]).expect(0);
+    run("refine {} -o {} --levels 1 --method uniform --overwrite", &[&mesh, &mesh]).expect(0);
     assert_eq!(soup(&mesh).faces.len(), 48);
     assert_eq!(names(folder.path()), ["mesh.off"]);
 }

@@ -84,13 +84,13 @@ fn ply_headers_of_hundreds_of_thousands_of_lines() {
     refuses(
         Format::Ply,
         format!("ply\nformat ascii 1.0\nelement vertex 1\n{properties}end_header\n"),
-        "PLY line 1004: met one more property 'p1000', expected at most 1000 in an element",
+        "PLY line 1004: expected at most 1000 in an element, found one more property 'p1000'",
     );
     let elements = lines(&|i| format!("element e{i} 0\n"));
     refuses(
         Format::Ply,
         format!("ply\nformat ascii 1.0\n{elements}end_header\n"),
-        "PLY line 1003: met one more element 'e1000', expected at most 1000 of them",
+        "PLY line 1003: expected at most 1000 of them, found one more element 'e1000'",
     );
 }
 

@@ -47,9 +47,9 @@ fn what_does_not_fit_together_is_refused() {
             .starts_with("there are 3 normals for 4 vertices")
     );
     let places = complaint(DetailLevel::new(square()).coarser(&SQUARE[1..], &UP));
-    assert!(places.starts_with("3 places on the coarser level for 4 vertices"), "{places}");
+    assert!(places.starts_with("there are 3 places on the coarser level for 4 vertices"), "{places}");
     let normals = complaint(DetailLevel::new(square().normals(&UP)).coarser(&SQUARE, &UP[..2]));
-    assert!(normals.starts_with("2 normals on the coarser level for 4 vertices"), "{normals}");
+    assert!(normals.starts_with("there are 2 normals on the coarser level for 4 vertices"), "{normals}");
     let mut heat = Channel::new("heat", Semantic::Other, Domain::Vertex, 1).with(vec![0.5], vec![0; 3]);
     let of = |heat: &Channel| complaint(DetailLevel::new(square().channels(std::slice::from_ref(heat))));
     assert!(of(&heat).contains("heat"), "{}", of(&heat));
