@@ -164,7 +164,7 @@ fn what_no_machine_can_meet_ends_in_a_conforming_mesh() {
             let told = run(&format!("refine builtin:cup -o {{}} -q {options}"), &[&output]).expect(3);
             let cap = cap.replace("5000", "5,000").replace("2M", "2.0 MiB");
             assert!(told.stderr.contains(&cap) && told.stderr.contains("before the tolerance of 1e-"));
-            assert!(told.stderr.contains("was written with") && told.stderr.contains("certified"));
+            assert!(told.stderr.contains("was written with"), "{}", told.stderr);
         }
     }
 }
