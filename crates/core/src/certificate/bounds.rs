@@ -109,7 +109,7 @@ impl<'a> Pieces<'a> {
     pub(crate) fn points(&mut self, levels: usize, rules: &'a Rules<'a>) -> Vec<DVec3> {
         let mut points = Vec::new();
         let refined = self.refined(rules);
-        points.extend((0..3).map(|edge| refined.middle(edge).position));
+        points.extend((0..3).map(|edge| refined.middle_as::<DVec3>(edge)));
         if levels > 1 {
             let parts = (0..4).map(|child| refined.part(child));
             points.extend(parts.flat_map(|part| Pieces::of(&part).points(levels - 1, rules)));
@@ -129,8 +129,8 @@ impl<'a> Pieces<'a> {
         if !frame.is_finite() {
             return Deviation::alone(f64::INFINITY);
         }
-        if let Patch::Mesh(local) = self.patch {
-            let samples = self.samples.get_or_insert_with(|| Samples::of(local, SAMPLED_LEVELS, rules));
+        if let Patch::Mesh(_) = self.patch {
+            let samples = self.samples.get_or_insert_with(|| Samples::of(self.patch, SAMPLED_LEVELS, rules));
             return samples.deviation(part, &effort.bound::<DVec3>(frame));
         }
         match effort.seen_from(frame) {

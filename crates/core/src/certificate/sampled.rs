@@ -6,10 +6,7 @@
 use super::deviation::Deviation;
 use super::hull_points::DeviationBound;
 use super::sub_triangle::SubTriangle;
-use crate::index::{FaceId, HalfEdgeId};
-use crate::mesh::Mesh;
-use crate::patch::Rules;
-use crate::patch::mesh_patch::{MeshPatch, corners, limit_position, refined_around};
+use crate::patch::{Patch, Rules, child_corners};
 use crate::vector::DVec3;
 
 /// Barycentric coordinates, multiplied by a power of 2.
@@ -28,30 +25,26 @@ fn middle(a: Place, b: Place) -> Place {
 
 impl Samples {
     /// The limits of all vertices `levels` below a piece, its corners left out.
-    pub(crate) fn of(piece: &MeshPatch, levels: usize, rules: &Rules<'_>) -> Self {
+    pub(crate) fn of(piece: &Patch, levels: usize, rules: &Rules<'_>) -> Self {
         let unit = 1 << levels;
-        let mut faces: Vec<(HalfEdgeId, [Place; 3])> =
-            vec![(piece.first(), [[unit, 0, 0], [0, unit, 0], [0, 0, unit]])];
-        let mut mesh: Option<Mesh> = None;
-        for _ in 0..levels {
-            let seeds: Vec<HalfEdgeId> = faces.iter().map(|&(first, _)| first).collect();
-            mesh = Some(refined_around(mesh.as_ref().unwrap_or(piece.mesh()), &seeds, rules));
-            faces =
-                faces.iter().flat_map(|&(_, corners)| quartered(corners)).enumerate().map(numbered).collect();
-        }
-        let mesh = mesh.as_ref().unwrap_or(piece.mesh());
-        let mut met = vec![false; mesh.vertex_count()];
-        let mut points = Vec::new();
-        for (first, places) in faces {
-            for (h, place) in corners(first).into_iter().zip(places) {
-                let vertex = mesh.topology().origin(h);
-                let is_corner = place.iter().filter(|&&x| x == 0).count() == 2;
-                if !is_corner && !core::mem::replace(&mut met[vertex.index()], true) {
-                    points.push((place, limit_position(mesh, vertex, rules)));
-                }
+        let mut samples = Self { unit, points: Vec::new() };
+        samples.add(piece, [[unit, 0, 0], [0, unit, 0], [0, 0, unit]], levels, rules);
+        samples
+    }
+
+    fn add(&mut self, piece: &Patch, corners: [Place; 3], levels: usize, rules: &Rules<'_>) {
+        let refined = piece.refined(rules);
+        let middles = [0, 1, 2].map(|edge| middle(corners[edge], corners[(edge + 1) % 3]));
+        for (edge, place) in middles.into_iter().enumerate() {
+            if !self.points.iter().any(|&(known, _)| known == place) {
+                self.points.push((place, refined.middle_as(edge)));
             }
         }
-        Self { unit, points }
+        if levels > 1 {
+            for part in 0..4 {
+                self.add(&refined.part(part), child_corners(corners, middles, part), levels - 1, rules);
+            }
+        }
     }
 
     /// What the points over a part show of the deviation of the triangle that stands for it.
@@ -74,16 +67,6 @@ impl Samples {
         }
         deviation
     }
-}
-
-/// The places of the corners of the four parts, as a step of refinement numbers them.
-fn quartered([a, b, c]: [Place; 3]) -> [[Place; 3]; 4] {
-    let [d, e, f] = [middle(a, b), middle(b, c), middle(c, a)];
-    [[a, d, f], [b, e, d], [c, f, e], [d, e, f]]
-}
-
-fn numbered((face, places): (usize, [Place; 3])) -> (HalfEdgeId, [Place; 3]) {
-    (HalfEdgeId::of(FaceId(face as u32), 0), places)
 }
 
 /// The places of the corners of a part.

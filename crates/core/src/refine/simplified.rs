@@ -15,8 +15,15 @@ use crate::scheme::Scheme;
 use crate::simplify::{Features, Simplified, SimplifyOptions, simplify_observed};
 
 /// The part of the tolerance that the fine mesh takes: less leaves more to the collapse and costs more triangles to
-/// collapse.
-const FINE_SHARE: f64 = 1.0 / 3.0;
+/// collapse, eight times those of refinement alone where the surface is curved both ways.
+const FINE_SHARE: f64 = 1.0 / 8.0;
+
+/// Where the surface is curved one way, or along sharp edges alone, that is less than three times as many. Vertices of the fine mesh go one by
+/// one there, so that edges only have so many lengths: with this much of the tolerance these lie close together.
+const FINER_SHARE: f64 = FINE_SHARE * FINE_SHARE;
+
+/// Triangles of the fine mesh for each triangle of refinement alone at most.
+const MOST_TIMES: f64 = 10.0;
 
 /// Triangles of the fine mesh for each triangle asked for: with half as many its own error is felt.
 const FINE_TIMES: usize = 16;
@@ -36,7 +43,6 @@ pub(super) fn simplified(
         optimize: false,
         // Edges that are kept are edges of the fine mesh.
         flat_regions: options.flat_regions && options.kept_edges.is_empty(),
-        tolerance: options.tolerance.map(|tolerance| FINE_SHARE * tolerance),
         triangles: times(options.triangles),
         // What is capped is the result.
         max_triangles: options
@@ -45,7 +51,12 @@ pub(super) fn simplified(
         ..options.clone()
     };
     let kept = KeptFaces::of(control, &options.kept_edges)?;
-    let fine = adaptive(control, scheme, &fine_options, observer)?;
+    let unoptimised = ExactOptions { optimize: false, ..options.clone() };
+    let alone = |observer: &mut Observer<'_>| adaptive(control, scheme, &unoptimised, observer);
+    let mut plain = options.tolerance.map(|_| alone(observer)).transpose()?;
+    let refined =
+        |options: &ExactOptions, observer: &mut Observer<'_>| adaptive(control, scheme, options, observer);
+    let fine = fine_mesh(&fine_options, plain.as_ref(), refined, observer)?;
     let features = features(kept.edges(&fine));
     let allowance =
         options.tolerance.map(|tolerance| tolerance - fine.error.upper).filter(|&left| left > 0.0);
@@ -61,24 +72,25 @@ pub(super) fn simplified(
     if allowance.is_some() && collapsed.mesh.face_count() > most {
         collapsed = collapse((&fine.mesh, &features), None, fewest, observer)?;
     }
-    let unoptimised = ExactOptions { optimize: false, ..options.clone() };
     // Where no more edges can go, refinement alone keeps the number of triangles; where nothing is proven, it proves.
     let is_over = collapsed.mesh.face_count() > most;
     if is_over || collapsed.bound.is_none() {
-        let plain = adaptive(control, scheme, &unoptimised, observer)?;
-        if !is_over || plain.mesh.face_count() < collapsed.mesh.face_count() {
-            return Ok(plain);
+        let found = match plain.take() {
+            Some(found) => found,
+            None => alone(observer)?,
+        };
+        if !is_over || found.mesh.face_count() < collapsed.mesh.face_count() {
+            return Ok(found);
         }
     }
     let error = error_bounds(&fine, &collapsed, observer)?;
     let is_met = options.tolerance.is_some_and(|tolerance| error.upper <= tolerance);
-    // Refinement alone may need fewer, as beside edges that are sharp for a while, and takes little time beside this.
-    if options.tolerance.is_some() {
-        let plain = adaptive(control, scheme, &unoptimised, observer)?;
-        if plain.stop == ExactStop::Met && (!is_met || plain.mesh.face_count() <= collapsed.mesh.face_count())
-        {
-            return Ok(plain);
-        }
+    // Refinement alone may need fewer, as beside edges that are sharp for a while.
+    let is_better = |plain: &Exact| {
+        plain.stop == ExactStop::Met && (!is_met || plain.mesh.face_count() <= collapsed.mesh.face_count())
+    };
+    if let Some(plain) = plain.filter(is_better) {
+        return Ok(plain);
     }
     let Inherited { sides, side_origins, parents } = Inherited::new(control, &fine, &features, &collapsed);
     let count = collapsed.mesh.face_count();
@@ -112,6 +124,29 @@ pub(super) fn simplified(
         refused: collapsed.refused,
         mesh: collapsed.mesh,
     })
+}
+
+/// The mesh that is collapsed: nearer than the tolerance by a part of it that leaves a number of triangles for each one of refinement alone.
+fn fine_mesh(
+    options: &ExactOptions,
+    plain: Option<&Exact>,
+    refined: impl Fn(&ExactOptions, &mut Observer<'_>) -> Result<Exact, RefineError>,
+    observer: &mut Observer<'_>,
+) -> Result<Exact, RefineError> {
+    let within = |share: f64| ExactOptions {
+        tolerance: options.tolerance.map(|most| share * most),
+        ..options.clone()
+    };
+    let fine = refined(&within(FINE_SHARE), observer)?;
+    let Some(plain) = plain.filter(|_| fine.stop == ExactStop::Met) else { return Ok(fine) };
+    let [alone, count] = [plain, &fine].map(|found| found.mesh.face_count() as f64);
+    // As many times as many as the first part took.
+    let finer = count * count / alone;
+    if count == alone || finer > MOST_TIMES * alone {
+        return Ok(fine);
+    }
+    let finer = refined(&within(FINER_SHARE), observer)?;
+    Ok(if finer.stop == ExactStop::Met { finer } else { fine })
 }
 
 /// Collapses edges of the fine mesh.

@@ -18,7 +18,7 @@ use crate::support::{Point, Random};
 use cages::{Cage, cage};
 
 /// Cages where nothing else is asked for.
-const USUAL_CAGES: u64 = 300;
+const USUAL_CAGES: u64 = 120;
 
 /// Triangles that the reference has at most: finer is better, but takes its time.
 const MOST_REFERENCE_TRIANGLES: usize = 40_000;
