@@ -102,7 +102,7 @@ fn places_that_are_none_are_errors() {
     run("evaluate {} --at 0,0.333,0.333,0.333", &[&control]).expect(2).saying("add up to 0.999");
     run("evaluate {} --at 0,1.5,-0.5,0", &[&control]).expect(2).saying("the weight -0.5 ");
     run("evaluate {} --at 0,1,0", &[&control]).expect(2).saying("2 weights");
-    run("evaluate {} --at {}", &[&control, &bad]).expect(1).saying("line 2: 2 weights");
+    run("evaluate {} --at {}", &[&control, &bad]).expect(1).saying("line 2: '1 0.5 0.5' has 2 weights");
     run("evaluate {} --at {}", &[&control, &empty]).expect(1).saying("no places");
     run("evaluate {} --at 0,1,0,x", &[&control]).expect(1).saying("'0,1,0,x' is no place");
     run("evaluate {} --at nowhere.txt", &[&control]).expect(1).saying("nowhere.txt");
