@@ -2,7 +2,7 @@
 
 use limitmesh::carry::borders;
 use limitmesh::interpolate::{InterpolateOptions, Interpolated, InterpolationMethod, interpolate_observed};
-use limitmesh::mesh::{BoundaryRule, Channel, Diagnosis, Domain, FaceParts};
+use limitmesh::mesh::{BoundaryRule, Channel, Diagnosis, FaceParts};
 use limitmesh::part::{Look, interpolate_unfolded_observed};
 use limitmesh::progress::Observer;
 use limitmesh::refine::ExactOptions;

@@ -1,5 +1,6 @@
 //! Distances between meshes, and from a mesh to a limit surface; what kind of mesh it is.
 
+use limitmesh::Triangles;
 use limitmesh::measure::{
     Bounds, CertifiedHausdorff, CertifiedOptions, Hausdorff, OneSided, SamplingOptions,
     certified_hausdorff_observed, hausdorff_observed,
@@ -7,7 +8,6 @@ use limitmesh::measure::{
 use limitmesh::progress::Observer;
 use limitmesh::refine::{LimitDistanceOptions, is_certified, limit_distance_observed};
 use limitmesh::refine::{UniformOptions, reference_levels, uniform_triangles_observed};
-use limitmesh::{Mesh, Triangles};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

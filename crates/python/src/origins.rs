@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use limitmesh::Mesh;
 use limitmesh::mesh::FaceParts;
+use limitmesh::progress::Observer;
 use limitmesh::refine::{Origin, UniformOptions, uniform_observed};
 use limitmesh::scheme::Loop;
 use numpy::{PyArray1, PyArray2};
@@ -44,7 +45,7 @@ impl Trail {
             Self::Uniform { control, levels } => {
                 let (control, levels) = (Arc::clone(control), *levels);
                 let options = UniformOptions::default().levels(levels).origins(true);
-                let job = move |observer: &mut _| {
+                let job = move |observer: &mut Observer<'_>| {
                     Ok(uniform_observed(&control, &Loop, &options, observer)?.origins)
                 };
                 run(py, 1, None, job).map(Cow::Owned)

@@ -114,7 +114,7 @@ fn limit_of(
     let mesh = decided.features.apply(mesh.clone())?.mesh;
     let asked = (decided.interpolation, arguments.build.unit);
     let (mesh, _) = interpolation::apply(mesh, asked, &Loop, progress)?;
-    Ok(Bulk::of_limit(&mesh, &Loop)?)
+    Bulk::of_limit(&mesh, &Loop)
 }
 
 fn describe_file(report: &InformationReport) -> String {

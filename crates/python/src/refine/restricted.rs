@@ -11,6 +11,7 @@ use super::{Method, Normals, Refined};
 use crate::control::{Control, Recipe};
 use crate::errors::Failure;
 use crate::options::{Goals, front_levels};
+use crate::origins::Trail;
 
 /// A triangle with the pieces of the surface that its front keeps, in bytes: measured, rounded up.
 const BYTES_PER_TRIANGLE: usize = 1500;

@@ -55,7 +55,7 @@ impl Worker<'_, '_, '_> {
     }
 
     fn between_two(&mut self, t: [DVec3; 3], faces: [u32; 2], goal: f64) -> f64 {
-        let corners = t.map(|at| self.to_both(at, faces));
+        let corners = t.map(|at| self.near_both(at, faces));
         let at_corners = corners.iter().map(Point::nearer).fold(0.0, f64::max);
         let is_first = corners.map(|corner| corner.difference() <= 0.0);
         let alone = (0..3).find(|&i| is_first[(i + 1) % 3] == is_first[(i + 2) % 3]);
@@ -74,7 +74,7 @@ impl Worker<'_, '_, '_> {
         bound
     }
 
-    fn to_both(&mut self, at: DVec3, faces: [u32; 2]) -> Point {
+    fn near_both(&mut self, at: DVec3, faces: [u32; 2]) -> Point {
         self.steps += 2;
         Point { at, distances: faces.map(|face| self.target.distance_to(at, face)) }
     }
@@ -90,7 +90,7 @@ impl Worker<'_, '_, '_> {
             }
             let guess = low - at_low * (high - low) / (at_high - at_low);
             let share = if guess > low && guess < high { guess } else { 0.5 * (low + high) };
-            let point = self.to_both(from.at.lerp(to.at, share), faces);
+            let point = self.near_both(from.at.lerp(to.at, share), faces);
             if point.farther() < best.farther() {
                 best = point;
             }

@@ -88,7 +88,7 @@ impl Places {
         let count = places.len();
         watch.stage(Stage::Indexing, Some(count))?;
         let (mut axes, mut left) = (vec![0; count], vec![0; count]);
-        let mut waiting = vec![0..count];
+        let mut waiting: Vec<_> = core::iter::once(0..count).collect();
         while let Some(range) = waiting.pop() {
             if range.len() >= POLLED {
                 watch.poll()?;
