@@ -1,5 +1,6 @@
 //! What looks like a part, on shapes that are what they are by construction; and surfaces of parts that pass through their vertices
 //! without folding, whose triangles are looked at by themselves.
+
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::collections::BTreeSet;

@@ -340,7 +340,7 @@ fn packages_that_swell_are_refused() {
     let blanks = vec![b' '; 1 << 24];
     (0..64).for_each(|_| writer.write_all(&blanks).unwrap());
     let bytes = writer.finish().unwrap().into_inner();
-    let most = (100 * bytes.len() >> 20) + 32;
+    let most = ((100 * bytes.len()) >> 20) + 32;
     let said = refused(bytes);
     let expected = format!("3D/3dmodel.model: with this part the models have more than {most} MiB");
     assert!(said.contains(&expected), "{said}");
