@@ -139,6 +139,38 @@ fn threads_change_nothing() {
     assert!(pool(1).install(run) == pool(3).install(run));
 }
 
+/// A triangle of 1e-29 whose sides fade over ten levels: a hundred times as long as it is wide.
+const NEEDLE: &str = "
+v 9.881072525791189e-30 0.0 0.0
+v 1.4269167202302316e-31 -5.094112858583294e-31 0.0
+v 0.0 0.0 1.6636115550843632e-31
+f 1 2 3
+t crease 2/1/0 0 1 10.0
+t crease 2/1/0 0 2 10.0
+t crease 2/1/0 1 2 10.0
+t corner 1/1/0 0 1.0
+t corner 1/1/0 2 1.0
+t corner 1/1/0 1 10.0
+";
+
+/// Where nothing is certain, too, the work grows with the triangles, not with their square: each point is measured to the triangles near it, and
+/// pieces with surroundings of one kind share their weights.
+#[test]
+fn schemes_without_proofs_come_to_an_end() {
+    let needle = tagged_obj(NEEDLE);
+    let cap = tagged_obj(include_str!("../data/fading_tags_155.obj"));
+    let number = ExactOptions::default().triangles(213).optimize(true);
+    let angle = ExactOptions::default().angle(20f64.to_radians());
+    for (control, options, most) in [(&needle, number, 213), (&cap, angle, 50_000)] {
+        let found = exact(control, &ModifiedButterfly, &options).unwrap();
+        found.mesh.validate().unwrap();
+        let count = found.mesh.face_count();
+        assert!((most / 2..=most).contains(&count), "{count}");
+        let greatest = sampled(control, &ModifiedButterfly, &found.mesh, if count > 1000 { 5 } else { 7 });
+        assert!(greatest <= 1.1 * found.error.upper, "{greatest} {:?}", found.error);
+    }
+}
+
 #[test]
 fn shared_models_with_fading_creases_are_followed() {
     let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(std::path::PathBuf::from) else {
