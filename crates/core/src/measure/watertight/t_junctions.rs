@@ -4,10 +4,11 @@
 //! unconnected triangles, where many meet in a point, take no longer than others. Each edge goes through a tree of the places
 //! and meets those near to it, so that it does not matter how many edges run side by side, or lead to the same vertex.
 
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
 use crate::geometry::SurfaceFrame;
-use crate::geometry::box_tree::{NO_BOUNDS, grown};
+use crate::geometry::box_tree::{Bounds, NO_BOUNDS, grown};
 use crate::parallel;
 use crate::progress::{Cancelled, Stage, Watch};
 use crate::vector::{DVec3, vector};
@@ -73,43 +74,31 @@ struct Place {
     vertices: u32,
 }
 
-/// Places in a tree: of those in a range, the one in the middle stands between those below it and those above it on an axis.
+/// Some places, and the box that holds them.
+struct Node {
+    bounds: Bounds,
+    /// Its places, as a range of [`Places::places`].
+    range: Range<usize>,
+    /// The second of its two children; the first follows the node itself. None where the places are few.
+    second: Option<usize>,
+    /// How many of its places no edge has met yet.
+    left: AtomicUsize,
+}
+
+/// Places in a tree: the root first, each node followed by its first child and what is below that.
 struct Places {
     places: Vec<Place>,
-    /// By the place in the middle of a range, the axis.
-    axes: Vec<u8>,
-    /// By the same, how many places of the range no edge has met yet.
-    left: Vec<AtomicU32>,
+    nodes: Vec<Node>,
     is_met: Vec<AtomicBool>,
 }
 
 impl Places {
     fn of(mut places: Vec<Place>, watch: &mut Watch<'_>) -> Result<Self, Cancelled> {
-        let count = places.len();
-        watch.stage(Stage::Indexing, Some(count))?;
-        let (mut axes, mut left) = (vec![0; count], vec![0; count]);
-        let mut waiting: Vec<_> = core::iter::once(0..count).collect();
-        while let Some(range) = waiting.pop() {
-            if range.len() >= POLLED {
-                watch.poll()?;
-            }
-            let middle = middle(&range);
-            left[middle] = range.len() as u32;
-            if range.len() <= FEW {
-                continue;
-            }
-            let own = &mut places[range.clone()];
-            let [low, high] = own.iter().map(|place| place.at).fold(NO_BOUNDS, grown);
-            let sides = (high - low).to_array();
-            let axis =
-                (1..3).fold(0, |longest, axis| if sides[axis] > sides[longest] { axis } else { longest });
-            axes[middle] = axis as u8;
-            own.select_nth_unstable_by(middle - range.start, |a, b| a.at[axis].total_cmp(&b.at[axis]));
-            waiting.extend([range.start..middle, middle + 1..range.end]);
-        }
-        let left = left.into_iter().map(AtomicU32::new).collect();
+        watch.stage(Stage::Indexing, Some(places.len()))?;
+        let mut nodes = Vec::new();
+        append(&mut nodes, &mut places, 0, watch)?;
         let is_met = places.iter().map(|_| AtomicBool::new(false)).collect();
-        Ok(Self { places, axes, left, is_met })
+        Ok(Self { places, nodes, is_met })
     }
 
     /// How many vertices are at places that an edge has met.
@@ -122,55 +111,75 @@ impl Places {
     fn meet(&self, a: DVec3, b: DVec3) {
         let along = b - a;
         let squared = along.length_squared();
-        let reach = WITH_ROUNDING * ON_EDGE * squared.sqrt();
-        let is_inside = |number: usize| {
-            let from = self.places[number].at - a;
+        let reach = DVec3::splat(WITH_ROUNDING * ON_EDGE * squared.sqrt());
+        let is_inside = |number: &usize| {
+            let from = self.places[*number].at - a;
             let t = from.dot(along) / squared;
             let apart = (from - along * t).length_squared();
             t > ON_EDGE && t < 1.0 - ON_EDGE && apart <= ON_EDGE * ON_EDGE * squared
         };
-        // Ranges, with the part of the edge that may be near to them.
-        let mut waiting = vec![(0..self.places.len(), [0.0, 1.0])];
-        while let Some((range, part)) = waiting.pop() {
-            let middle = middle(&range);
-            if range.is_empty() || self.left[middle].load(Relaxed) == 0 {
+        // Nodes, with the part of the edge that may be near to them.
+        let mut waiting = vec![(0, [0.0, 1.0])];
+        while let Some((number, part)) = waiting.pop() {
+            let node = &self.nodes[number];
+            if node.left.load(Relaxed) == 0 {
                 continue;
             }
-            if range.len() <= FEW {
-                range.filter(|&number| is_inside(number)).for_each(|number| self.mark(number));
-                continue;
+            let [low, high] = node.bounds;
+            let Some(part) = within(part, (a, along), [low - reach, high + reach]) else { continue };
+            match node.second {
+                Some(second) => waiting.extend([(second, part), (number + 1, part)]),
+                None => node.range.clone().filter(is_inside).for_each(|number| self.mark(number)),
             }
-            if is_inside(middle) {
-                self.mark(middle);
-            }
-            let axis = self.axes[middle] as usize;
-            let (start, step, at) = (a[axis], along[axis], self.places[middle].at[axis]);
-            let below = clipped(part, (start, step), at + reach);
-            let above = clipped(part, (-start, -step), reach - at);
-            waiting.extend(below.map(|part| (range.start..middle, part)));
-            waiting.extend(above.map(|part| (middle + 1..range.end, part)));
         }
     }
 
-    /// Marks a place, and takes it from what is left of the ranges that hold it.
-    fn mark(&self, number: usize) {
-        if self.is_met[number].swap(true, Relaxed) {
+    /// Marks a place, and takes it from what is left of the nodes that hold it.
+    fn mark(&self, place: usize) {
+        if self.is_met[place].swap(true, Relaxed) {
             return;
         }
-        let mut range = 0..self.places.len();
+        let mut number = 0;
         loop {
-            let middle = middle(&range);
-            self.left[middle].fetch_sub(1, Relaxed);
-            if middle == number || range.len() <= FEW {
-                return;
-            }
-            range = if number < middle { range.start..middle } else { middle + 1..range.end };
+            self.nodes[number].left.fetch_sub(1, Relaxed);
+            let Some(second) = self.nodes[number].second else { return };
+            number = if place < self.nodes[second].range.start { number + 1 } else { second };
         }
     }
 }
 
-fn middle(range: &core::ops::Range<usize>) -> usize {
-    range.start + range.len() / 2
+/// Appends the node over some places, which stand at `first` among all, and what is below it; orders them.
+fn append(
+    nodes: &mut Vec<Node>,
+    places: &mut [Place],
+    first: usize,
+    watch: &mut Watch<'_>,
+) -> Result<(), Cancelled> {
+    if places.len() >= POLLED {
+        watch.poll()?;
+    }
+    let bounds = places.iter().map(|place| place.at).fold(NO_BOUNDS, grown);
+    let (own, range) = (nodes.len(), first..first + places.len());
+    nodes.push(Node { bounds, range, second: None, left: AtomicUsize::new(places.len()) });
+    if places.len() <= FEW {
+        return Ok(());
+    }
+    let sides = (bounds[1] - bounds[0]).to_array();
+    let axis = (1..3).fold(0, |longest, axis| if sides[axis] > sides[longest] { axis } else { longest });
+    let half = places.len() / 2;
+    places.select_nth_unstable_by(half, |a, b| a.at[axis].total_cmp(&b.at[axis]));
+    let (before, after) = places.split_at_mut(half);
+    append(nodes, before, first, watch)?;
+    nodes[own].second = Some(nodes.len());
+    append(nodes, after, first + half, watch)
+}
+
+/// The part of an edge, which starts at `start` and goes `along`, that is within a box, if there is any.
+fn within(part: [f64; 2], (start, along): (DVec3, DVec3), [low, high]: Bounds) -> Option<[f64; 2]> {
+    (0..3).try_fold(part, |part, axis| {
+        let part = clipped(part, (start[axis], along[axis]), high[axis])?;
+        clipped(part, (-start[axis], -along[axis]), -low[axis])
+    })
 }
 
 /// The part of [first, last] where `start + step t` is at most `most`, if there is any.

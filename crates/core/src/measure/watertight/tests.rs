@@ -221,7 +221,8 @@ fn t_junctions_are_those_that_looking_at_all_finds() {
     }
 }
 
-/// Sixty thousand triangles on one edge, and as many on a line whose edges hold one another: each ends in well under a second.
+/// Sixty thousand triangles on one edge, whose apexes are everywhere or on a circle, and as many on a line whose edges hold one
+/// another: each ends in well under a second.
 #[test]
 fn very_many_edges_side_by_side_take_little_time() {
     const COUNT: usize = 60_000;
@@ -237,9 +238,24 @@ fn very_many_edges_side_by_side_take_little_time() {
     let triangles: Vec<[u32; 3]> = (0..COUNT as u32).map(|i| [0, 1, i + 2]).collect();
     let w = examine(&positions, &triangles);
     assert_eq!((w.non_manifold_edges, w.boundary_edges, w.t_junctions), (1, 2 * COUNT, 0));
+    // Apexes on a circle around the line, farther apart than any edge reaches.
+    let apex = |i: usize| {
+        let (s, c) = (core::f64::consts::TAU * i as f64 / COUNT as f64).sin_cos();
+        [0.0, 1e4 * c, 1e4 * s]
+    };
     let mut positions = vec![[0.0; 3]];
-    positions.extend((0..COUNT).flat_map(|i| [[1.0 + i as f64, 0.0, 0.0], [i as f64, 1.0 + i as f64, 1.0]]));
+    positions.extend((0..COUNT).flat_map(|i| [[1.0 + i as f64, 0.0, 0.0], apex(i)]));
     let triangles: Vec<[u32; 3]> = (0..COUNT as u32).map(|i| [0, 2 * i + 1, 2 * i + 2]).collect();
-    // All on the line but the last, and those that slanting edges pass near to.
-    assert!(examine(&positions, &triangles).t_junctions >= COUNT - 1);
+    // All on the line but its ends.
+    assert_eq!(examine(&positions, &triangles).t_junctions, COUNT - 1);
+    // Apexes on a circle, all edges to which lead through its middle's surroundings.
+    let positions: Vec<[f64; 3]> = [[0.0; 3], [1.0, 0.0, 0.0]]
+        .into_iter()
+        .chain((0..COUNT).map(|i| {
+            let [_, y, z] = apex(i);
+            [0.5, 1e-4 * y, 1e-4 * z]
+        }))
+        .collect();
+    let triangles: Vec<[u32; 3]> = (0..COUNT as u32).map(|i| [0, 1, i + 2]).collect();
+    assert_eq!(examine(&positions, &triangles).t_junctions, 0);
 }
