@@ -128,6 +128,14 @@ fn what_cannot_be_kept_ends_with_3() {
     let input = file(&folder, "ball.off", &ball(3).0);
     let output = folder.path().join("out.ply");
     run("refine {} -o {} --within 1e-7 --max-triangles 20k", &[&input, &output]).expect(3);
+    // A box of twelve triangles has no smooth surface so near.
+    let corners: String =
+        (0..8).map(|c| format!("v {} {} {}\n", 40 * (c & 1), 20 * (c >> 1 & 1), 5 * (c >> 2))).collect();
+    let sides = "f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
+    let box_of_twelve = file(&folder, "box.obj", &(corners + sides));
+    run("refine {} -o {} --within 0.04", &[&box_of_twelve, &output])
+        .expect(3)
+        .saying("--within 0.04 could not be kept");
     assert!(!soup(&output).positions.is_empty());
     // With few triangles it is not near, either.
     run("refine {} -o {} --within 0.5 --max-triangles 300", &[&input, &output]).expect(3);
