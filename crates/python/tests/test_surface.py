@@ -51,7 +51,7 @@ def test_irregular_vertices_have_limits_and_no_curvature():
         ([0, -1], [[1, 0, 0]] * 2, r"at\[1\] names face -1"),
         ([0.5], [[1, 0, 0]], "whole numbers"),
         ([0], [[1, 0]], "barycentric has the shape"),
-        ([0, 1], [[1, 0, 0], [0.5, 0.6, 0]], r"barycentric\[1\]: the weights add up to 1\.1, expected 1"),
+        ([0, 1], [[1, 0, 0], [0.5, 0.6, 0]], r"barycentric\[1\]: the weights add up to 1\.1 rather than 1"),
         ([0], [[0.333, 0.333, 0.333]], r"barycentric\[0\]: the weights add up to 0\.999"),
         ([0], [[1.5, -0.5, 0]], r"barycentric\[0\]: the weight -0\.5 is below 0"),
         ([0], [[np.nan, 0.5, 0.5]], r"barycentric\[0\]"),

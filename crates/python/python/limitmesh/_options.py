@@ -264,7 +264,6 @@ class ControlOptions(TypedDict, total=False):
     """What `control_of` takes, for those who pass it on."""
 
     interpolate: bool | Length | None
-    auto_creases: bool
     crease_angle: float | None
     boundary: str
     concave_corners: str | None
