@@ -73,6 +73,27 @@ fn a_thousandth_of_the_diagonal_is_kept_by_default() {
     );
 }
 
+/// A lower bound far below the upper one says nothing: of a torus of which a damaged coordinate draws a vertex a million out it was a ten
+/// millionth of the diagonal.
+#[test]
+fn lower_bounds_that_say_nothing_are_not_reported() {
+    let folder = folder();
+    let at = |i: u32, j: u32| 10 * (i % 20) + j % 10 + 1;
+    let mut text = String::from("v 0 0 1e6\n");
+    for (i, j) in (0..200).map(|i| (i / 10, i % 10)).skip(1) {
+        let [u, v] = [f64::from(i) / 20.0, f64::from(j) / 10.0].map(|turn| std::f64::consts::TAU * turn);
+        let r = 1.0 + 0.35 * v.cos();
+        text.push_str(&format!("v {} {} {}\n", r * u.cos(), r * u.sin(), 0.35 * v.sin()));
+    }
+    for (i, j) in (0..200).map(|i| (i / 10, i % 10)) {
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        text.push_str(&format!("f {a} {b} {c}\nf {a} {c} {d}\n"));
+    }
+    let (input, output) = (file(&folder, "far.obj", &text), folder.path().join("out.ply"));
+    let said = run("refine {} -o {} --tolerance 1%", &[&input, &output]).expect(0).stderr;
+    assert!(said.contains("of the limit surface, certified\n") && !said.contains("at least"), "{said}");
+}
+
 #[test]
 fn the_interval_holds_what_samples_find() {
     let folder = folder();

@@ -77,6 +77,9 @@ const LOOSE_ENDS: usize = 10;
 const SMALL: f64 = 12.0;
 const SADDLES: usize = 100;
 
+/// Edges longer than so many times what vertices are apart in the median lead to a damaged coordinate.
+const FAR: f64 = 1000.0;
+
 impl Look {
     /// What `mesh` looks like. `faces` are the input's faces that those of the mesh are from ([`Trace::faces`](crate::mesh::Trace)), by which
     /// polygons are known; empty where all are triangles. Tags are not looked at.
@@ -126,6 +129,7 @@ impl Lengths {
     fn of(mesh: &Mesh) -> Self {
         let topology = mesh.topology();
         let normals = parallel::map(mesh.face_count(), |face| mesh.unit_face_normal(face));
+        let longest = FAR * middle_distance(mesh.positions());
         let mut by_degree = [0.0; 181];
         for h in topology.half_edges() {
             let Some(twin) = topology.twin(h).filter(|twin| h < *twin) else { continue };
@@ -134,8 +138,11 @@ impl Lengths {
                 continue;
             }
             let [a, b] = topology.ends(h).map(|v| vector(mesh.positions()[v.index()]));
-            let degrees = m.cross(n).length().atan2(m.dot(n)).to_degrees();
-            by_degree[(degrees as usize).min(180)] += (b - a).length();
+            let length = (b - a).length();
+            if length <= longest {
+                let degrees = m.cross(n).length().atan2(m.dot(n)).to_degrees();
+                by_degree[(degrees as usize).min(180)] += length;
+            }
         }
         Self::new(by_degree)
     }
@@ -210,6 +217,16 @@ impl Lengths {
         }
         Look::Part(Part { degrees, creases })
     }
+}
+
+/// The median distance of `positions` from the median of their coordinates: a size that a damaged coordinate does not change.
+fn middle_distance(positions: &[[f64; 3]]) -> f64 {
+    let median = |mut values: Vec<f64>| {
+        let middle = values.len() / 2;
+        if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    };
+    let centre = vector([0, 1, 2].map(|axis| median(positions.iter().map(|p| p[axis]).collect())));
+    median(positions.iter().map(|&p| (vector(p) - centre).length()).collect())
 }
 
 /// How sharp edges meet.

@@ -6,9 +6,12 @@
 use limitmesh::Mesh;
 use limitmesh::criterion::{Camera, View, Viewpoint};
 use limitmesh::measure::{Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff_between};
+use limitmesh::progress::Progress;
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_observed};
 use limitmesh::scheme::Loop;
+
+use crate::support::torus;
 
 fn model(name: &str) -> Mesh {
     Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
@@ -203,4 +206,35 @@ fn tolerances_that_are_proven_are_met_whatever_ended_the_division() {
         }
     }
     assert!(met > 5 && missed > 5, "{met}, {missed}");
+}
+
+/// A vertex that a damaged coordinate moves far away draws its faces out to needles. No mesh of hundreds of times as many triangles is
+/// made to prove more about them.
+#[test]
+fn one_far_vertex_takes_no_finer_meshes() {
+    let plain = torus(20, 10);
+    for far in [1e4, 1e6, 1e9] {
+        let mut positions = plain.positions().to_vec();
+        positions[0] = [0.0, 0.0, far];
+        let control = plain.clone().with_positions(positions).unwrap();
+        for share in [1e-2, 1e-3] {
+            let tolerance = share * control.diagonal();
+            let options = ExactOptions::default().tolerance(tolerance);
+            let mut most = 0;
+            let mut watch = |progress: &Progress| {
+                most = most.max(progress.triangles);
+                core::ops::ControlFlow::Continue(())
+            };
+            let found = exact_observed(&control, &Loop, &options, &mut watch).unwrap();
+            let count = found.mesh.face_count();
+            assert!(most <= 4 * count, "{far}, {share}: {most} triangles for {count}");
+            // What is proven holds all the same: dense samples of the true surface find no more.
+            let reference = limit_reference(&control, &Loop, 5).unwrap();
+            let output = Bvh::new(found.mesh.as_triangles()).unwrap();
+            let sampled =
+                reference.positions().iter().map(|&p| output.closest(p).distance).fold(0.0, f64::max);
+            assert!(found.error.upper <= tolerance, "{far}, {share}: {:?}", found.error);
+            assert!(sampled <= found.error.upper, "{far}, {share}: {sampled}, {:?}", found.error);
+        }
+    }
 }

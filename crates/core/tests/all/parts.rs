@@ -12,7 +12,7 @@ use limitmesh::refine::{ExactOptions, exact, limit_reference};
 use limitmesh::scheme::Loop;
 use limitmesh::{Mesh, PolygonSoup, VertexId};
 
-use super::support::{Point, cross, distance, dot, minus, octahedron};
+use super::support::{Point, cross, distance, dot, minus, octahedron, torus};
 
 /// Triangles by the places of their corners.
 fn mesh(triangles: Vec<[Point; 3]>) -> Mesh {
@@ -163,6 +163,20 @@ fn cages_and_smooth_shapes_are_none() {
         [[a, b, middle], [b, a, [0.6, 0.5, 0.0]]]
     });
     assert_eq!(Look::of(&mesh(sides.collect()), &[]), Look::Smooth);
+}
+
+/// A damaged coordinate draws a vertex away, and its edges are longer than all others together.
+#[test]
+fn one_far_vertex_does_not_decide_what_a_mesh_looks_like() {
+    let round = torus(20, 10);
+    let block = voxels(&cells([6, 6, 6], |[x, y, z]| x < 5 && y < 5 && z < 5));
+    let far = |mesh: &Mesh| {
+        let mut positions = mesh.positions().to_vec();
+        positions[0] = [0.0, 0.0, 1e6];
+        mesh.clone().with_positions(positions).unwrap()
+    };
+    assert_eq!([&round, &far(&round)].map(|mesh| Look::of(mesh, &[])), [Look::Smooth, Look::Smooth]);
+    assert_eq!([&block, &far(&block)].map(|mesh| part(mesh).0), [30.0, 30.0]);
 }
 
 #[test]
