@@ -24,6 +24,17 @@ pub(crate) struct Hints<'a> {
     pub(crate) channels: &'a [Channel],
 }
 
+/// What a file says of its edges, some of which are sharp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum OwnSharpness {
+    /// Nothing.
+    None,
+    /// So many have normals that differ between their faces.
+    Normals(usize),
+    /// By tags, or by several smoothing groups.
+    Tags,
+}
+
 impl Hints<'_> {
     /// The edges that are to be sharp, each once; `name` is the file's.
     ///
@@ -59,19 +70,23 @@ impl Hints<'_> {
         Ok(inner_edges(mesh, |h, twin| is_border(h.face(), twin.face())))
     }
 
-    /// Whether it says of some edges that they are sharp, and of others that they are not: by tags, by normals that differ at some of the
-    /// edges where faces meet at an angle, or by several smoothing groups.
-    pub(crate) fn tell_edges_apart(&self, mesh: &Mesh) -> bool {
+    /// What it says of some edges that they are sharp, and of others that they are not.
+    pub(crate) fn sharpness(&self, mesh: &Mesh) -> OwnSharpness {
         let mut groups = self.channels.iter().filter(|channel| channel.name == SMOOTHING_GROUP);
         let differ = |h: HalfEdgeId, twin: HalfEdgeId, channel: &Channel| {
             differ(channel, h.face().index(), twin.face().index())
         };
-        self.is_tagged
-            || self.normals.is_some_and(|normals| tell_edges_apart(mesh, normals))
-            || groups.any(|channel| {
-                let is_one = channel.indices.iter().all(|&index| index == channel.indices[0]);
-                !is_one && !inner_edges(mesh, |h, twin| differ(h, twin, channel)).is_empty()
-            })
+        let have_borders = |channel: &Channel| {
+            let is_one = channel.indices.iter().all(|&index| index == channel.indices[0]);
+            !is_one && !inner_edges(mesh, |h, twin| differ(h, twin, channel)).is_empty()
+        };
+        if self.is_tagged || groups.any(have_borders) {
+            return OwnSharpness::Tags;
+        }
+        match self.normals.map_or(0, |normals| telling_edges(mesh, normals)) {
+            0 => OwnSharpness::None,
+            edges => OwnSharpness::Normals(edges),
+        }
     }
 
     /// How many edges have normals that differ between their faces.
@@ -101,16 +116,16 @@ fn split_edges(mesh: &Mesh, normals: &Channel) -> Vec<HalfEdgeId> {
     inner_edges(mesh, |h, twin| differ(h, twin.next()) || differ(h.next(), twin))
 }
 
-/// Whether normals differ at some edges, and are the same on both sides of others where faces meet at an angle: facets that are shaded flat
-/// say nothing of their edges.
-fn tell_edges_apart(mesh: &Mesh, normals: &Channel) -> bool {
+/// How many edges have normals that differ, if these are the same on both sides of others where faces meet at an angle: facets that are
+/// shaded flat say nothing of their edges.
+fn telling_edges(mesh: &Mesh, normals: &Channel) -> usize {
     let split = split_edges(mesh, normals);
     let is_bent = |h: HalfEdgeId, twin: HalfEdgeId| {
         let [m, n] = [h, twin].map(|h| mesh.face_normal(h.face()));
         length(cross(m, n)) > BENT * length(m) * length(n)
     };
-    !split.is_empty()
-        && !inner_edges(mesh, |h, twin| is_bent(h, twin) && split.binary_search(&h).is_err()).is_empty()
+    let is_smooth = |h: HalfEdgeId, twin: HalfEdgeId| is_bent(h, twin) && split.binary_search(&h).is_err();
+    if split.is_empty() || inner_edges(mesh, is_smooth).is_empty() { 0 } else { split.len() }
 }
 
 /// Whether the edge between two faces is a border of what they are labelled with.

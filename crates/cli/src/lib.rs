@@ -32,9 +32,10 @@ mod vector;
 mod written_unit;
 
 use std::ffi::OsString;
+use std::path::Path;
 
 use clap::Parser;
-use clap::error::{ContextKind, ErrorKind};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use arguments::{Arguments, Command};
 use failure::{Outcome, UsageError, is_broken_pipe};
@@ -75,6 +76,15 @@ fn parse(words: impl IntoIterator<Item = OsString>) -> Arguments {
         // Both options are written as they should be: it is their meaning that clashes.
         if error.kind() == ErrorKind::ArgumentConflict {
             error.remove(ContextKind::Usage);
+        }
+        if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(word))) =
+            (error.kind(), error.get(ContextKind::InvalidSubcommand))
+            && Path::new(word).extension().is_some()
+        {
+            failure::print_usage_error(&format!(
+                "'{word}' is no command; `limitmesh refine {word}` smooths a file"
+            ));
+            std::process::exit(2);
         }
         error.exit()
     })

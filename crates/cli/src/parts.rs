@@ -5,7 +5,7 @@ use limitmesh::Mesh;
 use limitmesh::part::Look;
 
 use crate::arguments::{CreaseAngle, CreasesFrom, FeatureArguments, InterpolationArguments};
-use crate::creases::Hints;
+use crate::creases::{Hints, OwnSharpness};
 use crate::format::{counted, number};
 
 /// What options say of a surface's sharp edges and of its vertices, once the mesh has been looked at.
@@ -16,28 +16,43 @@ pub(crate) struct Decided {
     pub(crate) note: Option<String>,
 }
 
-/// Looks at a mesh, with the input's faces that its own are from, if the crease angle is to be found and the file does not tell edges apart.
-/// A part's surface is led through its vertices where it `can_be`, unless something else is asked for.
+/// Looks at a mesh, with the input's faces that its own are from, if the crease angle is to be found and the file has no tags. Of a part
+/// those edges are sharp that the file's normals say are, or else those beyond an angle. Its surface is led through its vertices where it
+/// `can_be`, unless something else is asked for.
 pub(crate) fn decided(
     (mut features, mut interpolation): (FeatureArguments, InterpolationArguments),
     (mesh, faces): (&Mesh, &[u32]),
     hints: &Hints<'_>,
     can_be_led: bool,
 ) -> Decided {
+    let own = hints.sharpness(mesh);
     let is_open = features.crease_angle == Some(CreaseAngle::Auto)
         && features.creases_from == CreasesFrom::None
-        && !hints.tell_edges_apart(mesh);
+        && own != OwnSharpness::Tags;
     let look = is_open.then(|| Look::of(mesh, faces));
     let Some(Look::Part(part)) = look else { return Decided { features, interpolation, note: None } };
-    features.crease_angle = Some(CreaseAngle::Found(part.degrees));
     interpolation.is_of_part = can_be_led && interpolation.given().is_none();
-    let edges = part.creases.edges.len();
+    let (edges, tips) = match own {
+        OwnSharpness::Normals(edges) => {
+            features.creases_from = CreasesFrom::Normals;
+            (edges, 0)
+        }
+        _ => {
+            features.crease_angle = Some(CreaseAngle::Found(part.degrees));
+            (part.creases.edges.len(), part.tips.len())
+        }
+    };
+    let which = match own {
+        OwnSharpness::Normals(_) => "that have different normals on both sides".to_owned(),
+        _ => format!("sharper than {}°", number(part.degrees)),
+    };
+    let tips = if tips > 0 { format!(" and {}", counted(tips, "tip", "tips")) } else { String::new() };
     let led = if interpolation.is_of_part { ", surface led through the vertices" } else { "" };
-    let them = if edges == 1 && !interpolation.is_of_part { "it" } else { "them" };
+    let is_one = edges == 1 && tips.is_empty() && !interpolation.is_of_part;
     let note = format!(
-        "looks like a part: {} sharper than {}° kept sharp{led}; --crease-angle none smooths {them}",
+        "looks like a part: {} {which}{tips} kept sharp{led}; --crease-angle none smooths {}",
         counted(edges, "edge", "edges"),
-        number(part.degrees),
+        if is_one { "it" } else { "them" },
     );
     Decided { features, interpolation, note: Some(note) }
 }

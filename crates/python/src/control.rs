@@ -62,9 +62,7 @@ impl Recipe {
         let look = options.auto_creases.then(|| Look::of(&mesh, &trace.faces));
         let (mesh, crease_angle, is_led) = match (options.crease_angle, look) {
             (Some(degrees), _) => (mesh.with_creases_above(degrees.to_radians())?, Some(degrees), false),
-            (None, Some(Look::Part(part))) => {
-                (mesh.with_creases(&part.creases.edges), Some(part.degrees), options.leads_parts)
-            }
+            (None, Some(Look::Part(part))) => (part.on(mesh), Some(part.degrees), options.leads_parts),
             _ => (mesh, None, false),
         };
         let (whole, (mesh, concave)) = match options.divides_concave_corners {

@@ -69,6 +69,7 @@ pub(crate) fn save(
     vertices: PyReadonlyArray2<'_, f64>,
     faces: PyReadonlyArray2<'_, u32>,
     normals: Option<PyReadonlyArray2<'_, f64>>,
+    normals_of_corners: Option<PyReadonlyArray2<'_, u32>>,
     channels: Vec<ChannelIn<'_>>,
     linked: [Vec<String>; 2],
     ascii: bool,
@@ -76,6 +77,7 @@ pub(crate) fn save(
     let [material_libraries, texture_files] = linked;
     let (positions, triangles) = (soup::positions(&vertices)?, soup::triangles(&faces)?);
     let normals = normals.as_ref().map(soup::positions).transpose()?;
+    let normals_of_corners = normals_of_corners.as_ref().map(soup::triangles).transpose()?;
     let channels = channels.iter().map(ChannelIn::channel).collect::<PyResult<Vec<_>>>()?;
     let format = Format::from_path(&path).map_err(|why| OptionError::new_err(why.to_string()))?;
     run(py, 1, None, move |_| {
@@ -85,9 +87,11 @@ pub(crate) fn save(
             .partition(|channel| limitmesh_io::holds(format, &WriteOptions::default().ascii(ascii), channel));
         let output = Output::new(surface).channels(&held).material_libraries(&material_libraries);
         let mut output = output.texture_files(&texture_files);
-        if let Some(normals) = &normals {
-            output = output.normals(normals);
-        }
+        output = match (&normals, &normals_of_corners) {
+            (Some(normals), Some(corners)) => output.normals_of_corners(normals, corners),
+            (Some(normals), None) => output.normals(normals),
+            (None, _) => output,
+        };
         limitmesh_io::write_as(&path, format, &output, &WriteOptions::default().ascii(ascii))?;
         Ok(lost.into_iter().map(|channel| channel.name).collect())
     })

@@ -77,6 +77,71 @@ def test_results_are_written_and_read(tmp_path, octahedron, extension):
     assert bool(again.channels) == (extension != "stl")
 
 
+def normals_of_corners(path):
+    """The corners of a file's triangles with their normals, by the text of OBJ and by the accessors of glTF."""
+    if path.suffix == ".obj":
+        rows = {"v": [], "vn": []}
+        corners = []
+        for word, *values in map(str.split, path.read_text().splitlines()):
+            if word in rows:
+                rows[word].append([float(x) for x in values])
+            elif word == "f":
+                corners += [tuple(int(x) - 1 for x in value.split("/")[::2]) for value in values]
+        places, normals = np.array(corners).T
+        return np.array(rows["v"])[places], np.array(rows["vn"])[normals]
+    data = path.read_bytes()
+    size = struct.unpack_from("<I", data, 12)[0]
+    document, binary = json.loads(data[20 : 20 + size]), data[28 + size :]
+
+    def values(accessor, kind, width):
+        accessor = document["accessors"][accessor]
+        start = document["bufferViews"][accessor["bufferView"]].get("byteOffset", 0) + accessor.get("byteOffset", 0)
+        return np.frombuffer(binary, kind, accessor["count"] * width, start).reshape(-1, width)
+
+    (primitive,) = document["meshes"][0]["primitives"]
+    attributes = primitive["attributes"]
+    kind = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32}[document["accessors"][primitive["indices"]]["componentType"]]
+    rows = values(primitive["indices"], kind, 1)[:, 0]
+    return tuple(values(attributes[name], np.float32, 3)[rows].astype(float) for name in ("POSITION", "NORMAL"))
+
+
+@pytest.mark.parametrize("extension", ["obj", "glb"])
+def test_each_side_of_a_sharp_edge_keeps_its_normals(tmp_path, extension):
+    turn = np.arange(16) * np.pi / 8
+    rim = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    vertices = np.vstack([np.c_[rim, np.full(16, z)] for z in (0, 2)])
+    sides = [[i, (i + 1) % 16, 16 + (i + 1) % 16] for i in range(16)] + [[i, 16 + (i + 1) % 16, 16 + i] for i in range(16)]
+    ends = [[0, i + 1, i] for i in range(1, 15)] + [[16, 16 + i, 17 + i] for i in range(1, 15)]
+    found = limitmesh.refine(vertices, sides + ends, creases="auto", channels={"height": vertices[:, 2]})
+    path = tmp_path / f"peg.{extension}"
+    found.save(path)
+    points, normals = normals_of_corners(path)
+    assert len(points) == 3 * len(found.faces)
+    flat = np.repeat(np.ptp(points.reshape(-1, 3, 3)[:, :, 2], axis=1) == 0, 3)
+    # Of a cylinder: along the axis on its ends, straight away from it elsewhere.
+    np.testing.assert_allclose(normals[flat], np.c_[np.zeros((flat.sum(), 2)), points[flat, 2] - 1], atol=1e-6)
+    np.testing.assert_allclose(normals[~flat, 2], 0, atol=1e-6)
+    away = points[~flat, :2] / np.linalg.norm(points[~flat, :2], axis=1, keepdims=True)
+    assert (np.sum(away * normals[~flat, :2], axis=1) > np.cos(np.pi / 16)).all()
+
+
+def test_parts_are_refined_as_the_program_does(tmp_path):
+    box = tmp_path / "box.stl"
+    corners = np.array([[x, y, z] for z in (0, 5) for y in (0, 20) for x in (0, 40)], float)
+    quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    limitmesh.save(box, corners, quads)
+
+    def extent(**options):
+        limitmesh.refine_file(box, tmp_path / "fine.ply", overwrite=True, **options)
+        return np.ptp(limitmesh.load(tmp_path / "fine.ply").vertices, axis=0)
+
+    np.testing.assert_allclose(extent(), [40, 20, 5])
+    np.testing.assert_allclose(extent(creases="auto"), [40, 20, 5])
+    assert (extent(creases="none") < [30, 18, 5]).all() and (extent(method="uniform") < [30, 18, 5]).all()
+    with pytest.raises(limitmesh.OptionError, match="overwrite"):
+        limitmesh.refine_file(box, box)
+
+
 def test_files_are_refined_as_the_program_does(tmp_path):
     mine, its = tmp_path / "mine.ply", tmp_path / "its.ply"
     report = limitmesh.refine_file("builtin:cup", mine, tolerance="0.2%", crease_angle=40, threads=2)

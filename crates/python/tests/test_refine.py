@@ -242,6 +242,13 @@ def test_whatever_asarray_takes_gives_the_same(octahedron):
     assert limitmesh.refine(limitmesh.Mesh(vertices, faces), tolerance=0.05).faces.tobytes() == expected.faces.tobytes()
 
 
+def test_corners_are_no_mask():
+    mask = np.zeros(6, dtype=bool)
+    mask[5] = True
+    with pytest.raises(limitmesh.OptionError, match="flatnonzero"):
+        limitmesh.refine(*OCTAHEDRON, corners=mask)
+
+
 def test_polygons_of_any_number_of_corners():
     corners = [[0, 0, 0], [2, 0, 0], [3, 1, 0], [1, 2, 0], [0, 1, 0], [1, 1, 2]]
     faces = [[4, 3, 2, 1, 0], [0, 1, 5], [1, 2, 5], [2, 3, 5], [3, 4, 5], [4, 0, 5]]

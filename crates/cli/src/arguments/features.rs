@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 use limitmesh::Mesh;
 use limitmesh::mesh::{BoundaryRule, MeshError};
+use limitmesh::part::Part;
 use serde::Serialize;
 
 use super::values;
@@ -184,10 +185,16 @@ impl FeatureArguments {
             Boundary::Fixed => BoundaryRule::Fixed,
         };
         let mesh = mesh.with_boundary(rule);
-        let found = self.angle().map(|angle| mesh.creases_above(angle.to_radians())).transpose()?;
-        let (mesh, along_needles) = match found {
-            Some(found) => (mesh.with_creases(&found.edges), found.along_needles),
-            None => (mesh, 0),
+        let (mesh, along_needles) = match self.crease_angle {
+            Some(CreaseAngle::Above(degrees)) => {
+                let found = mesh.creases_above(degrees.to_radians())?;
+                (mesh.with_creases(&found.edges), found.along_needles)
+            }
+            Some(CreaseAngle::Found(degrees)) => {
+                let part = Part::beyond(degrees, &mesh)?;
+                (part.on(mesh), part.creases.along_needles)
+            }
+            Some(CreaseAngle::Auto | CreaseAngle::None) | None => (mesh, 0),
         };
         let (mesh, concave) = match self.concave_corners() {
             ConcaveCorners::Divided => mesh.with_divided_concave_corners()?,

@@ -111,7 +111,8 @@ fn limit_of(
     let asked = (arguments.features.or_auto(), InterpolationArguments::default());
     let decided = parts::decided(asked, (mesh, &trace.faces), &hints, true);
     decided.note.into_iter().for_each(|note| progress.note(note));
-    let mesh = decided.features.apply(mesh.clone())?.mesh;
+    let edges = hints.edges(mesh, decided.features.creases_from, &arguments.input.display().to_string())?;
+    let mesh = decided.features.apply(mesh.clone().with_creases(&edges))?.mesh;
     let asked = (decided.interpolation, arguments.build.unit);
     let (mesh, _) = interpolation::apply(mesh, asked, &Loop, progress)?;
     Bulk::of_limit(&mesh, &Loop)
@@ -119,6 +120,7 @@ fn limit_of(
 
 fn describe_file(report: &InformationReport) -> String {
     let InputReport { path, format, vertices, faces, left_out, channels } = &report.input;
+    let is_asset = ["gltf", "glb"].contains(&format.as_ref());
     let format = if *format == "builtin" { "built-in model".to_owned() } else { format.to_uppercase() };
     let mut text = format!(
         "{path}: {format}, {}, {}",
@@ -139,7 +141,9 @@ fn describe_file(report: &InformationReport) -> String {
         text.push_str(&format!("carries: {}\n", all.join("; ")));
     }
     if !left_out.is_empty() {
-        text.push_str(&format!("left out: {}\n", left_out.join("; ")));
+        // An asset that is edited keeps them.
+        let are = if is_asset { "kept by `refine`, not looked at" } else { "left out" };
+        text.push_str(&format!("{are}: {}\n", left_out.join("; ")));
     }
     let TagCounts { creases, corners } = report.tags;
     if creases + corners > 0 {

@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     let asked = (arguments.features.or_auto(), arguments.interpolation);
     let decided = parts::decided(asked, (&input.mesh, &input.trace.faces), &input.hints(), true);
     decided.note.into_iter().for_each(|note| progress.note(note));
-    let input = input.with_creases(arguments.features.creases_from)?;
+    let input = input.with_creases(decided.features.creases_from)?;
     let arguments = &LodArguments { build: arguments.build.in_unit(input.unit), ..arguments.clone() };
     let unit = WrittenUnit::of(&arguments.input, &arguments.build, format);
     unit.note(&arguments.output.display().to_string(), progress);

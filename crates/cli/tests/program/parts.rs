@@ -317,7 +317,7 @@ fn files_with_sharpness_of_their_own_are_not_looked_at() {
     assert!(!is_part(&obj(&folder, "", &|side| if side == 0 { "s 1\n" } else { "s 2\n" }, &none)));
     assert!(is_part(&obj(&folder, "", &|_| "s 1\n", &none)));
     assert!(is_part(&obj(&folder, "", &|_| "s off\n", &none)));
-    // Facets that are shaded flat say nothing; a side whose edges are split beside others that are not does.
+    // Facets that are shaded flat say nothing.
     let sides = [
         [0.0, 0.0, -1.0],
         [0.0, 0.0, 1.0],
@@ -327,15 +327,44 @@ fn files_with_sharpness_of_their_own_are_not_looked_at() {
         [1.0, 0.0, 0.0],
     ];
     assert!(is_part(&obj(&folder, "", &|_| "", &|side| Some(sides[side]))));
-    assert!(!is_part(&obj(&folder, "", &|_| "", &|side| Some(if side == 0 {
-        sides[0]
-    } else {
-        [0.0, 0.6, 0.8]
-    }))));
     // A cage of quadrilaterals is meant to become round.
     let quads = "v 0 0 0\nv 4 0 0\nv 0 2 0\nv 4 2 0\nv 0 0 1\nv 4 0 1\nv 0 2 1\nv 4 2 1\n\
         f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
     assert!(!is_part(&file(&folder, "cage.obj", quads)));
+}
+
+/// A peg shaded round between two rims, as modelling programs write it: its normals say which edges are sharp, and it keeps its radius. Where
+/// they differ along one rim only, the other is smooth.
+#[test]
+fn normals_of_parts_say_which_edges_are_sharp() {
+    let folder = folder();
+    let peg = |is_top_smooth: bool| {
+        let mut text = String::new();
+        for corners in &Solid::peg(16, 5.0, 8.0).0 {
+            let is_end = corners.iter().all(|p| p[2] == corners[0][2]);
+            for [x, y, z] in corners {
+                writeln!(text, "v {x} {y} {z}").expect("text");
+                match is_end || (is_top_smooth && *z > 0.0) {
+                    true => writeln!(text, "vn 0 0 {}", z - 4.0),
+                    false => writeln!(text, "vn {x} {y} 0"),
+                }
+                .expect("text");
+            }
+            text.push_str("f -3//-3 -2//-2 -1//-1\n");
+        }
+        file(&folder, "peg.obj", &text)
+    };
+    let (run, found, _) = refine(&peg(false), "--tolerance 0.01%");
+    assert!(
+        run.stderr.contains("32 edges that have different normals on both sides kept sharp"),
+        "{}",
+        run.stderr
+    );
+    assert!((volume(&found) / (PI * 200.0) - 1.0).abs() < 1e-3, "{}", volume(&found));
+    let (run, _, _) = refine(&peg(true), "--tolerance 1%");
+    assert!(run.stderr.contains("looks like a part: 16 edges that have different normals"), "{}", run.stderr);
+    let limit = crate::common::run("info {} --limit --json", &[&peg(false)]).expect(0).json();
+    assert!((number(&limit["limit"]["volume"]) / (PI * 200.0) - 1.0).abs() < 1e-3, "{limit}");
 }
 
 /// Through vertices close together, the surface would turn over; it passes by them and says where.

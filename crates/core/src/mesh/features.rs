@@ -35,7 +35,7 @@ impl Mesh {
     /// assert_eq!(square.with_boundary(BoundaryRule::Fixed).tags().corners.len(), 4);
     /// # Ok::<(), limitmesh::mesh::MeshError>(())
     /// ```
-    pub fn with_boundary(mut self, rule: BoundaryRule) -> Self {
+    pub fn with_boundary(self, rule: BoundaryRule) -> Self {
         if rule == BoundaryRule::Smooth {
             return self;
         }
@@ -44,9 +44,13 @@ impl Mesh {
             let (valence, open) = topology.valence_and_openness(v);
             open && (rule == BoundaryRule::Fixed || valence == 2)
         };
-        let kept = topology.vertices().filter(|&v| is_kept(v));
-        let corner = |v: VertexId| CornerTag { vertex: v.0, sharpness: f64::INFINITY };
-        let corners: Vec<CornerTag> = kept.map(corner).collect();
+        let kept: Vec<VertexId> = topology.vertices().filter(|&v| is_kept(v)).collect();
+        self.with_corners(&kept)
+    }
+
+    /// The mesh with corners that never fade at these vertices; the tags that it has stay.
+    pub fn with_corners(mut self, vertices: &[VertexId]) -> Self {
+        let corners = vertices.iter().map(|v| CornerTag { vertex: v.0, sharpness: f64::INFINITY });
         self.tags.add_corners(corners);
         self.tags = self.tags.joined(&self.topology, &self.junctions);
         self

@@ -5,9 +5,13 @@
 //! coarse cage is sharp everywhere, and a file of quadrilaterals is one whatever its angles. Voxels have a gap, too; what tells them is
 //! that their flat regions are all small, and that more than three sharp edges, up and down, meet at many of their corners.
 
+use std::ops::RangeInclusive;
+
+use super::facets::are_of_round_things;
+use super::sharp::Part;
 use crate::geometry::DisjointSets;
 use crate::index::{HalfEdgeId, VertexId};
-use crate::mesh::{CreasesAbove, Mesh};
+use crate::mesh::Mesh;
 use crate::parallel;
 use crate::vector::{DVec3, vector};
 
@@ -25,21 +29,14 @@ pub enum Look {
     Stairs,
 }
 
-/// What is sharp on a part.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Part {
-    /// The angle between faces' normals that parts sharp edges from others, in degrees.
-    pub degrees: f64,
-    /// The edges beyond that angle, for [`Mesh::with_creases`].
-    pub creases: CreasesAbove,
-}
-
 /// Facets of round parts meet at less than this; more is seen as an edge.
 const SEEN: usize = 20;
 
-/// Facets of round parts meet at less than this in any case: 360° by 7 and a little.
+/// Facets of round parts meet at no more than this in any case: 360° by 7 and a little.
 const ROUND: usize = 52;
+
+/// What meets at these is either facets of round parts or meant as it is.
+const COARSE: RangeInclusive<usize> = USUAL + 1..=ROUND;
 
 /// Edges beyond this are nearly square.
 const NEARLY_SQUARE: usize = 60;
@@ -49,7 +46,7 @@ const SHARP: usize = 80;
 
 /// Degrees that a gap between smooth edges and nearly square ones is wide at least, and one below sharp edges that are not.
 const GAP: usize = 15;
-const WIDE_GAP: usize = 30;
+const WIDE_GAP: usize = 28;
 
 /// A part of the length of sharp edges (one in so many) that may lie within the gap: chamfers and the like.
 const WITHIN: f64 = 50.0;
@@ -91,12 +88,43 @@ impl Look {
     }
 
     fn by_angles(mesh: &Mesh) -> Self {
-        let lengths = Lengths::of(mesh);
-        let Some(gap) = lengths.gap().filter(|_| lengths.is_in_space()) else { return Self::Smooth };
-        if lengths.all < LEAST_SMOOTH * (lengths.all - lengths.beyond(gap.begin)) {
-            return lengths.part(gap, mesh);
+        let bends = bends(mesh);
+        let lengths = Lengths::of(&bends);
+        if !lengths.is_in_space() {
+            return Self::Smooth;
         }
-        Self::Cage
+        let gap = lengths.gap(SEEN);
+        if gap.is_some_and(|gap| lengths.all >= LEAST_SMOOTH * (lengths.all - lengths.beyond(gap.begin))) {
+            return Self::Cage;
+        }
+        let is_round = || are_of_round_things(mesh, &bends, COARSE);
+        let meant = lengths.with_edges_that_are_meant();
+        let is_doubtful =
+            |sharper: &Gap| gap.map_or_else(|| meant.is_plain(*sharper), |found| found.begin > USUAL);
+        let degrees = match (gap, meant.gap(SEEN).filter(is_doubtful)) {
+            (_, Some(sharper)) if !is_round() => Some(sharper.begin.max(USUAL) as f64),
+            (Some(found), _) if found.end <= ROUND && is_round() => {
+                lengths.gap(ROUND + 1).map(|gap| lengths.angle(gap))
+            }
+            _ => gap.map(|gap| lengths.angle(gap)),
+        };
+        let is_rough = gap.is_none_or(|gap| gap.end < NEARLY_SQUARE);
+        degrees.map_or(Self::Smooth, |degrees| Self::beyond(degrees, is_rough, mesh))
+    }
+
+    /// A part with the edges beyond an angle, unless these are no lines or lead up and down stairs: of voxels, or of the facets at 35° and
+    /// more that marching cubes make of these, where edges that are not nearly square look sharp.
+    fn beyond(degrees: f64, is_rough: bool, mesh: &Mesh) -> Self {
+        let Ok(part) = Part::beyond(degrees, mesh) else { return Self::Smooth };
+        let edges = &part.creases.edges;
+        let lines = Lines::of(mesh, edges);
+        if LOOSE_ENDS * lines.loose_ends() > edges.len() || edges.is_empty() {
+            return Self::Smooth;
+        }
+        if (is_rough || lines.have_saddles()) && has_small_regions(mesh, edges) {
+            return Self::Stairs;
+        }
+        Self::Part(part)
     }
 }
 
@@ -119,6 +147,32 @@ struct Gap {
     end: usize,
 }
 
+/// An edge between two faces, and how they meet there.
+pub(super) struct Bends {
+    pub(super) edge: HalfEdgeId,
+    pub(super) twin: HalfEdgeId,
+    /// Between the normals.
+    pub(super) degrees: f64,
+    pub(super) is_concave: bool,
+    pub(super) length: f64,
+}
+
+/// How faces meet at the edges between them, but for edges that lead to damaged coordinates.
+fn bends(mesh: &Mesh) -> Vec<Bends> {
+    let topology = mesh.topology();
+    let normals = parallel::map(mesh.face_count(), |face| mesh.unit_face_normal(face));
+    let longest = FAR * middle_distance(mesh.positions());
+    let bend = |edge: HalfEdgeId| {
+        let twin = topology.twin(edge).filter(|twin| edge < *twin)?;
+        let [m, n] = [edge, twin].map(|h| normals[h.face().index()]);
+        let [a, b] = topology.ends(edge).map(|v| vector(mesh.positions()[v.index()]));
+        let (degrees, length) = (m.cross(n).length().atan2(m.dot(n)).to_degrees(), (b - a).length());
+        let is_one = m != DVec3::ZERO && n != DVec3::ZERO && length <= longest;
+        is_one.then(|| Bends { edge, twin, degrees, is_concave: is_concave(mesh, edge), length })
+    };
+    topology.half_edges().filter_map(bend).collect()
+}
+
 /// Lengths of the edges between faces, by whole degrees.
 struct Lengths {
     by_degree: [f64; 181],
@@ -126,24 +180,17 @@ struct Lengths {
 }
 
 impl Lengths {
-    fn of(mesh: &Mesh) -> Self {
-        let topology = mesh.topology();
-        let normals = parallel::map(mesh.face_count(), |face| mesh.unit_face_normal(face));
-        let longest = FAR * middle_distance(mesh.positions());
+    fn of(bends: &[Bends]) -> Self {
         let mut by_degree = [0.0; 181];
-        for h in topology.half_edges() {
-            let Some(twin) = topology.twin(h).filter(|twin| h < *twin) else { continue };
-            let [m, n] = [h, twin].map(|h| normals[h.face().index()]);
-            if m == DVec3::ZERO || n == DVec3::ZERO {
-                continue;
-            }
-            let [a, b] = topology.ends(h).map(|v| vector(mesh.positions()[v.index()]));
-            let length = (b - a).length();
-            if length <= longest {
-                let degrees = m.cross(n).length().atan2(m.dot(n)).to_degrees();
-                by_degree[(degrees as usize).min(180)] += length;
-            }
-        }
+        bends.iter().for_each(|bend| by_degree[(bend.degrees as usize).min(180)] += bend.length);
+        Self::new(by_degree)
+    }
+
+    /// The same with all beyond the angle of fine facets among what is nearly square.
+    fn with_edges_that_are_meant(&self) -> Self {
+        let mut by_degree = self.by_degree;
+        by_degree[USUAL + 1..NEARLY_SQUARE].fill(0.0);
+        by_degree[NEARLY_SQUARE - 1] = self.beyond(USUAL + 1) - self.beyond(NEARLY_SQUARE);
         Self::new(by_degree)
     }
 
@@ -170,25 +217,27 @@ impl Lengths {
         begin.map_or(0, |degrees| degrees + 1)
     }
 
-    /// The widest gap between smooth and sharp edges.
-    fn gap(&self) -> Option<Gap> {
+    /// The widest gap between smooth and sharp edges, which begin at so many degrees at least.
+    fn gap(&self, least_sharp: usize) -> Option<Gap> {
         let gap = |end: usize, one_in: f64| {
             let begin = self.begin(end, one_in);
             (self.beyond(end) * FEW > self.all && begin <= ROUND).then_some(Gap { begin, end })
         };
-        let widest = |ends: std::ops::RangeInclusive<usize>, least: usize, one_in: f64| {
+        let widest = |ends: RangeInclusive<usize>, least: usize, one_in: f64| {
             let gaps = ends.filter_map(|end| gap(end, one_in)).filter(|gap| gap.end >= gap.begin + least);
             gaps.max_by_key(|gap| (gap.end - gap.begin, gap.end))
         };
         // What is nearly square is sharp before all else: the facets of a coarse cylinder may be taken for edges as well.
         let by = |one_in: f64| {
             widest(NEARLY_SQUARE..=SHARP, GAP, one_in)
-                .or_else(|| widest(SEEN..=NEARLY_SQUARE, WIDE_GAP, one_in))
+                .or_else(|| widest(least_sharp..=NEARLY_SQUARE, WIDE_GAP, one_in))
         };
-        let is_plain = |gap: &Gap| {
-            self.by_degree[0] * MUCH_FLAT >= self.all && self.beyond(gap.end) * MUCH_SHARP >= self.all
-        };
-        by(WITHIN).or_else(|| by(WITHIN_PLAIN_PARTS).filter(is_plain))
+        by(WITHIN).or_else(|| by(WITHIN_PLAIN_PARTS).filter(|&gap| self.is_plain(gap)))
+    }
+
+    /// Whether much is flat and much is sharp.
+    fn is_plain(&self, gap: Gap) -> bool {
+        self.by_degree[0] * MUCH_FLAT >= self.all && self.beyond(gap.end) * MUCH_SHARP >= self.all
     }
 
     /// The usual angle if there is little around it, else the middle of the gap.
@@ -200,22 +249,6 @@ impl Lengths {
         let middle = (gap.begin + gap.end) as f64 / 2.0;
         let round = 5.0 * (middle / 5.0).round();
         if (gap.begin as f64..gap.end as f64).contains(&round) { round } else { middle }
-    }
-
-    /// A part with the edges beyond a gap, unless these are no lines or lead up and down stairs: of voxels, or of the facets at 35° and
-    /// more that marching cubes make of these.
-    fn part(&self, gap: Gap, mesh: &Mesh) -> Look {
-        let degrees = self.angle(gap);
-        let Ok(creases) = mesh.creases_above(degrees.to_radians()) else { return Look::Smooth };
-        let lines = Lines::of(mesh, &creases.edges);
-        if LOOSE_ENDS * lines.loose_ends() > creases.edges.len() || creases.edges.is_empty() {
-            return Look::Smooth;
-        }
-        let is_rough = gap.end < NEARLY_SQUARE || lines.have_saddles();
-        if is_rough && has_small_regions(mesh, &creases.edges) {
-            return Look::Stairs;
-        }
-        Look::Part(Part { degrees, creases })
     }
 }
 
@@ -301,7 +334,7 @@ mod tests {
         let mut lengths = [0.0; 181];
         angles.iter().for_each(|&degrees| lengths[degrees] += 1.0);
         let lengths = Lengths::new(lengths);
-        lengths.gap().map(|gap| lengths.angle(gap))
+        lengths.gap(SEEN).map(|gap| lengths.angle(gap))
     }
 
     #[test]

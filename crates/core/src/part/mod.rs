@@ -14,15 +14,18 @@
 //! assert!(matches!(Look::of(&mesh, &trace.faces), Look::Cage));
 //! let Look::Part(part) = Look::of(&mesh, &[]) else { return Err("a box is a part".into()) };
 //! assert_eq!((part.degrees, part.creases.edges.len()), (30.0, 12));
-//! let sharp = mesh.with_creases(&part.creases.edges);
+//! let sharp = part.on(mesh);
 //! assert!(interpolate_unfolded(&sharp, &Loop)?.folded.is_empty());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod facets;
 mod look;
+mod sharp;
 mod unfolded;
 
-pub use look::{Look, Part};
+pub use look::Look;
+pub use sharp::Part;
 pub use unfolded::{
     FoldedRegion, Unfolded, UnfoldedError, interpolate_unfolded, interpolate_unfolded_observed,
 };

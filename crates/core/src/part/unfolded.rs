@@ -8,7 +8,7 @@
 use crate::geometry::DisjointSets;
 use crate::index::VertexId;
 use crate::interpolate::{InterpolateError, InterpolateOptions, Interpolated, interpolate_but};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
 use crate::progress::{Observer, unobserved};
 use crate::refine::{
@@ -26,6 +26,11 @@ const MOST_TRIANGLES: usize = 4_000_000;
 
 /// How near to the surface, as a share of the diagonal, the triangles are that are looked at last.
 const TOLERANCE: f64 = 1e-3;
+
+/// Normals of faces in one plane differ by no more, slivers between rounded vertices included; and these are off it by no more than this
+/// part of the greatest coordinate.
+const ALIKE: f64 = 1e-3;
+const IN_PLANE: f64 = 2e-7;
 
 /// Triangles beside whose share of their face this part is turned over are flat to rounding.
 const ROUNDING: f64 = 1e-7;
@@ -83,6 +88,7 @@ pub fn interpolate_unfolded_observed(
 ) -> Result<Unfolded, UnfoldedError> {
     let options = InterpolateOptions::default();
     let mut kept = Kept { mesh, is_kept: vec![false; mesh.vertex_count()] };
+    let is_flat = flat_within_rims(mesh);
     let mut folded = vec![false; mesh.face_count()];
     let mut anyway = None;
     let mut attempt = 0;
@@ -93,7 +99,7 @@ pub fn interpolate_unfolded_observed(
             anyway = Some(faces_folding(mesh, mesh, scheme, observer)?);
         }
         if let Some(anyway) = &anyway {
-            folding.retain(|face| anyway.binary_search(face).is_err());
+            folding.retain(|face| !is_flat[*face as usize] && anyway.binary_search(face).is_err());
         }
         if folding.is_empty() && anyway.is_some() {
             folding = turned_over(&interpolated.mesh, scheme, observer)?;
@@ -108,6 +114,41 @@ pub fn interpolate_unfolded_observed(
             _ => kept.add(&folding),
         }
     }
+}
+
+/// By face, whether it is part of a plane region between sharp edges or boundaries. There the surface is what these enclose, which exact
+/// refinement sees to, whatever becomes of the faces inside.
+fn flat_within_rims(mesh: &Mesh) -> Vec<bool> {
+    let (topology, sharpness) = (mesh.topology(), Sharpness::of(mesh));
+    let normals = parallel::map(mesh.face_count(), |face| mesh.unit_face_normal(face));
+    let mut regions = DisjointSets::new(mesh.face_count());
+    // Smooth edges at which faces meet at an angle are no rims.
+    let mut bent = Vec::new();
+    for h in topology.half_edges().filter(|&h| sharpness.edge(h) < f64::INFINITY) {
+        let Some(twin) = topology.twin(h) else { continue };
+        let [m, n] = [h, twin].map(|h| normals[h.face().index()]);
+        match m.cross(n).length() <= ALIKE && m.dot(n) > 0.0 {
+            true => _ = regions.unite(h.face().0, twin.face().0),
+            false => bent.push(h.face().0),
+        }
+    }
+    let regions = regions.into_roots();
+    let area = |face: usize| mesh.face_normal_vector(face).length();
+    let mut largest = regions.clone();
+    for (face, &region) in regions.iter().enumerate() {
+        let known = &mut largest[region as usize];
+        *known = if area(face) > area(*known as usize) { face as u32 } else { *known };
+    }
+    let size = mesh.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
+    let mut is_flat = vec![true; mesh.face_count()];
+    bent.into_iter().for_each(|face| is_flat[regions[face as usize] as usize] = false);
+    for (face, &region) in regions.iter().enumerate() {
+        let plane = largest[region as usize] as usize;
+        let [from, ..] = mesh.as_triangles().corners(plane).map(vector);
+        let off = mesh.as_triangles().corners(face).map(|p| normals[plane].dot(vector(p) - from).abs());
+        is_flat[region as usize] &= off.into_iter().all(|off| off <= IN_PLANE * size);
+    }
+    regions.iter().map(|&region| is_flat[region as usize]).collect()
 }
 
 /// The control faces of triangles that are turned over after all in a finely refined surface, where flat regions are what their rims enclose.

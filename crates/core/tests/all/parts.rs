@@ -165,6 +165,73 @@ fn cages_and_smooth_shapes_are_none() {
     assert_eq!(Look::of(&mesh(sides.collect()), &[]), Look::Smooth);
 }
 
+/// A cone's surface is straight from its rim to its tip, and its volume is a third of that of the cylinder around it.
+#[test]
+fn tips_of_cones_are_sharp() {
+    for n in [8, 12, 16, 32] {
+        let at = |turn: f64| [3.0 * (TAU * turn).cos(), 3.0 * (TAU * turn).sin(), 0.0];
+        let rim: Vec<Point> = facets(n).into_iter().map(at).collect();
+        let mut triangles: Vec<_> = (0..n).map(|i| [rim[i], rim[(i + 1) % n], [0.0, 0.0, 4.0]]).collect();
+        triangles.extend((1..n - 1).map(|i| [rim[0], rim[i + 1], rim[i]]));
+        let cone = mesh(triangles);
+        let Look::Part(found) = Look::of(&cone, &[]) else { panic!("{n}") };
+        let tips: Vec<Point> = found.tips.iter().map(|v| cone.positions()[v.index()]).collect();
+        assert_eq!((found.creases.edges.len(), &tips[..]), (n, &[[0.0, 0.0, 4.0]][..]), "{n}");
+        let (fine, _) = smooth(cone);
+        let volume: f64 = fine
+            .triangles()
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|v| fine.positions()[v as usize]);
+                dot(a, cross(b, c)) / 6.0
+            })
+            .sum();
+        // The sides of few facets are hollow by a little.
+        let bound = if n < 12 { 0.03 + 0.12 } else { 0.06 };
+        assert!((volume / (12.0 * PI) - 1.0).abs() < bound, "{n}: {volume}");
+        let outside = fine.positions().iter().map(|p| p[0].hypot(p[1]) - 3.0 * (1.0 - p[2] / 4.0));
+        assert!(outside.fold(0.0, f64::max) < 0.05, "{n}");
+    }
+    // The pole of a ball is none, nor the end of a rod.
+    for heights in [vec![0.0, 8.0], vec![0.0, 1.0, 8.0]] {
+        let Look::Part(found) = Look::of(&peg(&facets(16), &heights, 5.0), &[]) else { panic!() };
+        assert!(found.tips.is_empty());
+    }
+}
+
+/// A solid between two copies of an outline that goes counter-clockwise, each with a fan around its first corner.
+fn prism(outline: &[[f64; 2]], length: f64) -> Mesh {
+    let n = outline.len();
+    let at = |i: usize, y: f64| [outline[i % n][0], y, outline[i % n][1]];
+    let mut triangles: Vec<_> =
+        (0..n).flat_map(|i| quad([at(i, length), at(i + 1, length), at(i + 1, 0.0), at(i, 0.0)])).collect();
+    for i in 1..n - 1 {
+        triangles.extend([
+            [at(0, 0.0), at(i, 0.0), at(i + 1, 0.0)],
+            [at(0, length), at(i + 1, length), at(i, length)],
+        ]);
+    }
+    mesh(triangles)
+}
+
+/// Roofs meet their walls at the angle of an octagon's facets; but an octagon's facets come in rows, each between two like it.
+#[test]
+fn edges_at_45_degrees_are_facets_only_in_rows() {
+    let house = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.5], [1.0, 2.5], [0.0, 1.5]];
+    assert_eq!(part(&prism(&house, 3.0)), (30.0, 15));
+    let (c, l) = (0.2, 1.8);
+    let chamfered = [[c, 0.0], [l, 0.0], [2.0, c], [2.0, l], [l, 2.0], [c, 2.0], [0.0, l], [0.0, c]];
+    assert_eq!(part(&prism(&chamfered, 3.0)), (30.0, 24));
+    let octagon: Vec<[f64; 2]> =
+        facets(8).iter().map(|turn| (TAU * turn).sin_cos()).map(|(s, c)| [c, s]).collect();
+    assert_eq!(part(&prism(&octagon, 3.0)), (65.0, 16));
+    // An open tube of eight facets is as round as a closed one.
+    let tube = prism(&octagon, 3.0);
+    let sides: Vec<[Point; 3]> =
+        tube.triangles()[..16].iter().map(|t| t.map(|v| tube.positions()[v as usize])).collect();
+    assert_eq!(Look::of(&mesh(sides), &[]), Look::Smooth);
+}
+
 /// A damaged coordinate draws a vertex away, and its edges are longer than all others together.
 #[test]
 fn one_far_vertex_does_not_decide_what_a_mesh_looks_like() {

@@ -19,7 +19,8 @@ use std::path::Path;
 /// # Errors
 /// The extension is unknown, the file cannot be read, its content is plainly of another format, or it breaks
 /// the rules of its format; each names the file, and the last the line or byte as well.
-pub fn read(path: &Path) -> Result<PolygonSoup, ReadError> {
+pub fn read(path: impl AsRef<Path>) -> Result<PolygonSoup, ReadError> {
+    let path = path.as_ref();
     read_as(path, Format::from_path(path)?)
 }
 

@@ -160,6 +160,8 @@ def creases_of(creases: Any) -> list[tuple[int, int, float]]:
 def corner_tags_of(corners: Any) -> list[tuple[int, float]]:
     """Vertices that stay, with a sharpness or for ever."""
     found = []
+    if isinstance(corners, np.ndarray) and corners.dtype == np.bool_:
+        raise OptionError("corners are true or false by vertex, expected vertex numbers: np.flatnonzero gives them")
     for row, corner in enumerate([] if corners is None else corners):
         value = (corner,) if np.ndim(corner) == 0 else corner
         values = _tag(value, "corners", row, (1, 2), "a vertex, and perhaps a sharpness")

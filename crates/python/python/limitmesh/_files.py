@@ -78,6 +78,7 @@ def refine_file(
     split_normals: bool = False,
     provenance: bool = False,
     ascii: bool = False,
+    overwrite: bool = False,
     max_triangles: Count | None = None,
     max_levels: int | None = None,
     max_memory: float | str | None = "50%",
@@ -104,8 +105,10 @@ def refine_file(
     ascii
         PLY and STL as text.
     creases
-        "auto" keeps the edges of parts sharp and leads their surface through the vertices, as the program does by default, where the
-        file does not say itself which edges are sharp.
+        "auto" keeps the edges of parts sharp and leads their surface through the vertices, where the file does not say itself which
+        edges are sharp; "none" keeps none but those that it does. By default "auto" for exact refinement, as in the program.
+    overwrite
+        Whether the target may be a file that is read.
     tolerance, within, triangles, angle, interpolate, crease_angle, boundary, concave_corners, scheme, method, levels, optimize, balance, \
 weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         As for `refine`.
@@ -130,7 +133,7 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
     >>> report["stop"], report["error"]["certified"]
     ('met', True)
     """
-    _options.one_of(creases, "creases", (None, "auto"))
+    _options.one_of(creases, "creases", (None, "auto", "none"))
     if creases == "auto" and interpolate is False:
         raise OptionError("interpolate=False does not go with creases='auto' for files; crease_angle keeps edges sharp alone")
     _options.control_of(
@@ -156,7 +159,7 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
     for name, value in (
         ("tolerance", tolerance),
         ("within", within),
-        ("crease-angle", creases or ("none" if crease_angle is None else crease_angle)),
+        ("crease-angle", creases if crease_angle is None else crease_angle),
         ("angle", angle),
         ("concave-corners", concave_corners),
         ("triangles", goals["triangles"]),
@@ -173,6 +176,7 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         ("split-normals", split_normals),
         ("provenance", provenance),
         ("ascii", ascii),
+        ("overwrite", overwrite),
         ("strict", not repair),
     ):
         if flag:

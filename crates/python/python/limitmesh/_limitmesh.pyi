@@ -117,6 +117,7 @@ def save(
     vertices: _Floats,
     faces: _Indices,
     normals: _Floats | None,
+    normals_of_corners: _Indices | None,
     channels: list[_Record],
     linked: list[list[str]],
     ascii: bool,

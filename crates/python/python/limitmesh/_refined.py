@@ -6,7 +6,7 @@ import base64
 import functools
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -84,6 +84,15 @@ class Diagnosis:
 
 
 _NOTHING = dict.fromkeys(_limitmesh.FINDINGS, Finding(0, ()))
+
+
+
+def _of_vertices(channel: Channel, sources: AnyIntegers) -> Channel:
+    """A channel where vertices stand for others, which they are made of."""
+    if channel.domain != "vertex":
+        return channel
+    rows = sources if channel.indices is None else channel.indices[sources]
+    return replace(channel, indices=rows)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -312,7 +321,7 @@ class Refined:
     def save(self, path: str | os.PathLike[str], *, ascii: bool = False) -> None:
         """Writes a file, whole or not at all: OBJ, PLY, STL, OFF or glTF, by its extension.
 
-        Channels that the format has a place for are written, too; for glTF assets see `refine_file`.
+        Limit normals and channels that the format has a place for are written, too: OBJ and glTF have one for each side of sharp edges; for glTF assets see `refine_file`.
 
         Raises
         ------
@@ -328,9 +337,19 @@ class Refined:
         ...     len(limitmesh.load(path).faces) > 1000
         True
         """
-        # One normal a vertex would be an average over the sides of sharp edges.
-        normals = None if len(self._sides[0]) else self.normals
-        write(path, self.vertices, self.faces, normals, self.channels, ascii=ascii)
+        corners, of_sides = self._sides
+        if not len(corners):
+            write(path, self.vertices, self.faces, self.normals, self.channels, ascii=ascii)
+        elif os.fspath(path).lower().endswith((".glb", ".gltf")):
+            # Their vertices have one normal each: those on sharp edges stand once for each side.
+            split = self.split()
+            channels = {name: _of_vertices(channel, split.sources) for name, channel in self.channels.items()}
+            write(path, split.vertices, split.faces, split.normals, channels, ascii=ascii)
+        else:
+            rows = self.faces.astype(np.uint32).reshape(-1)
+            rows[corners] = len(self.normals) + np.arange(len(corners), dtype=np.uint32)
+            normals = np.concatenate([self.normals, of_sides])
+            write(path, self.vertices, self.faces, normals, self.channels, normals_of_corners=rows.reshape(-1, 3), ascii=ascii)
 
     def __repr__(self) -> str:
         error = ""

@@ -22,15 +22,20 @@ def write(
     channels: Mapping[str, Channel],
     linked: tuple[Sequence[str], Sequence[str]] = ((), ()),
     *,
+    normals_of_corners: npt.NDArray[np.uint32] | None = None,
     ascii: bool,
 ) -> None:
-    """Writes a file, whole or not at all; ``linked`` are libraries of materials and pictures that it is to name."""
+    """Writes a file, whole or not at all; ``linked`` are libraries of materials and pictures that it is to name.
+
+    Corners have the normals of their vertices, or by ``normals_of_corners`` any of the rows, which OBJ holds alone.
+    """
     counts = {"vertex": len(vertices), "corner": 3 * len(faces), "face": len(faces)}
     _limitmesh.save(
         os.fspath(path),
         np.ascontiguousarray(vertices, dtype=np.float64),
         np.ascontiguousarray(faces, dtype=np.uint32),
         None if normals is None else np.ascontiguousarray(normals),
+        normals_of_corners,
         [channel._native(name, counts) for name, channel in channels.items()],
         [list(names) for names in linked],
         bool(ascii),

@@ -244,7 +244,7 @@ impl Job {
         if normals.is_none() {
             return Ok((mesh, arguments));
         }
-        let edges = hints.edges(&mesh, self.arguments.features.creases_from, name)?;
+        let edges = hints.edges(&mesh, arguments.features.creases_from, name)?;
         Ok((mesh.with_creases(&edges), arguments))
     }
 

@@ -1,5 +1,7 @@
 //! The control mesh of a refinement: what was read, with the tags that options put on it, made to interpolate if asked.
 
+use std::time::{Duration, Instant};
+
 use limitmesh::Mesh;
 
 use super::interpolation;
@@ -23,6 +25,8 @@ pub(super) struct Control {
     pub(super) interpolation: Option<InterpolationReport>,
     /// What lengths are given in per cent of.
     pub(super) diagonal: f64,
+    /// How long control points took.
+    pub(super) took: Duration,
 }
 
 /// The mesh that was read, before corners were divided and control points moved.
@@ -53,6 +57,7 @@ impl Control {
         arguments: &RefineArguments,
         progress: &Progress,
     ) -> anyhow::Result<Self> {
+        let start = Instant::now();
         let bulk = Bulk::as_shown(&mesh, &shown);
         let is_compared = arguments.way() == Way::Exact && !arguments.exact.no_input_distance;
         let surface = is_compared.then(|| BeforeSurface {
@@ -81,7 +86,8 @@ impl Control {
         let featured = Featured { mesh, concave, along_needles };
         let before =
             Before { surface, faces, residual: interpolation.as_ref().map(|report| report.residual) };
-        Ok(Self { featured, diagnosis, before, shown, bulk, interpolation, diagonal })
+        let took = start.elapsed();
+        Ok(Self { featured, diagnosis, before, shown, bulk, interpolation, diagonal, took })
     }
 }
 

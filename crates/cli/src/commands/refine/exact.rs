@@ -149,7 +149,7 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, arguments: &Refin
         && !is_exact
     {
         lines.push(
-            "(nothing was divided: all is near enough as it is; a smaller --tolerance makes it rounder)"
+            "(no face was divided: all are near enough as they are; a smaller --tolerance makes it rounder)"
                 .to_owned(),
         );
     }

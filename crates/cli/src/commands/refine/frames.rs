@@ -45,6 +45,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     let (first, frames) = read(&jobs, formats[0], progress)?;
     let (decided, note) = looked_at(&jobs[0], (&first.mesh, &first.trace.faces), &first.hints());
     note.into_iter().for_each(|note| progress.note(note));
+    let first = first.with_creases(decided.features.creases_from)?;
     let Input { mesh, diagnosis, trace, name, channels, material_libraries, texture_files, .. } = first;
     let files = [material_libraries, texture_files];
     let channels = Channels::of_input(channels, files, &Destination::of(&jobs[0], formats[0]), progress);
@@ -210,7 +211,6 @@ fn read(
         }
         frames.push(own.positions(&frame.soup).with_context(|| frame.name.clone())?);
     }
-    let first = first.with_creases(jobs[0].features.creases_from)?;
     Ok((first, frames))
 }
 

@@ -135,8 +135,16 @@ fn refine(
     arguments.channels.check_tolerances(&input_report.path, names)?;
     let Input { mesh, diagnosis, trace, reading, building, .. } = input;
     let control = Control::new((mesh, diagnosis, trace.faces), Shown::default(), None, arguments, progress)?;
-    let Control { featured: control, diagnosis, before: read, bulk: before, interpolation, diagonal, .. } =
-        control;
+    let Control {
+        featured: control,
+        diagnosis,
+        before: read,
+        bulk: before,
+        interpolation,
+        diagonal,
+        took,
+        ..
+    } = control;
     channels.on_parts(&control.concave.parts, &control.mesh);
     let way = Prepared::new(arguments, (&control.mesh, &channels), diagonal)?;
     let parameters = ParametersReport {
@@ -153,7 +161,7 @@ fn refine(
     };
     let start = Instant::now();
     let mut refined = way.run((control, &read, diagonal), &channels, (arguments, format), progress)?;
-    let refining = start.elapsed();
+    let refining = took + start.elapsed();
 
     let after = Bulk::of(&refined.mesh);
     refined.tell_size([before, after], arguments);

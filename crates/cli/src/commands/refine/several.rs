@@ -77,12 +77,12 @@ pub(super) fn one(
     progress: &Progress,
 ) -> anyhow::Result<One> {
     let start = Instant::now();
-    let Control { featured, before, bulk, shown, .. } = control;
+    let Control { featured, before, bulk, shown, took, .. } = control;
     let mut refined = match arguments.way() {
         Way::Exact => exact::run((featured, before, channels), goals, arguments, progress)?,
         _ => stepwise::run((featured.mesh.clone(), channels, keeps_origins), arguments, format, progress)?,
     };
-    let refining = start.elapsed();
+    let refining = *took + start.elapsed();
     let size = SizeReport { before: *bulk, after: Bulk::as_shown(&refined.mesh, shown) };
     refined.tell_size([size.before, size.after], arguments);
     progress.note(summary(name, &refined, refining));

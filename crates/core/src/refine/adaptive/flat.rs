@@ -127,7 +127,7 @@ impl FlatRegions {
         let normals: Vec<DVec3> = watch.map(mesh.face_count(), BLOCK, |face| mesh.unit_face_normal(face))?;
         let found = watch.pieces(mesh.face_count(), BLOCK, |block| {
             let flat = block.map(|face| face as u32);
-            let flat = flat.filter(|&face| may_be_flat((control, edges), &normals, face));
+            let flat = flat.filter(|&face| may_be_flat((control, edges), &normals, face, options.unfold));
             // The largest faces know their planes best.
             let area = |face: u32| mesh.face_normal_vector(face as usize).length_squared();
             flat.map(|face| (area(face), face)).collect::<Vec<(f64, u32)>>()
@@ -147,7 +147,10 @@ impl FlatRegions {
             let point = vector(mesh.positions()[mesh.triangles()[seed as usize][0] as usize]);
             let plane = Plane { point, normal: normals[seed as usize] };
             is_left[seed as usize] = false;
-            let height = |face: u32| height_over((control, edges), (&normals, face), &plane, most);
+            let height = |face: u32| {
+                let is_up = options.unfold || normals[face as usize].dot(plane.normal) > 0.0;
+                is_up.then(|| height_over((control, edges), face, &plane, most)).flatten()
+            };
             let Some(mut off_plane) = height(seed) else { continue };
             let mut faces = vec![seed];
             let mut next = 0;
@@ -170,6 +173,12 @@ impl FlatRegions {
                 }
             }
             faces.sort_unstable();
+            let outwards: DVec3 = faces.iter().map(|&face| mesh.face_normal_vector(face as usize)).sum();
+            let plane = if outwards.dot(plane.normal) < 0.0 {
+                Plane { normal: -plane.normal, ..plane }
+            } else {
+                plane
+            };
             faces.iter().for_each(|&face| of_face[face as usize] = regions.len() as u32);
             regions.push((faces, plane));
             off_planes = off_planes.max(off_plane + HEIGHT_ROUNDING * size);
@@ -213,7 +222,7 @@ impl FlatRegions {
             }
         }
         found.by_rim = found.by_rim((control, edges), (options, most), watch)?;
-        found.join((control, edges), &normals, (most, size), watch)?;
+        found.join((control, edges), (most, size), watch)?;
         Ok(found)
     }
 
@@ -388,19 +397,30 @@ impl FlatRegions {
 }
 
 /// Whether a face may be flat: most are told apart by those beside them.
-fn may_be_flat((control, edges): (&Control<'_>, &Edges<'_>), normals: &[DVec3], face: u32) -> bool {
+/// Faces that are turned over in one plane with others are flat where what the rim encloses is asked for: control points that were moved
+/// along the rim turn slivers over.
+fn may_be_flat(
+    (control, edges): (&Control<'_>, &Edges<'_>),
+    normals: &[DVec3],
+    face: u32,
+    may_be_turned_over: bool,
+) -> bool {
     let normal = normals[face as usize];
     let open = control.open(face);
     let beside =
         (0..3u32).filter(|&edge| !open[edge as usize]).filter_map(|edge| edges.twin(3 * face + edge));
     let mut beside = beside.map(|twin| normals[twin as usize / 3]);
-    normal != DVec3::ZERO && beside.all(|other| other.distance_squared(normal) <= ALIKE * ALIKE)
+    let is_alike = |other: DVec3| {
+        let other = if may_be_turned_over && other.dot(normal) < 0.0 { -other } else { other };
+        other.distance_squared(normal) <= ALIKE * ALIKE
+    };
+    normal != DVec3::ZERO && beside.all(is_alike)
 }
 
-/// How far the surface over a face is off a plane at most; `None` where that is more than `most`, or where the face looks the other way.
+/// How far the surface over a face is off a plane at most; `None` where that is more than `most`.
 fn height_over(
     (control, edges): (&Control<'_>, &Edges<'_>),
-    (normals, face): (&[DVec3], u32),
+    face: u32,
     plane: &Plane,
     most: f64,
 ) -> Option<f64> {
@@ -410,7 +430,7 @@ fn height_over(
         let twin = edges.twin(h).filter(|_| !open[h as usize % 3]);
         twin.is_some_and(|twin| plane.height(control.opposite(twin)).abs() > most)
     };
-    if normals[face as usize].dot(plane.normal) <= 0.0 || (3 * face..3 * face + 3).any(is_off) {
+    if (3 * face..3 * face + 3).any(is_off) {
         return None;
     }
     let mut height = 0.0f64;

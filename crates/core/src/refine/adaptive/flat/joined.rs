@@ -11,16 +11,14 @@ use super::{FlatRegions, HEIGHT_ROUNDING, MOST_UNFOLDED, Plane, height_over};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
 use crate::refine::adaptive::quadtree::Edges;
-use crate::vector::DVec3;
 use std::collections::HashSet;
 
 impl FlatRegions {
     /// By region that is judged by its rim, the first of those that lie in one plane, within `most`, and hang together; others are their own.
-    /// How far that takes them off the planes is counted. `normals` are those of the control faces, `size` the greatest coordinate.
+    /// How far that takes them off the planes is counted. `size` is the greatest coordinate.
     pub(super) fn join(
         &mut self,
         mesh: (&Control<'_>, &Edges<'_>),
-        normals: &[DVec3],
         (most, size): (f64, f64),
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
@@ -41,7 +39,7 @@ impl FlatRegions {
                     if is_done[other as usize] || rejected.contains(&other) {
                         continue;
                     }
-                    let off = self.height_over(mesh, normals, (other, &plane), most);
+                    let off = self.height_over(mesh, (other, &plane), most);
                     let mut is_sound =
                         |region: u32| self.is_sound(mesh.0, (region, &plane), most, &mut left, watch);
                     let may_join = off.is_some() && {
@@ -81,14 +79,14 @@ impl FlatRegions {
     fn height_over(
         &self,
         mesh: (&Control<'_>, &Edges<'_>),
-        normals: &[DVec3],
         (region, plane): (u32, &Plane),
         most: f64,
     ) -> Option<f64> {
-        let mut heights = self.regions[region as usize]
-            .0
-            .iter()
-            .map(|&face| height_over(mesh, (normals, face), plane, most));
+        let (faces, own) = &self.regions[region as usize];
+        if own.normal.dot(plane.normal) <= 0.0 {
+            return None;
+        }
+        let mut heights = faces.iter().map(|&face| height_over(mesh, face, plane, most));
         heights.try_fold(0.0, |greatest: f64, height| Some(greatest.max(height?)))
     }
 
