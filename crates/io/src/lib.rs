@@ -34,6 +34,7 @@ pub mod channels;
 mod error;
 mod format;
 pub mod gltf;
+mod mtl;
 mod names;
 mod read;
 mod scan;
@@ -44,9 +45,11 @@ pub use channels::{MATERIAL, TEXTURE, holds, values_lost};
 pub use error::{Flaw, Place, ReadError, WriteError};
 pub use format::{Format, UnknownFormat};
 pub use gltf::Asset;
+pub use mtl::{Material, MaterialLibraries, Picture, Problem};
 pub use read::{read, read_as, read_bytes};
 pub use threemf::Package;
 pub use write::{
     Abandoned, Output, Property, PropertyValues, WriteOptions, abandon_unfinished, check_writable,
-    finished_files, rounding, splits_vertices, write, write_as, write_to, write_whole, write_whole_with,
+    copy_beside, finished_files, rounding, splits_vertices, write, write_as, write_to, write_whole,
+    write_whole_with,
 };

@@ -7,9 +7,11 @@ use limitmesh::mesh::{Channel, FaceParts};
 use limitmesh::refine::Traced;
 use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, Triangles};
-use limitmesh_io::{Format, MATERIAL, Output, WriteOptions, holds, splits_vertices, values_lost};
+use limitmesh_io::{
+    Format, MATERIAL, MaterialLibraries, Output, WriteOptions, holds, splits_vertices, values_lost,
+};
 
-use super::linked;
+use super::beside;
 use crate::arguments::{ChannelArguments, RefineArguments};
 use crate::format::counted;
 use crate::progress::Progress;
@@ -46,6 +48,8 @@ pub(super) struct Channels {
     material_libraries: Vec<String>,
     /// Pictures.
     texture_files: Vec<String>,
+    /// What these say and name.
+    found: MaterialLibraries,
 }
 
 impl Channels {
@@ -68,11 +72,11 @@ impl Channels {
         if !lost.is_empty() {
             progress.note(format!("left out: {} (the output's format has no place for them)", names(&lost)));
         }
-        if format != Format::Obj && !material_libraries.is_empty() {
-            let has_names = kept.iter().any(|own| own.name == MATERIAL);
-            let names = if has_names { "of materials the names alone; " } else { "" };
+        let has_names = kept.iter().any(|own| own.name == MATERIAL);
+        let is_described = format == Format::Obj || format.is_gltf() && has_names;
+        if !is_described && !material_libraries.is_empty() {
             let files = material_libraries.join("; ");
-            progress.note(format!("left out: {files} ({names}only OBJ files name others)"));
+            progress.note(format!("left out: {files} (only OBJ files name others)"));
         }
         if format != Format::Ply && !texture_files.is_empty() {
             let files = texture_files.join("; ");
@@ -81,13 +85,16 @@ impl Channels {
         if kept.is_empty() {
             return Self::default();
         }
-        let follow = |are_held: bool, files: Vec<String>| match are_held {
-            true => linked::from_output(files, to.files, progress),
-            false => files,
+        let (input, output) = to.files;
+        let is_needed = format.is_gltf() || beside::is_elsewhere(input, output);
+        let found = match format {
+            _ if !is_needed => MaterialLibraries::default(),
+            Format::Ply => MaterialLibraries::of_pictures(input, &texture_files),
+            _ if is_described => MaterialLibraries::read(input, &material_libraries),
+            _ => MaterialLibraries::default(),
         };
-        let material_libraries = follow(format == Format::Obj, material_libraries);
-        let texture_files = follow(format == Format::Ply, texture_files);
-        Self { channels: kept, material_libraries, texture_files }
+        beside::note(&found, format, progress);
+        Self { channels: kept, material_libraries, texture_files, found }
     }
 
     /// Those of a mesh of an asset.
@@ -127,9 +134,13 @@ impl Channels {
             return Ok(Self::default());
         }
         let channels = carried(&self.channels, control, scheme, found)?;
-        let [material_libraries, texture_files] =
-            [&self.material_libraries, &self.texture_files].map(Vec::clone);
-        Ok(Self { channels, material_libraries, texture_files })
+        let Self { material_libraries, texture_files, found, .. } = self;
+        Ok(Self {
+            channels,
+            material_libraries: material_libraries.clone(),
+            texture_files: texture_files.clone(),
+            found: found.clone(),
+        })
     }
 
     /// Whether the output has vertices several times, for texture coordinates that differ there.
@@ -156,6 +167,14 @@ impl Channels {
     /// Adds them to what is written.
     pub(super) fn add_to<'a>(&'a self, output: Output<'a>) -> Output<'a> {
         let output = output.channels(&self.channels).material_libraries(&self.material_libraries);
-        output.texture_files(&self.texture_files)
+        output.texture_files(&self.texture_files).materials(&self.found)
+    }
+
+    /// Copies the files that the output names to its folder; what glTF names, the writer copies.
+    ///
+    /// # Errors
+    /// Another file is there, or the system refuses.
+    pub(super) fn copy_files(&self, output: &Path, format: Format) -> anyhow::Result<()> {
+        if format.is_gltf() { Ok(()) } else { beside::copy(&self.found, output) }
     }
 }

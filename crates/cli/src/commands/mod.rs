@@ -2,6 +2,7 @@
 
 pub(crate) mod batch;
 pub(crate) mod batch_job;
+mod beside;
 mod certified;
 mod certified_limit;
 mod channels;
@@ -12,7 +13,6 @@ mod heatmap;
 pub(crate) mod info;
 mod interpolation;
 mod limit_control;
-mod linked;
 pub(crate) mod lod;
 pub(crate) mod measure;
 pub(crate) mod models;

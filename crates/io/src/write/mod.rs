@@ -1,5 +1,6 @@
 //! Writing: from triangles and what is known of their vertices to a file.
 
+mod copies;
 mod numbers;
 mod obj;
 mod off;
@@ -10,6 +11,8 @@ mod split;
 mod stl;
 mod whole;
 
+pub(crate) use copies::copies;
+pub use copies::copy_beside;
 pub(crate) use numbers::Pieces;
 pub use property::{Property, PropertyValues};
 pub use split::splits_vertices;
@@ -21,6 +24,7 @@ pub(crate) use whole::{WholeFile, write_together};
 use crate::error::WriteError;
 use crate::format::Format;
 use crate::gltf;
+use crate::mtl::MaterialLibraries;
 use crate::threemf::{self, LengthUnit};
 use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Triangles};
 use split::Split;
@@ -49,6 +53,9 @@ pub struct Output<'a> {
     pub channels: &'a [Channel],
     /// Files that describe materials. OBJ names them.
     pub material_libraries: &'a [String],
+    /// What the materials of the channel [`MATERIAL`](crate::MATERIAL) look like. glTF holds their base colours, with pictures in a GLB or beside
+    /// the text.
+    pub materials: Option<&'a MaterialLibraries>,
     /// Pictures that texture coordinates are places on. PLY names them.
     pub texture_files: &'a [String],
     /// Sharp edges. OBJ holds them.
@@ -70,6 +77,7 @@ impl<'a> Output<'a> {
             face_properties: &[],
             channels: &[],
             material_libraries: &[],
+            materials: None,
             texture_files: &[],
             creases: &[],
             corners: &[],
@@ -121,6 +129,12 @@ impl<'a> Output<'a> {
     /// Sets [`Self::material_libraries`].
     pub fn material_libraries(mut self, libraries: &'a [String]) -> Self {
         self.material_libraries = libraries;
+        self
+    }
+
+    /// Sets [`Self::materials`].
+    pub fn materials(mut self, materials: &'a MaterialLibraries) -> Self {
+        self.materials = Some(materials);
         self
     }
 

@@ -1,0 +1,134 @@
+//! Materials of OBJ files as those of a new document: base colours, and pictures in it or beside it.
+
+use serde_json::{Value, json};
+use std::path::Path;
+
+use super::flaw::{GltfFlaw, Result};
+use super::json::shortened;
+use super::source::Source;
+use super::uri;
+use crate::format::Format;
+use crate::mtl::{Material, MaterialLibraries, Picture};
+
+/// What a document says of materials, each list for its member.
+#[derive(Default)]
+pub(super) struct Looks {
+    pub(super) materials: Vec<Value>,
+    pub(super) textures: Vec<Value>,
+    pub(super) images: Vec<Value>,
+    pub(super) views: Vec<Value>,
+    /// What the views name.
+    pub(super) bytes: Vec<u8>,
+}
+
+/// Where pictures are.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Pictures {
+    /// In the binary chunk.
+    InChunk,
+    /// Files, which are copied to the document's folder.
+    Beside,
+    /// In the text.
+    Inside,
+}
+
+impl Pictures {
+    /// Those of a document that is written to a file, or somewhere else.
+    pub(super) fn of(format: Format, path: Option<&Path>) -> Self {
+        match (format, path) {
+            (Format::Glb, _) => Self::InChunk,
+            (_, Some(_)) => Self::Beside,
+            (_, None) => Self::Inside,
+        }
+    }
+}
+
+impl Looks {
+    /// Of materials of these names, as far as libraries describe them.
+    ///
+    /// # Errors
+    /// A picture cannot be read.
+    pub(super) fn of(names: &[&str], known: Option<&MaterialLibraries>, pictures: Pictures) -> Result<Self> {
+        let mut looks = Self::default();
+        let mut files: Vec<&Path> = Vec::new();
+        for &name in names {
+            // Of several of one name the last holds, as later statements do.
+            let own = known.and_then(|known| known.materials.iter().rev().find(|own| own.name == name));
+            let (Some(known), Some(own)) = (known, own) else {
+                looks.materials.push(json!({ "name": name }));
+                continue;
+            };
+            let mut texture = None;
+            if let Some(Picture { file, mime_type: Some(kind), .. }) = &own.picture {
+                let number = files.iter().position(|other| *other == file).unwrap_or(files.len());
+                if number == files.len() {
+                    looks.add_picture(&known.folder, file, kind, pictures)?;
+                    files.push(file);
+                }
+                texture = Some(number);
+            }
+            looks.materials.push(material(own, texture));
+        }
+        Ok(looks)
+    }
+
+    /// Adds a picture and its texture.
+    fn add_picture(&mut self, folder: &Path, file: &Path, kind: &str, pictures: Pictures) -> Result<()> {
+        let names: Vec<String> = file.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        let name = names.join("/");
+        let read = || {
+            std::fs::read(folder.join(file)).map_err(|why| {
+                let met = format!("'{}', which cannot be read: {why}", shortened(&name));
+                GltfFlaw::new("images", met, "a picture beside the materials")
+            })
+        };
+        self.textures.push(json!({"source": self.images.len()}));
+        self.images.push(match pictures {
+            Pictures::InChunk => {
+                self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+                let (start, own) = (self.bytes.len(), read()?);
+                self.views.push(json!({"buffer": 0, "byteOffset": start, "byteLength": own.len()}));
+                self.bytes.extend(own);
+                json!({"bufferView": self.views.len() - 1, "mimeType": kind})
+            }
+            Pictures::Beside => json!({"uri": uri::escaped(&name)}),
+            Pictures::Inside => json!({"uri": format!("data:{kind};base64,{}", uri::to_base64(&read()?))}),
+        });
+        Ok(())
+    }
+
+    /// The lists by their members' names, but for the materials; and the buffer that the views are of.
+    pub(super) fn others(&self) -> Vec<(&'static str, Value)> {
+        let lists = [("textures", &self.textures), ("images", &self.images), ("bufferViews", &self.views)];
+        let mut all: Vec<(&str, Value)> = lists
+            .into_iter()
+            .filter(|(_, list)| !list.is_empty())
+            .map(|(key, list)| (key, Value::from(list.clone())))
+            .collect();
+        if !self.bytes.is_empty() {
+            all.push(("buffers", json!([{"byteLength": self.bytes.len()}])));
+        }
+        all
+    }
+
+    /// Gives a document the bytes that its views name.
+    pub(super) fn fill(&self, source: &mut Source) {
+        if !self.bytes.is_empty() {
+            (source.container.bin, source.container.is_glb) = (Some(self.bytes.clone()), true);
+        }
+    }
+}
+
+/// A dull surface, as OBJ files know no metals.
+fn material(own: &Material, texture: Option<usize>) -> Value {
+    let [r, g, b] = own.colour;
+    let mut model = json!({"baseColorFactor": [r, g, b, own.opacity], "metallicFactor": 0});
+    if let Some(texture) = texture {
+        model["baseColorTexture"] = json!({"index": texture});
+    }
+    let mut material = json!({"name": own.name, "pbrMetallicRoughness": model});
+    if own.opacity < 1.0 {
+        material["alphaMode"] = json!("BLEND");
+    }
+    material
+}
