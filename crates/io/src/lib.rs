@@ -30,6 +30,7 @@
 //! [`PolygonSoup`]: limitmesh::mesh::PolygonSoup
 
 mod affine;
+mod below;
 pub mod channels;
 mod error;
 mod format;
@@ -50,6 +51,5 @@ pub use read::{read, read_as, read_bytes};
 pub use threemf::Package;
 pub use write::{
     Abandoned, Output, Property, PropertyValues, WriteOptions, abandon_unfinished, check_writable,
-    copy_beside, finished_files, rounding, splits_vertices, write, write_as, write_to, write_whole,
-    write_whole_with,
+    finished_files, rounding, splits_vertices, write, write_as, write_to, write_whole, write_whole_with,
 };

@@ -1,18 +1,15 @@
 //! MTL: what the materials of OBJ files look like, as far as base colours say it, and which files they name.
 //!
-//! Read are `newmtl`, `Kd`, `d`, `Tr` and `map_Kd`; of all other statements that name pictures, these alone. A library that is missing or
+//! `newmtl`, `Kd`, `d`, `Tr` and `map_Kd` are followed; of other statements that name pictures, these alone. A library that is missing or
 //! damaged costs what it would have said, and nothing else. Files are reached below the OBJ file's folder only.
 
+use crate::below::file_below;
+use crate::names;
+use crate::scan::{Scanner, Syntax, number};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
-
-/// Bytes of a library at most.
-const LARGEST: usize = 16 << 20;
-
-/// Problems that are told at most.
-const MOST_PROBLEMS: usize = 100;
 
 /// The libraries of an OBJ file, and what they lead to.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,14 +19,16 @@ pub struct MaterialLibraries {
     pub folder: PathBuf,
     /// All materials, in the order of the libraries.
     pub materials: Vec<Material>,
-    /// Libraries and pictures that are there, by the way from the folder.
+    /// Libraries and pictures that are there, by their paths from the folder.
     pub files: BTreeSet<PathBuf>,
-    /// What is named and could not be read, or not be reached; the first of many.
-    pub problems: Vec<Problem>,
+    /// Statements, and options of pictures, that [`Material`] has no place for.
+    pub left_out: BTreeSet<String>,
+    /// Files that are named and cannot be read.
+    pub problems: BTreeSet<Problem>,
 }
 
-/// A file that is named and is not there for us.
-#[derive(Clone, Debug, PartialEq)]
+/// A file that is named and cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub struct Problem {
     /// As it is named.
@@ -39,10 +38,10 @@ pub struct Problem {
 }
 
 /// A picture.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub struct Picture {
-    /// The way to it from the OBJ file's folder.
+    /// Its path from the OBJ file's folder.
     pub file: PathBuf,
     /// `image/png` or `image/jpeg`, which glTF knows; `None` for others.
     pub mime_type: Option<&'static str>,
@@ -56,7 +55,7 @@ pub struct Material {
     pub name: String,
     /// Red, green and blue, 0 to 1, which multiply the picture: `Kd`.
     pub colour: [f64; 3],
-    /// From 0, which is not seen at all, to 1: `d`, or 1 − `Tr`.
+    /// From 0, which is invisible, to 1: `d`, or 1 − `Tr`.
     pub opacity: f64,
     /// The picture of `map_Kd`, if it is there.
     pub picture: Option<Picture>,
@@ -68,7 +67,10 @@ impl MaterialLibraries {
         let mut found = Self::beside(obj);
         for name in names {
             for name in found.one_or_several(name) {
-                if let Some(file) = found.found(Path::new(""), name) {
+                let known = found.files.len();
+                if let Some(file) = found.find(Path::new(""), name)
+                    && found.files.len() > known
+                {
                     found.library(&file, name);
                 }
             }
@@ -80,90 +82,46 @@ impl MaterialLibraries {
     pub fn of_pictures(file: &Path, names: &[String]) -> Self {
         let mut found = Self::beside(file);
         for name in names {
-            found.found(Path::new(""), name);
+            found.find(Path::new(""), name);
         }
         found
     }
 
-    /// Nothing yet, beside a file.
+    /// Nothing yet, for a file.
     fn beside(file: &Path) -> Self {
-        let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        Self { folder: folder.to_owned(), ..Self::default() }
+        Self { folder: file.parent().unwrap_or(Path::new("")).to_owned(), ..Self::default() }
     }
 
-    /// A name as it is, if there is such a file or it has no blanks, or else the names between the blanks.
+    /// The names between blanks, if there is no file of the whole name but of one of them.
     fn one_or_several<'n>(&self, name: &'n str) -> Vec<&'n str> {
-        match self.below(Path::new(""), name) {
-            Ok(_) => vec![name],
-            Err(_) => name.split_whitespace().collect(),
-        }
+        let is_there = |name: &str| self.below(Path::new(""), name).is_ok();
+        let several: Vec<&str> = name.split_whitespace().collect();
+        let are_several = !is_there(name) && several.iter().any(|name| is_there(name));
+        if are_several { several } else { vec![name] }
     }
 
-    /// A file that is named in a folder, if it is there; noted otherwise.
-    fn found(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
+    /// A file that is named in a folder, if it can be read.
+    fn find(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
         match self.below(folder, name) {
             Ok(file) => {
                 self.files.insert(file.clone());
                 Some(file)
             }
             Err(why) => {
-                self.fails(name, &why);
+                self.problems.insert(Problem { name: name.to_owned(), reason: why.to_string() });
                 None
             }
         }
     }
 
-    fn fails(&mut self, name: &str, why: &io::Error) {
-        let problem = Problem { name: name.to_owned(), reason: why.to_string() };
-        if self.problems.len() < MOST_PROBLEMS && !self.problems.contains(&problem) {
-            self.problems.push(problem);
-        }
-    }
-
-    fn library(&mut self, file: &Path, name: &str) {
-        let mut bytes = Vec::new();
-        let opened = File::open(self.folder.join(file));
-        let read = opened.and_then(|file| file.take(LARGEST as u64 + 1).read_to_end(&mut bytes));
-        if let Err(why) = read {
-            return self.fails(name, &why);
-        }
-        if bytes.len() > LARGEST {
-            return self.fails(name, &io::Error::other("it is larger than 16 MiB"));
-        }
-        let folder = file.parent().unwrap_or(Path::new(""));
-        for statement in statements(&String::from_utf8_lossy(&bytes)) {
-            self.follow(statement, folder);
-        }
-    }
-
-    fn follow(&mut self, statement: Statement, folder: &Path) {
-        let mut picture = None;
-        if let Statement::Base(name) | Statement::Picture(name) = &statement
-            && let Some(file) = self.found(folder, name)
-        {
-            picture = Some(Picture { mime_type: mime_type(&self.folder.join(&file)), file });
-        }
-        if let Statement::New(name) = statement {
-            self.materials.push(Material { name, colour: [1.0; 3], opacity: 1.0, picture: None });
-            return;
-        }
-        // What is said before the first material is of none.
-        let Some(material) = self.materials.last_mut() else { return };
-        match statement {
-            Statement::Colour(colour) => material.colour = colour,
-            Statement::Opacity(opacity) => material.opacity = opacity,
-            Statement::Base(_) => material.picture = picture,
-            Statement::New(_) | Statement::Picture(_) => {}
-        }
-    }
-
-    /// A file that is named in a folder, by the way from the OBJ file's.
+    /// A file that is named in a folder, by its path from the OBJ file's.
     ///
     /// # Errors
-    /// There is none, or it is not below the OBJ file's folder.
+    /// It cannot be read, or is not below the OBJ file's folder.
     fn below(&self, folder: &Path, name: &str) -> io::Result<PathBuf> {
         let outside = || io::Error::other("it is not below the folder of the file that names it");
-        let name = name.trim().replace('\\', "/");
+        let name = name.replace('\\', "/");
+        // As drives and schemes have it.
         if name.contains([':', '\0']) {
             return Err(outside());
         }
@@ -176,13 +134,129 @@ impl MaterialLibraries {
                 _ => return Err(outside()),
             }
         }
-        // A link may lead elsewhere.
-        let path = self.folder.join(&file).canonicalize()?;
-        match path.starts_with(self.folder.canonicalize()?) {
-            true if path.is_file() => Ok(file),
-            true => Err(io::Error::other("it is no file")),
-            false => Err(outside()),
+        File::open(file_below(&self.folder, &file)?)?;
+        Ok(file)
+    }
+
+    fn library(&mut self, file: &Path, name: &str) {
+        let bytes = match std::fs::read(self.folder.join(file)) {
+            Ok(bytes) => bytes,
+            Err(why) => {
+                self.problems.insert(Problem { name: name.to_owned(), reason: why.to_string() });
+                return;
+            }
+        };
+        let first = self.materials.len();
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let mut scanner = Scanner::new(&bytes, Syntax { comments: true, continuations: true });
+        while let Some(keyword) = scanner.first_word() {
+            let words: Vec<&[u8]> = std::iter::from_fn(|| scanner.word()).collect();
+            if keyword.eq_ignore_ascii_case(b"newmtl") {
+                let name = joined(&words);
+                self.materials.push(Material { name, colour: [1.0; 3], opacity: 1.0, picture: None });
+            } else if self.materials.len() > first {
+                self.follow(&names::read(keyword), &words, folder);
+            }
+            scanner.next_line();
         }
+    }
+
+    /// Follows what is said of the last material.
+    fn follow(&mut self, keyword: &str, words: &[&[u8]], folder: &Path) {
+        let lower = keyword.to_ascii_lowercase();
+        if lower.starts_with("map_") || PICTURES.contains(&lower.as_str()) {
+            return self.follow_picture(keyword, words, folder);
+        }
+        let Some(material) = self.materials.last_mut() else { return };
+        let followed = match lower.as_str() {
+            "kd" => colour(words).map(|colour| material.colour = colour),
+            "d" => share(words).map(|opacity| material.opacity = opacity),
+            // 1 would be invisible: programs that write it mean opaque.
+            "tr" => share(words).filter(|&x| x < 1.0).map(|x| material.opacity = 1.0 - x),
+            other if OTHERS.contains(&other) => None,
+            _ => Some(()),
+        };
+        if followed.is_none() {
+            self.left_out.insert(keyword.to_owned());
+        }
+    }
+
+    fn follow_picture(&mut self, keyword: &str, words: &[&[u8]], folder: &Path) {
+        let (options, name) = words.split_at(length_of_options(words));
+        let file = if name.is_empty() { None } else { self.find(folder, &joined(name)) };
+        if !keyword.eq_ignore_ascii_case("map_kd") {
+            self.left_out.insert(keyword.to_owned());
+            return;
+        }
+        let options = options.iter().filter(|word| arguments(word).is_some());
+        self.left_out.extend(options.map(|option| format!("{keyword} {}", names::read(option))));
+        let picture = file.map(|file| Picture { mime_type: mime_type(&self.folder.join(&file)), file });
+        if let Some(material) = self.materials.last_mut() {
+            material.picture = picture;
+        }
+    }
+}
+
+/// Statements that name pictures, besides `map_Kd` and others that begin so.
+const PICTURES: [&str; 5] = ["bump", "disp", "decal", "norm", "refl"];
+
+/// Other statements that are not followed.
+const OTHERS: [&str; 15] = [
+    "ka",
+    "ks",
+    "ke",
+    "tf",
+    "ns",
+    "ni",
+    "illum",
+    "sharpness",
+    "pr",
+    "pm",
+    "ps",
+    "pc",
+    "pcr",
+    "aniso",
+    "anisor",
+];
+
+/// A name of several words.
+fn joined(words: &[&[u8]]) -> String {
+    words.iter().map(|word| names::read(word)).collect::<Vec<_>>().join(" ")
+}
+
+/// The first number, from 0 to 1: options such as `-halo` may stand before it.
+fn share(words: &[&[u8]]) -> Option<f64> {
+    words.iter().find_map(|word| number(word)).filter(|x| x.is_finite()).map(|x| x.clamp(0.0, 1.0))
+}
+
+/// Red, green and blue; one number is a grey.
+fn colour(words: &[&[u8]]) -> Option<[f64; 3]> {
+    match words {
+        [r, g, b, ..] => Some([share(&[r])?, share(&[g])?, share(&[b])?]),
+        [grey] => Some([share(&[grey])?; 3]),
+        _ => None,
+    }
+}
+
+/// How many words the options of a picture are, which stand before its name.
+fn length_of_options(words: &[&[u8]]) -> usize {
+    let mut length = 0;
+    while let Some(range) = words.get(length).and_then(|word| arguments(word)) {
+        let next = words[length + 1..].iter().take(*range.end());
+        let numbers = next.take_while(|word| number(word).is_some()).count();
+        length = (length + 1 + numbers.max(*range.start())).min(words.len());
+    }
+    length
+}
+
+/// How many arguments an option of a picture has; `None` for what is no option.
+fn arguments(option: &[u8]) -> Option<std::ops::RangeInclusive<usize>> {
+    match option {
+        b"-o" | b"-s" | b"-t" => Some(1..=3),
+        b"-mm" => Some(2..=2),
+        b"-blendu" | b"-blendv" | b"-bm" | b"-boost" | b"-cc" | b"-clamp" | b"-colorspace" | b"-imfchan"
+        | b"-texres" | b"-type" => Some(1..=1),
+        _ => None,
     }
 }
 
@@ -194,93 +268,28 @@ fn mime_type(path: &Path) -> Option<&'static str> {
     kinds.into_iter().find(|(start, _)| first.starts_with(start)).map(|(_, kind)| kind)
 }
 
-/// What a line of a library says.
-enum Statement {
-    New(String),
-    Colour([f64; 3]),
-    Opacity(f64),
-    /// The picture of the base colour.
-    Base(String),
-    /// Another picture.
-    Picture(String),
-}
-
-fn statements(text: &str) -> Vec<Statement> {
-    // A backslash joins a line to the next one.
-    let whole = text.replace("\\\r\n", " ").replace("\\\n", " ");
-    whole.lines().filter_map(statement).collect()
-}
-
-fn statement(line: &str) -> Option<Statement> {
-    // A name may have the sign of comments in it.
-    let is_comment = |&(at, _): &(usize, &str)| at == 0 || line[..at].ends_with(char::is_whitespace);
-    let comment = line.match_indices('#').find(is_comment);
-    let line = line[..comment.map_or(line.len(), |(at, _)| at)].trim();
-    let (keyword, rest) = line.split_once(char::is_whitespace)?;
-    let rest = rest.trim();
-    let numbers: Vec<f64> = rest.split_whitespace().map_while(|word| word.parse().ok()).collect();
-    // `d -halo 0.5`.
-    let number = || rest.split_whitespace().find_map(|word| word.parse::<f64>().ok());
-    let share = |x: f64| if x.is_finite() { x.clamp(0.0, 1.0) } else { 1.0 };
-    Some(match keyword.to_ascii_lowercase().as_str() {
-        "newmtl" => Statement::New(rest.to_owned()),
-        // One number is a grey.
-        "kd" => Statement::Colour(match numbers[..] {
-            [r, g, b, ..] => [r, g, b].map(share),
-            [grey, ..] => [share(grey); 3],
-            [] => return None,
-        }),
-        "d" => Statement::Opacity(share(number()?)),
-        "tr" => Statement::Opacity(1.0 - share(number()?)),
-        "map_kd" => Statement::Base(without_options(rest)?),
-        "bump" | "disp" | "decal" | "norm" | "refl" => Statement::Picture(without_options(rest)?),
-        keyword if keyword.starts_with("map_") => Statement::Picture(without_options(rest)?),
-        _ => return None,
-    })
-}
-
-/// The name of a picture, which may have blanks, after options with their arguments.
-fn without_options(rest: &str) -> Option<String> {
-    let mut rest = rest;
-    while let Some(option) = rest.strip_prefix('-') {
-        let (name, mut after) = option.split_once(char::is_whitespace)?;
-        let is_number = |word: &str| word.parse::<f64>().is_ok();
-        let (least, most) = match name {
-            "o" | "s" | "t" => (1, 3),
-            "mm" => (2, 2),
-            _ => (1, 1),
-        };
-        for argument in 0..most {
-            let word = after.split_whitespace().next()?;
-            if argument >= least && !is_number(word) {
-                break;
-            }
-            // The name is behind it.
-            after = after.trim_start().split_once(char::is_whitespace)?.1;
-        }
-        rest = after.trim_start();
-    }
-    (!rest.is_empty()).then(|| rest.to_owned())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn options_of_pictures_are_passed_over() {
+    fn names_of_pictures_follow_options() {
         let cases = [
-            ("a.png", Some("a.png")),
-            ("my wood.png", Some("my wood.png")),
-            ("-s 2 2 1 -o 0.5 a.png", Some("a.png")),
-            ("-clamp on -mm 0 1 a b.png", Some("a b.png")),
-            ("-bm 1.0 -texres 512 3.png", Some("3.png")),
-            ("-s 2 2 a.png", Some("a.png")),
-            ("-s 2", None),
-            ("", None),
+            ("a.png", "a.png"),
+            ("my wood.png", "my wood.png"),
+            ("-s 2 2 1 -o 0.5 a.png", "a.png"),
+            ("-clamp on -mm 0 1 a b.png", "a b.png"),
+            ("-bm 1.0 -texres 512 3.png", "3.png"),
+            ("-s 2 2 a.png", "a.png"),
+            ("-a.png", "-a.png"),
+            ("-s 2", ""),
+            ("-mm 1", ""),
+            ("-clamp", ""),
+            ("", ""),
         ];
-        for (rest, expected) in cases {
-            assert_eq!(without_options(rest).as_deref(), expected, "{rest}");
+        for (line, expected) in cases {
+            let words: Vec<&[u8]> = line.split_whitespace().map(str::as_bytes).collect();
+            assert_eq!(joined(&words[length_of_options(&words)..]), expected, "{line}");
         }
     }
 }

@@ -1,31 +1,20 @@
-//! Files that an input names, such as materials and their pictures: they come along to the output's folder.
+//! Files that an input names, such as materials and their pictures: the writer takes them along, and this says which it does not.
 
-use std::path::{Path, PathBuf};
+use std::collections::BTreeSet;
+use std::path::Path;
 
-use limitmesh_io::{Format, MaterialLibraries, Picture, copy_beside};
+use limitmesh_io::{Format, MaterialLibraries};
 
-use crate::interrupt;
 use crate::output;
 use crate::progress::Progress;
 
-/// Copies the files to the folder of the output, if that is another than the input's.
-pub(super) fn copy(found: &MaterialLibraries, output: &Path) -> anyhow::Result<()> {
-    if output::is_standard_output(output) || found.files.is_empty() {
-        return Ok(());
-    }
-    let folder = folder(output);
-    interrupt::whole_or_not(output, || copy_beside(&found.folder, found.files.iter(), folder))?;
-    Ok(())
-}
-
-/// Whether an output is in another folder than the input, or in none.
+/// Whether an output is in another folder than the input.
 pub(super) fn is_elsewhere(input: &Path, output: Option<&Path>) -> bool {
-    let whole = |file: &Path| folder(file).canonicalize().ok();
-    output.is_some_and(|output| !output::is_standard_output(output) && whole(input) != whole(output))
-}
-
-fn folder(file: &Path) -> &Path {
-    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    let folder = |file: &Path| {
+        let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+        folder.unwrap_or(Path::new(".")).canonicalize().ok()
+    };
+    output.is_some_and(|output| !output::is_standard_output(output) && folder(input) != folder(output))
 }
 
 /// Says which files do not come along.
@@ -34,15 +23,21 @@ pub(super) fn note(found: &MaterialLibraries, format: Format, progress: &Progres
     for problem in &found.problems {
         progress.note(format!("{}: {stays}: {}", problem.name, problem.reason));
     }
-    if !format.is_gltf() {
-        return;
+}
+
+/// Says what glTF does not get of the materials.
+pub(super) fn note_materials(found: &MaterialLibraries, has_coordinates: bool, progress: &Progress) {
+    let pictures: BTreeSet<_> = found.materials.iter().filter_map(|own| own.picture.as_ref()).collect();
+    for picture in pictures {
+        let name = picture.file.display();
+        if !has_coordinates {
+            progress.note(format!("{name}: left out: there are no texture coordinates"));
+        } else if picture.mime_type.is_none() {
+            progress.note(format!("{name}: left out: neither PNG nor JPEG, which glTF knows"));
+        }
     }
-    let pictures = found.materials.iter().filter_map(|material| material.picture.as_ref());
-    let mut unknown: Vec<&PathBuf> =
-        pictures.filter(|own| own.mime_type.is_none()).map(|Picture { file, .. }| file).collect();
-    unknown.sort_unstable();
-    unknown.dedup();
-    for file in unknown {
-        progress.note(format!("{}: left out: neither PNG nor JPEG, which glTF knows", file.display()));
+    if !found.left_out.is_empty() {
+        let statements: Vec<&str> = found.left_out.iter().map(String::as_str).collect();
+        progress.note(format!("left out of the materials: {}", statements.join(", ")));
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use limitmesh::carry::carried;
-use limitmesh::mesh::{Channel, FaceParts};
+use limitmesh::mesh::{Channel, FaceParts, Semantic};
 use limitmesh::refine::Traced;
 use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, Triangles};
@@ -94,6 +94,10 @@ impl Channels {
             _ => MaterialLibraries::default(),
         };
         beside::note(&found, format, progress);
+        if format.is_gltf() {
+            let is_texture = |own: &Channel| own.semantic == Semantic::TextureCoordinates;
+            beside::note_materials(&found, kept.iter().any(is_texture), progress);
+        }
         Self { channels: kept, material_libraries, texture_files, found }
     }
 
@@ -168,13 +172,5 @@ impl Channels {
     pub(super) fn add_to<'a>(&'a self, output: Output<'a>) -> Output<'a> {
         let output = output.channels(&self.channels).material_libraries(&self.material_libraries);
         output.texture_files(&self.texture_files).materials(&self.found)
-    }
-
-    /// Copies the files that the output names to its folder; what glTF names, the writer copies.
-    ///
-    /// # Errors
-    /// Another file is there, or the system refuses.
-    pub(super) fn copy_files(&self, output: &Path, format: Format) -> anyhow::Result<()> {
-        if format.is_gltf() { Ok(()) } else { beside::copy(&self.found, output) }
     }
 }

@@ -303,7 +303,6 @@ fn write(
         .context("levels of detail");
     }
     for (lod, level) in levels.iter().enumerate() {
-        level.channels.copy_files(&arguments.output, format)?;
         let axis = |axis: usize| -> Vec<f64> {
             level.coarser.iter().flat_map(|[positions, _]| positions).map(|position| position[axis]).collect()
         };

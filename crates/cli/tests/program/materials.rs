@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{file, folder, run};
+use crate::common::{file, folder, names, run};
 use crate::glb::Glb;
 
 /// The bytes that tell a PNG file, and others that make it one of its own.
@@ -49,6 +49,14 @@ fn has_materials(json: &Value) {
     assert!(primitives.iter().all(|own| own["attributes"]["TEXCOORD_0"].is_u64()));
 }
 
+/// The kind and the bytes of the first image.
+fn image(glb: &Glb) -> (&str, &[u8]) {
+    let image = &glb.json["images"][0];
+    let view = &glb.json["bufferViews"][image["bufferView"].as_u64().expect("a view") as usize];
+    let [start, length] = ["byteOffset", "byteLength"].map(|key| view[key].as_u64().unwrap_or(0) as usize);
+    (image["mimeType"].as_str().expect("a kind"), &glb.bytes()[start..start + length])
+}
+
 #[test]
 fn colours_and_pictures_come_to_documents() {
     let folder = folder();
@@ -59,12 +67,7 @@ fn colours_and_pictures_come_to_documents() {
         run(command, &[&input, &output]).expect(0).saying("odd.tga: left out: neither PNG nor JPEG");
         let glb = Glb::read(&output);
         has_materials(&glb.json);
-        let image = &glb.json["images"][0];
-        assert_eq!(image["mimeType"], "image/png");
-        let view = &glb.json["bufferViews"][image["bufferView"].as_u64().expect("a view") as usize];
-        let [start, length] =
-            ["byteOffset", "byteLength"].map(|key| view[key].as_u64().unwrap_or(0) as usize);
-        assert_eq!(glb.bytes()[start..start + length], picture(b"wood"));
+        assert_eq!(image(&glb), ("image/png", picture(b"wood").as_slice()));
         // The geometry is still where its accessors say.
         assert_eq!(glb.triangles(0).len(), glb.numbers(&glb.primitive(0)["indices"]).len() / 3);
     }
@@ -96,10 +99,150 @@ fn libraries_and_pictures_come_to_other_folders() {
     run("refine {} -o {}", &[&input, &other.join("out.obj")]).expect(0);
 }
 
+/// Writes a library for [`OBJ`], and gives the material `wood` of the document that comes of it, and what was said.
+fn wood(folder: &Path, library: &str) -> (Value, String) {
+    let input = folder.join("in.obj");
+    std::fs::write(&input, OBJ).expect("written");
+    std::fs::write(folder.join("paint.mtl"), library).expect("written");
+    let output = folder.join("out.glb");
+    let said = run("refine {} -o {}", &[&input, &output]).expect(0).stderr;
+    (Glb::read(&output).json["materials"][0]["pbrMetallicRoughness"].take(), said)
+}
+
+#[test]
+fn statements_of_libraries() {
+    let folder = folder();
+    let cases = [
+        ("Kd 0.5 0.25 1 # dull", json!([0.5, 0.25, 1.0, 1.0])),
+        ("Kd 0.5 \\\n 0.25 2", json!([0.5, 0.25, 1.0, 1.0])),
+        ("kd 0.5", json!([0.5, 0.5, 0.5, 1.0])),
+        ("Kd 0.5\nKd 1 x\nd\nTr nan", json!([0.5, 0.5, 0.5, 1.0])),
+        ("d 0.25", json!([1.0, 1.0, 1.0, 0.25])),
+        ("d -halo 0.25", json!([1.0, 1.0, 1.0, 0.25])),
+        ("Tr 0.25", json!([1.0, 1.0, 1.0, 0.75])),
+        // Programs that write this mean opaque.
+        ("Tr 1", json!([1.0, 1.0, 1.0, 1.0])),
+        ("newmtl other\nKd 0.5", json!([1.0, 1.0, 1.0, 1.0])),
+        ("newmtl other\nKd 0.5\nnewmtl\t wood  \nKd 0.25", json!([0.25, 0.25, 0.25, 1.0])),
+    ];
+    for (statements, factor) in cases {
+        let (material, _) = wood(folder.path(), &format!("Kd 0.125\nnewmtl wood\n{statements}\n"));
+        assert_eq!(material["baseColorFactor"], factor, "{statements}");
+    }
+    let (_, said) = wood(folder.path(), "newmtl wood\nKs 1 1 1\nillum 2\nmap_Kd -s 2 2 a.png\n");
+    assert!(said.contains("left out of the materials: Ks, illum, map_Kd -s\n"), "{said}");
+}
+
+#[test]
+fn pictures_are_found_from_the_library() {
+    let folder = folder();
+    for name in ["mats", "tex"] {
+        std::fs::create_dir(folder.path().join(name)).expect("a folder");
+    }
+    std::fs::write(folder.path().join("mats/paint.mtl"), "newmtl wood\nmap_Kd ..\\tex\\wood.png\n")
+        .expect("written");
+    std::fs::write(folder.path().join("tex/wood.png"), picture(b"wood")).expect("written");
+    let input = file(&folder, "in.obj", &OBJ.replace("paint.mtl", "mats/paint.mtl"));
+    let other = folder.path().join("other");
+    std::fs::create_dir(&other).expect("a folder");
+    run("refine {} -o {}", &[&input, &other.join("out.gltf")]).expect(0);
+    assert_eq!(Glb::text(&other.join("out.gltf")).json["images"], json!([{"uri": "tex/wood.png"}]));
+    run("refine {} -o {}", &[&input, &other.join("out.obj")]).expect(0);
+    assert!(other.join("mats/paint.mtl").is_file());
+    assert_eq!(std::fs::read(other.join("tex/wood.png")).expect("a copy"), picture(b"wood"));
+}
+
+#[test]
+fn documents_without_coordinates_have_no_pictures() {
+    let folder = folder();
+    let input = painted(&folder);
+    let output = folder.path().join("out.glb");
+    let arguments = "refine {} -o {} --channel 'texture coordinates=drop'";
+    let said = run(arguments, &[&input, &output]).expect(0);
+    said.saying("skin/my wood.png: left out: there are no texture coordinates");
+    let json = Glb::read(&output).json;
+    assert!(json.get("images").is_none() && json.get("textures").is_none(), "{json}");
+    let model = json!({"baseColorFactor": [0.5, 0.25, 1.0, 1.0], "metallicFactor": 0});
+    assert_eq!(json["materials"][0]["pbrMetallicRoughness"], model);
+}
+
+#[test]
+fn nothing_is_replaced() {
+    let folder = folder();
+    let input = painted(&folder);
+    let state = || {
+        let of = |name: &str| (name.to_owned(), std::fs::read(folder.path().join(name)).expect(name));
+        ["in.obj", "paint.mtl", "skin/my wood.png", "skin/bumps.png", "odd.tga"].map(of)
+    };
+    let before = state();
+    for name in ["out.obj", "out.gltf"] {
+        run("refine {} -o {}", &[&input, &folder.path().join(name)]).expect(0);
+        assert_eq!(state(), before, "{name}");
+    }
+    // Another file in the way is kept, and then nothing is written.
+    let other = folder.path().join("other");
+    std::fs::create_dir_all(other.join("skin")).expect("folders");
+    std::fs::write(other.join("skin/my wood.png"), "another").expect("written");
+    for name in ["out.obj", "out.gltf"] {
+        run("refine {} -o {}", &[&input, &other.join(name)])
+            .expect(1)
+            .saying("it is there already, and not the same");
+        assert_eq!(names(&other), ["skin"], "{name}");
+        assert_eq!(names(&other.join("skin")), ["my wood.png"], "{name}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn devices_get_no_files() {
+    let folder = folder();
+    let input = painted(&folder);
+    let other = folder.path().join("other");
+    std::fs::create_dir(&other).expect("a folder");
+    std::os::unix::fs::symlink("/dev/null", other.join("out.obj")).expect("a link");
+    run("refine {} -o {}", &[&input, &other.join("out.obj")]).expect(0);
+    assert_eq!(names(&other), ["out.obj"]);
+}
+
+/// Files of other programs: pictures arrive in documents and folders to the byte, and what is `Tr 1` there is opaque.
+#[test]
+fn materials_of_real_files() {
+    let Some(models) = std::env::var_os("LIMITMESH_MODELS") else { return };
+    let assets = PathBuf::from(models).join("assets");
+    let cases = [
+        ("fuze", "fuze.obj.mtl", "a-super-duper-material", 1.0, Some("fuze uv.jpg")),
+        ("capsule", "capsule.mtl", "material0", 1.0, Some("capsule0.jpg")),
+        ("ico4uv", "ico4uv.mtl", "None", 0.8, None),
+    ];
+    for (name, library, material, grey, picture) in cases {
+        let folder = folder();
+        let input = assets.join(format!("{name}.obj"));
+        let output = folder.path().join("out.glb");
+        run("refine {} -o {} --tolerance 1%", &[&input, &output]).expect(0);
+        let glb = Glb::read(&output);
+        let own = &glb.json["materials"][0];
+        assert_eq!(own["name"], material);
+        assert_eq!(own["pbrMetallicRoughness"]["baseColorFactor"], json!([grey, grey, grey, 1.0]));
+        assert_eq!(own.get("alphaMode"), None);
+        let read = |folder: &Path, name: &str| std::fs::read(folder.join(name)).expect("a file");
+        if let Some(picture) = picture {
+            assert_eq!(own["pbrMetallicRoughness"]["baseColorTexture"], json!({"index": 0}));
+            assert_eq!(image(&glb), ("image/jpeg", read(&assets, picture).as_slice()));
+        }
+        run("refine {} -o {} --tolerance 1%", &[&input, &folder.path().join("out.obj")]).expect(0);
+        let mut expected = vec!["out.glb", "out.obj", library];
+        expected.extend(picture);
+        expected.sort_unstable();
+        assert_eq!(names(folder.path()), expected);
+        for name in [Some(library), picture].into_iter().flatten() {
+            assert_eq!(read(folder.path(), name), read(&assets, name), "{name}");
+        }
+    }
+}
+
 #[test]
 fn what_is_missing_or_elsewhere_is_told() {
     let outside = folder();
-    file(&outside, "secret.png", "\u{0}");
     std::fs::write(outside.path().join("secret.png"), picture(b"secret")).expect("written");
     let inside = outside.path().join("inside");
     std::fs::create_dir(&inside).expect("a folder");
@@ -107,22 +250,15 @@ fn what_is_missing_or_elsewhere_is_told() {
     let output = inside.join("out.glb");
     std::fs::write(&input, OBJ).expect("written");
     run("refine {} -o {}", &[&input, &output]).expect(0).saying("paint.mtl: left out: No such file");
-    let names: Vec<Value> = ["wood", "glass", "odd"].map(|name| json!({ "name": name })).into();
-    assert_eq!(Glb::read(&output).json["materials"], Value::from(names));
+    let bare: Vec<Value> = ["wood", "glass", "odd"].map(|name| json!({ "name": name })).into();
+    assert_eq!(Glb::read(&output).json["materials"], Value::from(bare));
     let secret = outside.path().join("secret.png");
-    let away = [Path::new("../secret.png"), &secret, Path::new("none.png"), Path::new("http://a/b.png")];
-    for name in away {
-        let library =
-            format!("newmtl wood\nKd 1 x\nd\nmap_Kd\nmap_Kd {}\nKd 0 0 0.5\n\u{fffd}\n", name.display());
-        std::fs::write(inside.join("paint.mtl"), library).expect("written");
-        run("refine {} -o {}", &[&input, &output])
-            .expect(0)
-            .saying(&format!("{}: left out:", name.display()));
-        let json = Glb::read(&output).json;
-        assert!(json.get("images").is_none() && json.get("textures").is_none(), "{json}");
-        assert_eq!(
-            json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"],
-            json!([0.0, 0.0, 0.5, 1.0])
-        );
+    std::fs::create_dir(inside.join("folder.png")).expect("a folder");
+    let away = ["../secret.png", "C:\\secret.png", "none.png", "http://a/b.png", "folder.png"];
+    for name in away.map(Path::new).into_iter().chain([secret.as_path()]) {
+        let name = name.display();
+        let (material, said) = wood(&inside, &format!("newmtl wood\nmap_Kd\nmap_Kd {name}\nKd 0 0 0.5\n"));
+        assert!(said.contains(&format!("{name}: left out:")), "{said}");
+        assert_eq!(material, json!({"baseColorFactor": [0.0, 0.0, 0.5, 1.0], "metallicFactor": 0}));
     }
 }

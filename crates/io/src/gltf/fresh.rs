@@ -29,9 +29,9 @@ pub(crate) fn write_fresh(
     let flawed = |flaw| WriteError::Gltf { flaw };
     let groups = Groups::of(output);
     let names: Vec<&str> = groups.names.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
-    let looks = Looks::of(&names, output.materials, Pictures::of(format, path)).map_err(flawed)?;
+    let looks = Looks::of(&names, Some(output), Pictures::of(format, path)).map_err(flawed)?;
     let document = groups.document(options.unit, &looks).to_string();
-    let folder = output.materials.map(|known| known.folder.as_path());
+    let folder = output.materials.map(|found| found.folder.as_path());
     let mut source = Source::parse(document.as_bytes(), folder).map_err(flawed)?;
     looks.fill(&mut source);
     let scene = source.scene().map_err(flawed)?;

@@ -139,8 +139,8 @@ fn document(
         nodes[0]["extras"] = json!({ "MSFT_screencoverage": coverage });
     }
     // An asset has pictures of its own.
-    let described = levels.first().and_then(|level| level.output.materials).filter(|_| of.is_none());
-    let looks = Looks::of(&materials, described, pictures)?;
+    let finest = levels.first().map(|level| &level.output).filter(|_| of.is_none());
+    let looks = Looks::of(&materials, finest, pictures)?;
     let fresh: Vec<String> = looks.materials.iter().map(Value::to_string).collect();
     let empty = empty().to_string();
     let text = of.map_or(&empty, |asset| &asset.source.container.text);
@@ -174,7 +174,7 @@ fn document(
     changes.extend(looks.others().into_iter().map(|(key, value)| (key, Some(value.to_string()))));
     let folder = match of {
         Some(asset) => asset.source.folder(),
-        None => described.map(|known| known.folder.as_path()),
+        None => finest.and_then(|output| output.materials).map(|found| found.folder.as_path()),
     };
     let mut source = Source::parse(top.with(&changes).as_bytes(), folder)?;
     looks.fill(&mut source);

@@ -1,14 +1,17 @@
 //! Materials of OBJ files as those of a new document: base colours, and pictures in it or beside it.
 
 use serde_json::{Value, json};
+use std::collections::HashMap;
 use std::path::Path;
 
 use super::flaw::{GltfFlaw, Result};
+use super::fresh::attributes;
 use super::json::shortened;
 use super::source::Source;
 use super::uri;
 use crate::format::Format;
-use crate::mtl::{Material, MaterialLibraries, Picture};
+use crate::mtl::{Material, Picture};
+use crate::write::Output;
 
 /// What a document says of materials, each list for its member.
 #[derive(Default)]
@@ -48,22 +51,29 @@ impl Looks {
     ///
     /// # Errors
     /// A picture cannot be read.
-    pub(super) fn of(names: &[&str], known: Option<&MaterialLibraries>, pictures: Pictures) -> Result<Self> {
+    pub(super) fn of(names: &[&str], output: Option<&Output<'_>>, pictures: Pictures) -> Result<Self> {
         let mut looks = Self::default();
-        let mut files: Vec<&Path> = Vec::new();
-        for &name in names {
-            // Of several of one name the last holds, as later statements do.
-            let own = known.and_then(|known| known.materials.iter().rev().find(|own| own.name == name));
-            let (Some(known), Some(own)) = (known, own) else {
-                looks.materials.push(json!({ "name": name }));
+        let named = |name: &&str| json!({ "name": name });
+        let Some((output, found)) = output.and_then(|output| Some((output, output.materials?))) else {
+            looks.materials = names.iter().map(named).collect();
+            return Ok(looks);
+        };
+        let has_places = attributes(output).iter().any(|(name, _)| name == "TEXCOORD_0");
+        // Of several of one name the last holds, as later statements do.
+        let described: HashMap<&str, &Material> =
+            found.materials.iter().map(|own| (own.name.as_str(), own)).collect();
+        let mut textures: HashMap<&Path, usize> = HashMap::new();
+        for name in names {
+            let Some(own) = described.get(name) else {
+                looks.materials.push(named(name));
                 continue;
             };
             let mut texture = None;
-            if let Some(Picture { file, mime_type: Some(kind), .. }) = &own.picture {
-                let number = files.iter().position(|other| *other == file).unwrap_or(files.len());
-                if number == files.len() {
-                    looks.add_picture(&known.folder, file, kind, pictures)?;
-                    files.push(file);
+            if let Some(Picture { file, mime_type: Some(kind) }) = own.picture.as_ref().filter(|_| has_places)
+            {
+                let number = *textures.entry(file).or_insert(looks.textures.len());
+                if number == looks.textures.len() {
+                    looks.add_picture(&found.folder, file, kind, pictures)?;
                 }
                 texture = Some(number);
             }

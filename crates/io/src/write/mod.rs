@@ -12,7 +12,6 @@ mod stl;
 mod whole;
 
 pub(crate) use copies::copies;
-pub use copies::copy_beside;
 pub(crate) use numbers::Pieces;
 pub use property::{Property, PropertyValues};
 pub use split::splits_vertices;
@@ -53,8 +52,8 @@ pub struct Output<'a> {
     pub channels: &'a [Channel],
     /// Files that describe materials. OBJ names them.
     pub material_libraries: &'a [String],
-    /// What the materials of the channel [`MATERIAL`](crate::MATERIAL) look like. glTF holds their base colours, with pictures in a GLB or beside
-    /// the text.
+    /// What the materials of the channel [`MATERIAL`](crate::MATERIAL) look like. glTF holds their base colours and pictures. The files are copied
+    /// below the folder of an OBJ or PLY file, which names them.
     pub materials: Option<&'a MaterialLibraries>,
     /// Pictures that texture coordinates are places on. PLY names them.
     pub texture_files: &'a [String],
@@ -230,7 +229,7 @@ pub fn write(path: &Path, output: &Output<'_>, options: &WriteOptions) -> Result
 /// [`write()`] in a format that the name need not tell.
 ///
 /// # Errors
-/// The output does not fit together or into the format, or the system refuses.
+/// The output does not fit together or into the format, the system refuses, or a file that would be copied is there already and not the same.
 pub fn write_as(
     path: &Path,
     format: Format,
@@ -241,7 +240,21 @@ pub fn write_as(
     if matches!(format, Format::Gltf | Format::Glb) {
         return gltf::write_fresh(Some(path), format, output, options).map(drop);
     }
-    whole::write_whole_with(path, |writer| write_checked(writer, format, output, options))
+    let copied = named_files(path, format, output)?;
+    whole::write_whole_with(path, |writer| write_checked(writer, format, output, options))?;
+    write_together(&copied)
+}
+
+/// Copies of the files that an OBJ or PLY file names, if it is a file.
+fn named_files(path: &Path, format: Format, output: &Output<'_>) -> Result<Vec<WholeFile>, WriteError> {
+    let is_device = std::fs::metadata(path).is_ok_and(|there| !there.is_file());
+    match output.materials {
+        Some(found) if matches!(format, Format::Obj | Format::Ply) && !is_device => {
+            let files = found.files.iter().map(|file| (file.as_path(), found.folder.join(file)));
+            copies(files, path.parent().unwrap_or(Path::new("")))
+        }
+        _ => Ok(Vec::new()),
+    }
 }
 
 /// Writes a mesh in the given format to any writer. On an error, part of it may have been written.

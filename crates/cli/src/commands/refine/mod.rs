@@ -330,7 +330,6 @@ fn write(
         output = output.vertex_properties(vertices).face_properties(faces);
     }
     let output = output.creases(&mesh.tags().creases).corners(&mesh.tags().corners);
-    channels.copy_files(path, format)?;
     let unit = WrittenUnit::of(arguments.input(), &arguments.build, format);
     let positions = unit.positions(output.surface.positions);
     let output = Output { surface: Triangles { positions: &positions, ..output.surface }, ..output };
