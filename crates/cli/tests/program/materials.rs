@@ -155,10 +155,11 @@ fn pictures_are_found_from_the_library() {
 #[test]
 fn documents_without_coordinates_have_no_pictures() {
     let folder = folder();
-    let input = painted(&folder);
+    painted(&folder);
+    let bare = "mtllib paint.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nusemtl wood\nf 1 2 3\nf 1 3 4\n";
+    let input = file(&folder, "bare.obj", bare);
     let output = folder.path().join("out.glb");
-    let arguments = "refine {} -o {} --channel 'texture coordinates=drop'";
-    let said = run(arguments, &[&input, &output]).expect(0);
+    let said = run("refine {} -o {}", &[&input, &output]).expect(0);
     said.saying("skin/my wood.png: left out: there are no texture coordinates");
     let json = Glb::read(&output).json;
     assert!(json.get("images").is_none() && json.get("textures").is_none(), "{json}");
@@ -207,7 +208,10 @@ fn devices_get_no_files() {
 /// Files of other programs: pictures arrive in documents and folders to the byte, and what is `Tr 1` there is opaque.
 #[test]
 fn materials_of_real_files() {
-    let Some(models) = std::env::var_os("LIMITMESH_MODELS") else { return };
+    let Some(models) = std::env::var_os("LIMITMESH_MODELS") else {
+        println!("skipped: LIMITMESH_MODELS names no folder");
+        return;
+    };
     let assets = PathBuf::from(models).join("assets");
     let cases = [
         ("fuze", "fuze.obj.mtl", "a-super-duper-material", 1.0, Some("fuze uv.jpg")),
