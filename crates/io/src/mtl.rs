@@ -64,7 +64,7 @@ pub struct Material {
 impl MaterialLibraries {
     /// Reads the libraries that an OBJ file names: a name may be several with blanks between.
     pub fn read(obj: &Path, names: &[String]) -> Self {
-        let mut found = Self::beside(obj);
+        let mut found = Self::of_file(obj);
         for name in names {
             for name in found.one_or_several(name) {
                 let known = found.files.len();
@@ -80,7 +80,7 @@ impl MaterialLibraries {
 
     /// Pictures that a file names itself: no materials.
     pub fn of_pictures(file: &Path, names: &[String]) -> Self {
-        let mut found = Self::beside(file);
+        let mut found = Self::of_file(file);
         for name in names {
             found.find(Path::new(""), name);
         }
@@ -88,7 +88,7 @@ impl MaterialLibraries {
     }
 
     /// Nothing yet, for a file.
-    fn beside(file: &Path) -> Self {
+    fn of_file(file: &Path) -> Self {
         Self { folder: file.parent().unwrap_or(Path::new("")).to_owned(), ..Self::default() }
     }
 
@@ -197,7 +197,7 @@ impl MaterialLibraries {
     }
 }
 
-/// Statements that name pictures, besides `map_Kd` and others that begin so.
+/// Statements that name pictures, but for `map_Kd` and others that begin so.
 const PICTURES: [&str; 5] = ["bump", "disp", "decal", "norm", "refl"];
 
 /// Other statements that are not followed.

@@ -3,15 +3,13 @@
 use std::path::Path;
 
 use limitmesh::carry::carried;
-use limitmesh::mesh::{Channel, FaceParts, Semantic};
+use limitmesh::mesh::{Channel, FaceParts};
 use limitmesh::refine::Traced;
 use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, Triangles};
-use limitmesh_io::{
-    Format, MATERIAL, MaterialLibraries, Output, WriteOptions, holds, splits_vertices, values_lost,
-};
+use limitmesh_io::{Format, MaterialLibraries, Output, WriteOptions, holds, splits_vertices, values_lost};
 
-use super::beside;
+use super::named_files;
 use crate::arguments::{ChannelArguments, RefineArguments};
 use crate::format::counted;
 use crate::progress::Progress;
@@ -72,31 +70,9 @@ impl Channels {
         if !lost.is_empty() {
             progress.note(format!("left out: {} (the output's format has no place for them)", names(&lost)));
         }
-        let has_names = kept.iter().any(|own| own.name == MATERIAL);
-        let is_described = format == Format::Obj || format.is_gltf() && has_names;
-        if !is_described && !material_libraries.is_empty() {
-            let files = material_libraries.join("; ");
-            progress.note(format!("left out: {files} (only OBJ files name others)"));
-        }
-        if format != Format::Ply && !texture_files.is_empty() {
-            let files = texture_files.join("; ");
-            progress.note(format!("left out: {files} (only PLY files name pictures themselves)"));
-        }
+        let found = named_files::find(&material_libraries, &texture_files, &kept, to, progress);
         if kept.is_empty() {
             return Self::default();
-        }
-        let (input, output) = to.files;
-        let is_needed = format.is_gltf() || beside::is_elsewhere(input, output);
-        let found = match format {
-            _ if !is_needed => MaterialLibraries::default(),
-            Format::Ply => MaterialLibraries::of_pictures(input, &texture_files),
-            _ if is_described => MaterialLibraries::read(input, &material_libraries),
-            _ => MaterialLibraries::default(),
-        };
-        beside::note(&found, format, progress);
-        if format.is_gltf() {
-            let is_texture = |own: &Channel| own.semantic == Semantic::TextureCoordinates;
-            beside::note_materials(&found, kept.iter().any(is_texture), progress);
         }
         Self { channels: kept, material_libraries, texture_files, found }
     }

@@ -2,7 +2,6 @@
 
 pub(crate) mod batch;
 pub(crate) mod batch_job;
-mod beside;
 mod certified;
 mod certified_limit;
 mod channels;
@@ -16,6 +15,7 @@ mod limit_control;
 pub(crate) mod lod;
 pub(crate) mod measure;
 pub(crate) mod models;
+mod named_files;
 mod normals;
 mod picture;
 pub(crate) mod project;

@@ -71,7 +71,7 @@ fn colours_and_pictures_come_to_documents() {
         // The geometry is still where its accessors say.
         assert_eq!(glb.triangles(0).len(), glb.numbers(&glb.primitive(0)["indices"]).len() / 3);
     }
-    // As text, the picture is a file beside it.
+    // As text, the picture is a file of its own.
     let other = folder.path().join("other");
     std::fs::create_dir(&other).expect("a folder");
     let output = other.join("out.gltf");
@@ -245,7 +245,7 @@ fn materials_of_real_files() {
 }
 
 #[test]
-fn what_is_missing_or_elsewhere_is_told() {
+fn what_is_missing_or_elsewhere_is_named() {
     let outside = folder();
     std::fs::write(outside.path().join("secret.png"), picture(b"secret")).expect("written");
     let inside = outside.path().join("inside");

@@ -83,8 +83,8 @@ pub fn write_levels(
     let flawed = |flaw| WriteError::Gltf { flaw };
     levels.iter().try_for_each(|level| level.check(format))?;
     let groups: Vec<Groups> = levels.iter().map(|level| Groups::of(&level.output)).collect();
-    let mut asset =
-        document((name, levels), &groups, of, (unit, Pictures::of(format, Some(path)))).map_err(flawed)?;
+    let pictures = Pictures::of(format, Some(path));
+    let mut asset = document((name, levels), &groups, of, unit, pictures).map_err(flawed)?;
     for (mesh, (level, groups)) in levels.iter().zip(&groups).enumerate() {
         fill(&mut asset, mesh, groups, &level.output, level.coarser).map_err(flawed)?;
     }
@@ -96,7 +96,8 @@ fn document(
     (name, levels): (&str, &[DetailLevel<'_>]),
     groups: &[Groups],
     of: Option<&Asset>,
-    (unit, pictures): (Option<LengthUnit>, Pictures),
+    unit: Option<LengthUnit>,
+    pictures: Pictures,
 ) -> Result<Asset> {
     let known = of.map_or_else(|| Ok(Vec::new()), |asset| asset.source.root().list("materials"))?.len();
     let mut materials: Vec<&str> = Vec::new();

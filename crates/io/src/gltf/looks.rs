@@ -1,4 +1,4 @@
-//! Materials of OBJ files as those of a new document: base colours, and pictures in it or beside it.
+//! Materials of OBJ files as those of a new document: base colours, and pictures in the document or in files.
 
 use serde_json::{Value, json};
 use std::collections::HashMap;
@@ -30,9 +30,9 @@ pub(super) enum Pictures {
     /// In the binary chunk.
     InChunk,
     /// Files, which are copied to the document's folder.
-    Beside,
+    Files,
     /// In the text.
-    Inside,
+    InText,
 }
 
 impl Pictures {
@@ -40,8 +40,8 @@ impl Pictures {
     pub(super) fn of(format: Format, path: Option<&Path>) -> Self {
         match (format, path) {
             (Format::Glb, _) => Self::InChunk,
-            (_, Some(_)) => Self::Beside,
-            (_, None) => Self::Inside,
+            (_, Some(_)) => Self::Files,
+            (_, None) => Self::InText,
         }
     }
 }
@@ -89,7 +89,7 @@ impl Looks {
         let read = || {
             std::fs::read(folder.join(file)).map_err(|why| {
                 let met = format!("'{}', which cannot be read: {why}", shortened(&name));
-                GltfFlaw::new("images", met, "a picture beside the materials")
+                GltfFlaw::new("images", met, "a picture that can be read")
             })
         };
         self.textures.push(json!({"source": self.images.len()}));
@@ -101,8 +101,8 @@ impl Looks {
                 self.bytes.extend(own);
                 json!({"bufferView": self.views.len() - 1, "mimeType": kind})
             }
-            Pictures::Beside => json!({"uri": uri::escaped(&name)}),
-            Pictures::Inside => json!({"uri": format!("data:{kind};base64,{}", uri::to_base64(&read()?))}),
+            Pictures::Files => json!({"uri": uri::escaped(&name)}),
+            Pictures::InText => json!({"uri": format!("data:{kind};base64,{}", uri::to_base64(&read()?))}),
         });
         Ok(())
     }
@@ -122,9 +122,9 @@ impl Looks {
     }
 
     /// Gives a document the bytes that its views name.
-    pub(super) fn fill(&self, source: &mut Source) {
+    pub(super) fn fill(self, source: &mut Source) {
         if !self.bytes.is_empty() {
-            (source.container.bin, source.container.is_glb) = (Some(self.bytes.clone()), true);
+            (source.container.bin, source.container.is_glb) = (Some(self.bytes), true);
         }
     }
 }
