@@ -71,6 +71,10 @@ fn colours_and_pictures_come_to_documents() {
         // The geometry is still where its accessors say.
         assert_eq!(glb.triangles(0).len(), glb.numbers(&glb.primitive(0)["indices"]).len() / 3);
     }
+    let piped = run("refine {} -o - --to gltf", &[&input]).expect(0);
+    let json: Value = serde_json::from_str(&piped.stdout).expect("JSON");
+    has_materials(&json);
+    assert_eq!(json["images"][0]["uri"], "data:image/png;base64,iVBORw0KGgp3b29k");
     // As text, the picture is a file of its own.
     let other = folder.path().join("other");
     std::fs::create_dir(&other).expect("a folder");
