@@ -30,10 +30,12 @@
 //! [`PolygonSoup`]: limitmesh::mesh::PolygonSoup
 
 mod affine;
+mod below;
 pub mod channels;
 mod error;
 mod format;
 pub mod gltf;
+mod mtl;
 mod names;
 mod read;
 mod scan;
@@ -44,6 +46,7 @@ pub use channels::{MATERIAL, TEXTURE, holds, values_lost};
 pub use error::{Flaw, Place, ReadError, WriteError};
 pub use format::{Format, UnknownFormat};
 pub use gltf::Asset;
+pub use mtl::{Material, MaterialLibraries, Picture, Problem};
 pub use read::{read, read_as, read_bytes};
 pub use threemf::Package;
 pub use write::{

@@ -7,9 +7,9 @@ use limitmesh::mesh::{Channel, FaceParts};
 use limitmesh::refine::Traced;
 use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, Triangles};
-use limitmesh_io::{Format, MATERIAL, Output, WriteOptions, holds, splits_vertices, values_lost};
+use limitmesh_io::{Format, MaterialLibraries, Output, WriteOptions, holds, splits_vertices, values_lost};
 
-use super::linked;
+use super::named_files;
 use crate::arguments::{ChannelArguments, RefineArguments};
 use crate::format::counted;
 use crate::progress::Progress;
@@ -46,6 +46,8 @@ pub(super) struct Channels {
     material_libraries: Vec<String>,
     /// Pictures.
     texture_files: Vec<String>,
+    /// What these say and name.
+    found: MaterialLibraries,
 }
 
 impl Channels {
@@ -68,26 +70,11 @@ impl Channels {
         if !lost.is_empty() {
             progress.note(format!("left out: {} (the output's format has no place for them)", names(&lost)));
         }
-        if format != Format::Obj && !material_libraries.is_empty() {
-            let has_names = kept.iter().any(|own| own.name == MATERIAL);
-            let names = if has_names { "of materials the names alone; " } else { "" };
-            let files = material_libraries.join("; ");
-            progress.note(format!("left out: {files} ({names}only OBJ files name others)"));
-        }
-        if format != Format::Ply && !texture_files.is_empty() {
-            let files = texture_files.join("; ");
-            progress.note(format!("left out: {files} (only PLY files name pictures themselves)"));
-        }
+        let found = named_files::find(&material_libraries, &texture_files, &kept, to, progress);
         if kept.is_empty() {
             return Self::default();
         }
-        let follow = |are_held: bool, files: Vec<String>| match are_held {
-            true => linked::from_output(files, to.files, progress),
-            false => files,
-        };
-        let material_libraries = follow(format == Format::Obj, material_libraries);
-        let texture_files = follow(format == Format::Ply, texture_files);
-        Self { channels: kept, material_libraries, texture_files }
+        Self { channels: kept, material_libraries, texture_files, found }
     }
 
     /// Those of a mesh of an asset.
@@ -127,9 +114,13 @@ impl Channels {
             return Ok(Self::default());
         }
         let channels = carried(&self.channels, control, scheme, found)?;
-        let [material_libraries, texture_files] =
-            [&self.material_libraries, &self.texture_files].map(Vec::clone);
-        Ok(Self { channels, material_libraries, texture_files })
+        let Self { material_libraries, texture_files, found, .. } = self;
+        Ok(Self {
+            channels,
+            material_libraries: material_libraries.clone(),
+            texture_files: texture_files.clone(),
+            found: found.clone(),
+        })
     }
 
     /// Whether the output has vertices several times, for texture coordinates that differ there.
@@ -156,6 +147,6 @@ impl Channels {
     /// Adds them to what is written.
     pub(super) fn add_to<'a>(&'a self, output: Output<'a>) -> Output<'a> {
         let output = output.channels(&self.channels).material_libraries(&self.material_libraries);
-        output.texture_files(&self.texture_files)
+        output.texture_files(&self.texture_files).materials(&self.found)
     }
 }

@@ -159,7 +159,7 @@ fn materials_that_stay_behind_are_told() {
     let input = file(&folder, "in.obj", text);
     run("refine {} -o {}", &[&input, &folder.path().join("out.glb")])
         .expect(0)
-        .saying("left out: paint.mtl (of materials the names alone")
+        .saying("paint.mtl: left out: No such file")
         .saying("3 corners have no texture coordinates");
     // Where names have no place either, nothing is said of them.
     for output in ["out.ply", "out.stl", "out.off"] {
@@ -178,24 +178,32 @@ fn materials_that_stay_behind_are_told() {
     };
     let (said, name) = library(&input);
     assert_eq!(name, "paint.mtl");
-    assert!(said.contains("paint.mtl: named as in the input, and not found"), "{said}");
-    // A file that is there is found from where the output is; so are several in one line.
+    assert!(said.contains("paint.mtl: named as in the input, and not copied: No such file"), "{said}");
+    // A file that is there comes along; so do several in one line.
     file(&folder, "paint.mtl", "newmtl red\n");
     let (said, name) = library(&input);
-    assert!(said.contains("paint.mtl: left where it is, and named ../../paint.mtl"), "{said}");
-    assert_eq!(name, "../../paint.mtl");
-    assert!(other.join(name).is_file());
-    let several = file(&folder, "several.obj", &text.replace("paint.mtl", "paint.mtl my paint.mtl"));
-    assert_eq!(library(&several).1, "paint.mtl my paint.mtl");
+    assert!(!said.contains("paint.mtl"), "{said}");
+    assert_eq!(name, "paint.mtl");
+    assert_eq!(std::fs::read(other.join(name)).expect("a copy"), b"newmtl red\n");
     let several = file(&folder, "several.obj", &text.replace("paint.mtl", "paint.mtl other.mtl"));
-    file(&folder, "other.mtl", "");
-    assert_eq!(library(&several).1, "../../paint.mtl ../../other.mtl");
+    file(&folder, "other.mtl", "# other");
+    assert_eq!(library(&several).1, "paint.mtl other.mtl");
+    assert_eq!(std::fs::read(other.join("other.mtl")).expect("a copy"), b"# other");
     let blank = file(&folder, "blank.obj", &text.replace("paint.mtl", "my paint.mtl"));
-    file(&folder, "my paint.mtl", "");
-    assert_eq!(library(&blank).1, "../../my paint.mtl");
+    file(&folder, "my paint.mtl", "# mine");
+    assert_eq!(library(&blank).1, "my paint.mtl");
+    assert_eq!(std::fs::read(other.join("my paint.mtl")).expect("a copy"), b"# mine");
+    // Other files are not reached, and none that is there is replaced.
     let whole = folder.path().join("paint.mtl").display().to_string();
     let absolute = file(&folder, "absolute.obj", &text.replace("paint.mtl", &whole));
-    assert_eq!(library(&absolute).1, whole);
+    let (said, name) = library(&absolute);
+    assert_eq!(name, whole);
+    assert!(said.contains("not below the folder of the file that names it"), "{said}");
+    file(&folder, "paint.mtl", "newmtl blue\n");
+    run("refine {} -o {}", &[&input, &other.join("out.obj")])
+        .expect(1)
+        .saying("it is there already, and not the same");
+    assert_eq!(std::fs::read(other.join("paint.mtl")).expect("a copy"), b"newmtl red\n");
     let beside = run("refine {} -o {}", &[&input, &folder.path().join("out.obj")]).expect(0);
     assert!(!beside.stderr.contains("paint.mtl"), "{}", beside.stderr);
 }

@@ -9,6 +9,7 @@ use limitmesh_io::read;
 
 use crate::asset::{cube, first_mesh};
 use crate::common::{file, folder, has_keys, names, run};
+use crate::glb::Glb;
 
 fn control(name: &str) -> Mesh {
     let soup = limitmesh_models::find(name).expect("a model").soup();
@@ -123,17 +124,18 @@ const PAINTED: &str = "mtllib paint.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nvt 
 fn what_channels_need_comes_along() {
     let folder = folder();
     let input = file(&folder, "in.obj", PAINTED);
-    file(&folder, "paint.mtl", "newmtl red\nnewmtl blue\n");
+    file(&folder, "paint.mtl", "newmtl red\nnewmtl blue\nKd 0 0.25 1\n");
     std::fs::create_dir(folder.path().join("deep")).expect("a folder");
     let output = folder.path().join("deep/out.obj");
     let said = run("lod {} -o {} --levels 2", &[&input, &output]).expect(0);
-    let said = said.saying("paint.mtl: left where it is, and named ../paint.mtl");
+    assert!(folder.path().join("deep/paint.mtl").is_file());
     assert!(!said.stderr.contains("left out: normals"), "{}", said.stderr);
-    let levels = names(&folder.path().join("deep"));
+    let mut levels = names(&folder.path().join("deep"));
+    levels.retain(|name| name.ends_with(".obj"));
     assert!(!levels.is_empty() && levels[0] == "out_LOD0.obj", "{levels:?}");
     for name in levels {
         let text = std::fs::read_to_string(folder.path().join("deep").join(&name)).expect("a level");
-        for line in ["mtllib ../paint.mtl", "usemtl red", "usemtl blue"] {
+        for line in ["mtllib paint.mtl", "usemtl red", "usemtl blue"] {
             assert!(text.lines().any(|own| own == line), "{line} in {name}");
         }
         assert!(text.contains("\nvt ") && text.contains("\nvn "), "{name}");
@@ -141,9 +143,13 @@ fn what_channels_need_comes_along() {
     run("lod {} -o {} --levels 2 --channel materials=drop", &[&input, &output])
         .expect(0)
         .saying("left out: materials (by --channel)");
-    run("lod {} -o {} --levels 2", &[&input, &folder.path().join("out.glb")])
-        .expect(0)
-        .saying("left out: paint.mtl (of materials the names alone");
+    let output = folder.path().join("out.glb");
+    run("lod {} -o {} --levels 2", &[&input, &output]).expect(0);
+    let materials = Glb::read(&output).json["materials"].clone();
+    assert_eq!(
+        materials[1]["pbrMetallicRoughness"]["baseColorFactor"],
+        serde_json::json!([0.0, 0.25, 1.0, 1.0])
+    );
 }
 
 #[test]
@@ -157,10 +163,10 @@ fn textures_of_ply_files_come_along() {
     let output = folder.path().join("deep/out.ply");
     run("lod {} -o {} --levels 2 --ascii", &[&input, &output])
         .expect(0)
-        .saying("wood.png: left where it is, and named ../wood.png")
         .saying("vertices on seams of texture coordinates are written once for each side");
     let text = std::fs::read_to_string(folder.path().join("deep/out_LOD0.ply")).expect("a level");
-    assert!(text.contains("comment TextureFile ../wood.png\n"), "{}", &text[..400]);
+    assert!(text.contains("comment TextureFile wood.png\n"), "{}", &text[..400]);
+    assert!(folder.path().join("deep/wood.png").is_file());
     let other = run("lod {} -o {} --levels 2", &[&input, &folder.path().join("out.obj")]).expect(0);
     other.saying("left out: wood.png (only PLY files name pictures themselves)");
 }

@@ -24,6 +24,7 @@ mod interpolate;
 mod kept;
 mod limits;
 mod lod;
+mod materials;
 mod measure;
 mod naming;
 mod package;

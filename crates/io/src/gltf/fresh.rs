@@ -10,6 +10,7 @@ use limitmesh::mesh::{Channel, Domain, Semantic, Triangles};
 use serde_json::{Value, json};
 
 use super::changes::Changes;
+use super::looks::{Looks, Pictures};
 use super::source::Source;
 use super::{Asset, Geometry, GltfFlaw, VertexAttribute};
 use crate::channels::MATERIAL;
@@ -27,7 +28,12 @@ pub(crate) fn write_fresh(
 ) -> Result<Vec<u8>, WriteError> {
     let flawed = |flaw| WriteError::Gltf { flaw };
     let groups = Groups::of(output);
-    let source = Source::parse(groups.document(options.unit).to_string().as_bytes(), None).map_err(flawed)?;
+    let names: Vec<&str> = groups.names.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
+    let looks = Looks::of(&names, Some(output), Pictures::of(format, path)).map_err(flawed)?;
+    let document = groups.document(options.unit, &looks).to_string();
+    let folder = output.materials.map(|found| found.folder.as_path());
+    let mut source = Source::parse(document.as_bytes(), folder).map_err(flawed)?;
+    looks.fill(&mut source);
     let scene = source.scene().map_err(flawed)?;
     let mut asset = Asset { path: None, source, scene, changes: Changes::default() };
     fill(&mut asset, 0, &groups, output, None).map_err(flawed)?;
@@ -127,17 +133,16 @@ impl Groups {
     }
 
     /// What geometry is put into.
-    fn document(&self, unit: Option<LengthUnit>) -> Value {
+    fn document(&self, unit: Option<LengthUnit>, looks: &Looks) -> Value {
         let mut document = empty();
         if self.triangles.is_empty() {
             return document;
         }
-        let mut materials: Vec<Value> = Vec::new();
+        let mut materials = (0..looks.materials.len()).peekable();
         let primitives = self.names.iter().map(|name| {
             let mut primitive = json!({"attributes": {}});
-            if !name.is_empty() {
-                primitive["material"] = materials.len().into();
-                materials.push(json!({ "name": name }));
+            if let Some(material) = materials.next_if(|_| !name.is_empty()) {
+                primitive["material"] = material.into();
             }
             primitive
         });
@@ -147,8 +152,11 @@ impl Groups {
         document["nodes"] = json!([{"mesh": 0}]);
         scale_to_metres(&mut document["nodes"][0], unit);
         document["meshes"] = json!([{ "primitives": primitives }]);
-        if !materials.is_empty() {
-            document["materials"] = materials.into();
+        if !looks.materials.is_empty() {
+            document["materials"] = looks.materials.clone().into();
+        }
+        for (key, value) in looks.others() {
+            document[key] = value;
         }
         document
     }

@@ -14,6 +14,7 @@ use super::edit::{Members, items_of, quoted};
 use super::flaw::Result;
 use super::fresh::{Groups, empty, fill, scale_to_metres};
 use super::gone::Gone;
+use super::looks::{Looks, Pictures};
 use super::source::Source;
 use crate::error::WriteError;
 use crate::format::Format;
@@ -82,7 +83,8 @@ pub fn write_levels(
     let flawed = |flaw| WriteError::Gltf { flaw };
     levels.iter().try_for_each(|level| level.check(format))?;
     let groups: Vec<Groups> = levels.iter().map(|level| Groups::of(&level.output)).collect();
-    let mut asset = document((name, levels), &groups, of, unit).map_err(flawed)?;
+    let pictures = Pictures::of(format, Some(path));
+    let mut asset = document((name, levels), &groups, of, unit, pictures).map_err(flawed)?;
     for (mesh, (level, groups)) in levels.iter().zip(&groups).enumerate() {
         fill(&mut asset, mesh, groups, &level.output, level.coarser).map_err(flawed)?;
     }
@@ -95,6 +97,7 @@ fn document(
     groups: &[Groups],
     of: Option<&Asset>,
     unit: Option<LengthUnit>,
+    pictures: Pictures,
 ) -> Result<Asset> {
     let known = of.map_or_else(|| Ok(Vec::new()), |asset| asset.source.root().list("materials"))?.len();
     let mut materials: Vec<&str> = Vec::new();
@@ -136,7 +139,10 @@ fn document(
         nodes[0]["extensions"] = json!({"MSFT_lod": {"ids": (1..levels.len()).collect::<Vec<_>>()}});
         nodes[0]["extras"] = json!({ "MSFT_screencoverage": coverage });
     }
-    let fresh: Vec<String> = materials.iter().map(|name| json!({ "name": name }).to_string()).collect();
+    // An asset has pictures of its own.
+    let finest = levels.first().map(|level| &level.output).filter(|_| of.is_none());
+    let looks = Looks::of(&materials, finest, pictures)?;
+    let fresh: Vec<String> = looks.materials.iter().map(Value::to_string).collect();
     let empty = empty().to_string();
     let text = of.map_or(&empty, |asset| &asset.source.container.text);
     let top = Members::of(text)?;
@@ -153,7 +159,7 @@ fn document(
     };
     let used = if levels.len() > 1 { vec![quoted(LOD)] } else { Vec::new() };
     let array = |items: Vec<Value>| Some(Value::from(items).to_string());
-    let changes = [
+    let mut changes = vec![
         ("scene", Some("0".to_owned())),
         ("scenes", Some(r#"[{"nodes":[0]}]"#.to_owned())),
         ("nodes", array(nodes)),
@@ -166,8 +172,13 @@ fn document(
         ("animations", None),
         ("cameras", None),
     ];
-    let mut source =
-        Source::parse(top.with(&changes).as_bytes(), of.and_then(|asset| asset.source.folder()))?;
+    changes.extend(looks.others().into_iter().map(|(key, value)| (key, Some(value.to_string()))));
+    let folder = match of {
+        Some(asset) => asset.source.folder(),
+        None => finest.and_then(|output| output.materials).map(|found| found.folder.as_path()),
+    };
+    let mut source = Source::parse(top.with(&changes).as_bytes(), folder)?;
+    looks.fill(&mut source);
     if let Some(asset) = of {
         let own = &asset.source.container;
         (source.container.bin, source.container.is_glb) = (own.bin.clone(), own.is_glb);

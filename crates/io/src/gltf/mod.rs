@@ -31,6 +31,7 @@ mod idle;
 mod json;
 mod kinds;
 mod levels;
+mod looks;
 mod materials;
 mod parts;
 mod poses;

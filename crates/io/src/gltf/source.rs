@@ -8,6 +8,7 @@ use super::container::Container;
 use super::flaw::{GltfFlaw, Result};
 use super::json::{At, shortened};
 use super::uri::{self, Uri};
+use crate::below::file_below;
 use serde_json::Value;
 use std::cell::{Cell, OnceCell};
 use std::io::{self, Read};
@@ -147,13 +148,7 @@ impl Source {
     /// There is no such file, or a link leads out of the folder.
     pub(super) fn file(&self, file: &Path) -> io::Result<PathBuf> {
         let folder = self.folder.as_ref().ok_or_else(|| io::Error::other("the document has no folder"))?;
-        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        let path = folder.join(file).canonicalize()?;
-        match path.starts_with(folder.canonicalize()?) {
-            true if path.is_file() => Ok(path),
-            true => Err(io::Error::other("it is no file")),
-            false => Err(io::Error::other("it leads out of the document's folder")),
-        }
+        file_below(folder, file)
     }
 
     /// The bytes of a buffer view, which `at` names by its index; decoded if they are compressed.

@@ -4,7 +4,7 @@ use super::changes::{Place, Written};
 use super::{Asset, GltfFlaw, uri};
 use crate::error::WriteError;
 use crate::format::Format;
-use crate::write::{WholeFile, write_together};
+use crate::write::{WholeFile, copies, write_together};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -48,32 +48,11 @@ impl Asset {
         let name = self.name_beside(path, &files);
         let place = if is_glb { Place::Chunk } else { Place::File(&name) };
         let Written { container, beside } = self.written(&place, way)?;
-        let mut whole = Vec::new();
-        let mut missing = Vec::new();
-        for file in files {
-            let Ok(from) = self.source.file(&file) else {
-                missing.push(file);
-                continue;
-            };
-            let to = folder.join(&file);
-            if to.canonicalize().is_ok_and(|there| there == from) {
-                continue;
-            }
-            let reason = |reason| WriteError::File { path: to.clone(), reason };
-            let bytes = std::fs::read(&from).map_err(reason)?;
-            match std::fs::read(&to) {
-                Ok(there) if there == bytes => continue,
-                Ok(_) => {
-                    let why = format!("it is there already, and not the same as {}", from.display());
-                    return Err(reason(std::io::Error::new(std::io::ErrorKind::AlreadyExists, why)));
-                }
-                Err(_) => {}
-            }
-            if let Some(folder) = to.parent() {
-                std::fs::create_dir_all(folder).map_err(reason)?;
-            }
-            whole.push(WholeFile { path: to, bytes });
-        }
+        let found = files.iter().map(|file| (file.as_path(), self.source.file(file)));
+        let (found, missing): (Vec<_>, Vec<_>) = found.partition(|(_, path)| path.is_ok());
+        let missing = missing.into_iter().map(|(file, _)| file.to_owned()).collect();
+        let found = found.into_iter().filter_map(|(file, path)| Some((file, path.ok()?)));
+        let mut whole = copies(found, folder)?;
         whole.extend(beside.map(|bytes| WholeFile { path: folder.join(&name), bytes }));
         let bytes = if is_glb { glb(&container)? } else { container.text.into_bytes() };
         // The document last: what it names is there by then.

@@ -1,5 +1,6 @@
 //! Writing: from triangles and what is known of their vertices to a file.
 
+mod copies;
 mod numbers;
 mod obj;
 mod off;
@@ -10,6 +11,7 @@ mod split;
 mod stl;
 mod whole;
 
+pub(crate) use copies::copies;
 pub(crate) use numbers::Pieces;
 pub use property::{Property, PropertyValues};
 pub use split::splits_vertices;
@@ -21,6 +23,7 @@ pub(crate) use whole::{WholeFile, write_together};
 use crate::error::WriteError;
 use crate::format::Format;
 use crate::gltf;
+use crate::mtl::MaterialLibraries;
 use crate::threemf::{self, LengthUnit};
 use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Triangles};
 use split::Split;
@@ -49,6 +52,9 @@ pub struct Output<'a> {
     pub channels: &'a [Channel],
     /// Files that describe materials. OBJ names them.
     pub material_libraries: &'a [String],
+    /// What the materials of the channel [`MATERIAL`](crate::MATERIAL) look like. glTF holds their base colours and pictures. The files are copied
+    /// below the folder of an OBJ or PLY file, which names them.
+    pub materials: Option<&'a MaterialLibraries>,
     /// Pictures that texture coordinates are places on. PLY names them.
     pub texture_files: &'a [String],
     /// Sharp edges. OBJ holds them.
@@ -70,6 +76,7 @@ impl<'a> Output<'a> {
             face_properties: &[],
             channels: &[],
             material_libraries: &[],
+            materials: None,
             texture_files: &[],
             creases: &[],
             corners: &[],
@@ -121,6 +128,12 @@ impl<'a> Output<'a> {
     /// Sets [`Self::material_libraries`].
     pub fn material_libraries(mut self, libraries: &'a [String]) -> Self {
         self.material_libraries = libraries;
+        self
+    }
+
+    /// Sets [`Self::materials`].
+    pub fn materials(mut self, materials: &'a MaterialLibraries) -> Self {
+        self.materials = Some(materials);
         self
     }
 
@@ -216,7 +229,7 @@ pub fn write(path: &Path, output: &Output<'_>, options: &WriteOptions) -> Result
 /// [`write()`] in a format that the name need not tell.
 ///
 /// # Errors
-/// The output does not fit together or into the format, or the system refuses.
+/// The output does not fit together or into the format, the system refuses, or a file that would be copied is there already and not the same.
 pub fn write_as(
     path: &Path,
     format: Format,
@@ -227,7 +240,21 @@ pub fn write_as(
     if matches!(format, Format::Gltf | Format::Glb) {
         return gltf::write_fresh(Some(path), format, output, options).map(drop);
     }
-    whole::write_whole_with(path, |writer| write_checked(writer, format, output, options))
+    let copied = named_files(path, format, output)?;
+    whole::write_whole_with(path, |writer| write_checked(writer, format, output, options))?;
+    write_together(&copied)
+}
+
+/// Copies of the files that an OBJ or PLY file names, if it is a file.
+fn named_files(path: &Path, format: Format, output: &Output<'_>) -> Result<Vec<WholeFile>, WriteError> {
+    let is_device = std::fs::metadata(path).is_ok_and(|there| !there.is_file());
+    match output.materials {
+        Some(found) if matches!(format, Format::Obj | Format::Ply) && !is_device => {
+            let files = found.files.iter().map(|file| (file.as_path(), found.folder.join(file)));
+            copies(files, path.parent().unwrap_or(Path::new("")))
+        }
+        _ => Ok(Vec::new()),
+    }
 }
 
 /// Writes a mesh in the given format to any writer. On an error, part of it may have been written.
