@@ -74,7 +74,7 @@ pub(super) fn are_of_round_things(mesh: &Mesh, bends: &[Bends], degrees: RangeIn
     };
     let is_of_row = |bend: &Bends| {
         let [a, b] = sides(bend);
-        is_as_large(a.face, a.other) && (goes_on(a) || goes_on(b))
+        is_as_large(a.face, a.other) && (goes_on(a) && goes_on(b))
     };
     let mut is_coarse = vec![false; mesh.face_count()];
     let all_planes = |bend: &Bends| faces(bend).map(|face| planes[face as usize] as usize);

@@ -46,7 +46,10 @@ const SHARP: usize = 80;
 
 /// Degrees that a gap between smooth edges and nearly square ones is wide at least, and one below sharp edges that are not.
 const GAP: usize = 15;
-const WIDE_GAP: usize = 28;
+const WIDE_GAP: usize = 30;
+
+/// Degrees that a gap below edges is wide at least at which coarse facets might meet.
+const LOWER_GAP: usize = 8;
 
 /// A part of the length of sharp edges (one in so many) that may lie within the gap: chamfers and the like.
 const WITHIN: f64 = 50.0;
@@ -98,11 +101,10 @@ impl Look {
             return Self::Cage;
         }
         let is_round = || are_of_round_things(mesh, &bends, COARSE);
-        let meant = lengths.with_edges_that_are_meant();
-        let is_doubtful =
-            |sharper: &Gap| gap.map_or_else(|| meant.is_plain(*sharper), |found| found.begin > USUAL);
-        let degrees = match (gap, meant.gap(SEEN).filter(is_doubtful)) {
-            (_, Some(sharper)) if !is_round() => Some(sharper.begin.max(USUAL) as f64),
+        let degrees = match (gap, lengths.lower_gap()) {
+            (Some(found), Some(lower)) if lower.end < found.begin && !is_round() => {
+                Some(lower.begin.max(USUAL) as f64)
+            }
             (Some(found), _) if found.end <= ROUND && is_round() => {
                 lengths.gap(ROUND + 1).map(|gap| lengths.angle(gap))
             }
@@ -186,14 +188,6 @@ impl Lengths {
         Self::new(by_degree)
     }
 
-    /// The same with all beyond the angle of fine facets among what is nearly square.
-    fn with_edges_that_are_meant(&self) -> Self {
-        let mut by_degree = self.by_degree;
-        by_degree[USUAL + 1..NEARLY_SQUARE].fill(0.0);
-        by_degree[NEARLY_SQUARE - 1] = self.beyond(USUAL + 1) - self.beyond(NEARLY_SQUARE);
-        Self::new(by_degree)
-    }
-
     fn new(by_degree: [f64; 181]) -> Self {
         Self { all: by_degree.iter().sum(), by_degree }
     }
@@ -217,22 +211,27 @@ impl Lengths {
         begin.map_or(0, |degrees| degrees + 1)
     }
 
+    /// The widest gap between smooth edges and sharp ones, which are at one of some angles and beyond.
+    fn widest(&self, sharp: RangeInclusive<usize>, least: usize, one_in: f64) -> Option<Gap> {
+        let gaps = sharp.filter(|&end| self.beyond(end) * FEW > self.all);
+        let gaps = gaps.map(|end| Gap { begin: self.begin(end, one_in), end });
+        gaps.filter(|gap| gap.begin <= ROUND && gap.end >= gap.begin + least)
+            .max_by_key(|gap| (gap.end - gap.begin, gap.end))
+    }
+
     /// The widest gap between smooth and sharp edges, which begin at so many degrees at least.
     fn gap(&self, least_sharp: usize) -> Option<Gap> {
-        let gap = |end: usize, one_in: f64| {
-            let begin = self.begin(end, one_in);
-            (self.beyond(end) * FEW > self.all && begin <= ROUND).then_some(Gap { begin, end })
-        };
-        let widest = |ends: RangeInclusive<usize>, least: usize, one_in: f64| {
-            let gaps = ends.filter_map(|end| gap(end, one_in)).filter(|gap| gap.end >= gap.begin + least);
-            gaps.max_by_key(|gap| (gap.end - gap.begin, gap.end))
-        };
         // What is nearly square is sharp before all else: the facets of a coarse cylinder may be taken for edges as well.
         let by = |one_in: f64| {
-            widest(NEARLY_SQUARE..=SHARP, GAP, one_in)
-                .or_else(|| widest(least_sharp..=NEARLY_SQUARE, WIDE_GAP, one_in))
+            self.widest(NEARLY_SQUARE..=SHARP, GAP, one_in)
+                .or_else(|| self.widest(least_sharp..=NEARLY_SQUARE, WIDE_GAP, one_in))
         };
         by(WITHIN).or_else(|| by(WITHIN_PLAIN_PARTS).filter(|&gap| self.is_plain(gap)))
+    }
+
+    /// The gap between the edges of fine facets and those at which coarse ones might meet.
+    fn lower_gap(&self) -> Option<Gap> {
+        self.widest(COARSE, LOWER_GAP, WITHIN).filter(|gap| gap.begin <= *COARSE.start())
     }
 
     /// Whether much is flat and much is sharp.
