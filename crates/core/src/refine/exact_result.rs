@@ -195,10 +195,10 @@ impl Traced for Exact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Estimate {
-    /// Triangles, exactly where there are few, extrapolated where there are many.
+    /// Triangles: exactly where there are few, extrapolated where there are many, from a sample of faces of large meshes.
     pub triangles: usize,
     /// Bytes that the refinement and its result would take at most, about.
     pub memory_bytes: usize,
-    /// Whether the triangles were counted rather than extrapolated.
+    /// Whether all triangles were counted.
     pub is_counted: bool,
 }

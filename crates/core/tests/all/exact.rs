@@ -4,7 +4,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::support::{tagged_obj, vertices_are_of_uniform_refinement};
+use crate::support::{Random, tagged_obj, vertices_are_of_uniform_refinement};
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
 use limitmesh::measure::{Bvh, SamplingOptions, hausdorff, hausdorff_between};
@@ -244,6 +244,24 @@ fn estimates_come_near() {
         let found = exact(&control, &Loop, &options).unwrap().mesh.face_count();
         let ratio = expected.triangles as f64 / found as f64;
         assert!(expected.is_counted && (0.9..1.1).contains(&ratio), "{name}: {expected:?} for {found}");
+    }
+}
+
+/// Of large meshes a sample of faces says what all take.
+#[test]
+fn estimates_of_large_meshes_come_near() {
+    let smooth = limit_reference(&model("bunny"), &Loop, 3).unwrap();
+    let mut random = Random::new(7);
+    let rough = 3e-4 * smooth.diagonal();
+    let positions = smooth.positions().iter().map(|p| p.map(|x| x + 0.5 * rough * random.signed()));
+    let mesh = smooth.clone().with_positions(positions.collect()).unwrap();
+    assert!(mesh.face_count() > 50_000);
+    for share in [2e-4, 5e-5, 2e-5] {
+        let options = ExactOptions::default().tolerance(share * mesh.diagonal());
+        let expected = exact_estimate(&mesh, &Loop, &options).unwrap();
+        let found = exact(&mesh, &Loop, &options).unwrap().mesh.face_count();
+        let ratio = expected.triangles as f64 / found as f64;
+        assert!(!expected.is_counted && (0.9..1.1).contains(&ratio), "{share}: {expected:?} for {found}");
     }
 }
 

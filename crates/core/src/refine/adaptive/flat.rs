@@ -362,14 +362,23 @@ impl FlatRegions {
         chains: &Chains,
         own: impl Fn(u32) -> usize,
     ) -> usize {
-        let count = |face: u32| {
-            if self.region(face).is_none() {
-                return own(face);
-            }
-            let rim = (3 * face..3 * face + 3).filter(|&h| self.is_rim((control, edges), h));
-            1 + rim.map(|h| chains.along(edges, h)).sum::<usize>()
-        };
-        (0..control.mesh.face_count() as u32).map(count).sum()
+        let faces = 0..control.mesh.face_count() as u32;
+        faces.map(|face| self.count_over((control, edges), chains, face, own(face))).sum()
+    }
+
+    /// Those that one face comes to, of which `own` are its own if it is not flat.
+    pub(super) fn count_over(
+        &self,
+        mesh: (&Control<'_>, &Edges<'_>),
+        chains: &Chains,
+        face: u32,
+        own: usize,
+    ) -> usize {
+        if self.region(face).is_none() {
+            return own;
+        }
+        let rim = (3 * face..3 * face + 3).filter(|&h| self.is_rim(mesh, h));
+        1 + rim.map(|h| chains.along(mesh.1, h)).sum::<usize>()
     }
 
     /// The half-edges around a region.

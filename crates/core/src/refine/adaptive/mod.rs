@@ -202,6 +202,31 @@ pub(super) fn count(
     Ok(found)
 }
 
+/// The triangles that a distance takes over the first `faces` of a mesh alone, which are divided as among their neighbours.
+pub(super) fn count_over_first(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    options: &ExactOptions,
+    distance: f64,
+    faces: usize,
+    observer: &mut Observer<'_>,
+) -> Result<usize, RefineError> {
+    with_engine(mesh, scheme, (options, &Demands::default()), observer, |engine| {
+        let mut is_divided = vec![false; mesh.face_count()];
+        for h in 0..3 * faces as u32 {
+            is_divided[h as usize / 3] = true;
+            engine.edges.twin(h).into_iter().for_each(|twin| is_divided[twin as usize / 3] = true);
+        }
+        let goal = Goal::Partly(f64::INFINITY, engine.floor(Some(distance)), is_divided);
+        let Some(plan) = engine.without_strips().plan(goal, usize::MAX)? else { return Ok(0) };
+        let over = |face: u32| {
+            let own = plan.closed[face as usize].triangles as usize;
+            engine.control.flat.count_over((engine.control, &engine.edges), &plan.chains, face, own)
+        };
+        Ok((0..faces as u32).map(over).sum())
+    })
+}
+
 fn with_engine<T>(
     mesh: &Mesh,
     scheme: &dyn Scheme,

@@ -1,13 +1,15 @@
 //! Predicts what an exact refinement would give, from how a coarser one grows.
 
 use super::scale;
-use crate::mesh::Mesh;
+use crate::index::{FaceId, HalfEdgeId};
+use crate::mesh::{Mesh, Sharpness};
+use crate::patch::submesh::submesh;
 use crate::progress::{Observer, unobserved};
 use crate::refine::exact_options::{BYTES_PER_TRIANGLE, ExactOptions};
 use crate::refine::exact_result::Estimate;
 use crate::refine::simplified::simplified;
 use crate::refine::{RefineError, adaptive};
-use crate::scheme::Scheme;
+use crate::scheme::{Scheme, Support};
 
 /// Goals are approached by halves from this many times too coarse, or more where they are far finer than [`COARSE_SHARE`] and the
 /// like.
@@ -24,6 +26,10 @@ const MOST_HALVINGS: f64 = 1000.0;
 /// Triangles that are counted before the rest is extrapolated.
 const COUNTED: usize = 60_000;
 
+/// Of meshes of so many faces about so many are looked at, at even steps through their order: they are cut out with the faces around them.
+const SAMPLED_FROM: usize = 20_000;
+const SAMPLES: usize = 1000;
+
 /// Triangles of a refinement, without collapses, that is made to see what part of it collapses leave: some tenths of a second.
 const COLLAPSED: usize = 15_000;
 
@@ -34,7 +40,7 @@ const MOST_GROWTH: f64 = 4.0;
 ///
 /// Numbers of triangles follow a power of the tolerance once the triangles are small against the surface's features; they
 /// are extrapolated from the last two halvings that could be counted quickly. What collapses leave of them is seen at a tolerance
-/// that takes few; it hardly depends on it.
+/// that takes few; it hardly depends on it. Of large meshes a sample of faces is looked at.
 ///
 /// # Errors
 /// As for [`super::exact`].
@@ -71,10 +77,38 @@ pub fn exact_estimate_observed(
     if !quality {
         return Ok(of(options.budget().0, false));
     }
-    let coarsest = coarsest(control, options);
-    approached((control.face_count(), coarsest), of, |times| {
+    let (faces, coarsest) = (control.face_count(), coarsest(control, options));
+    if let Some(tolerance) = options.tolerance.filter(|_| faces >= SAMPLED_FROM && is_distance_alone(options))
+    {
+        let step = faces / SAMPLES;
+        let seeds: Vec<HalfEdgeId> =
+            (step / 2..faces).step_by(step).map(|face| HalfEdgeId::of(FaceId(face as u32), 0)).collect();
+        let rings = if scheme.support() == Support::OneRing { 2 } else { 4 };
+        let around = submesh(control, &Sharpness::of(control), &seeds, rings);
+        let weight = faces as f64 / seeds.len() as f64;
+        let counted = (weight * COUNTED as f64) as usize;
+        let found = approached((faces, coarsest, counted), of, |times| {
+            let over = adaptive::count_over_first(
+                &around,
+                scheme,
+                options,
+                times * tolerance,
+                seeds.len(),
+                observer,
+            )?;
+            Ok((weight * over as f64) as usize)
+        })?;
+        return Ok(Estimate { is_counted: false, ..found });
+    }
+    approached((faces, coarsest, COUNTED), of, |times| {
         adaptive::count(control, scheme, options, times, observer)
     })
+}
+
+/// Whether each face takes triangles by how far they are from its surface and by nothing else.
+fn is_distance_alone(options: &ExactOptions) -> bool {
+    let criteria = options.angle.is_some() || options.pixels.is_some() || options.balance;
+    !criteria && options.attributes.is_empty() && options.kept_edges.is_empty()
 }
 
 /// The power of two that makes goals coarse enough to take few triangles.
@@ -117,7 +151,7 @@ fn optimised(
 
 /// Counts triangles for goals that are so many times too coarse until they are many or the goals the right ones.
 fn approached(
-    (faces, coarsest): (usize, f64),
+    (faces, coarsest, counted): (usize, f64, usize),
     of: impl Fn(usize, bool) -> Estimate,
     mut count: impl FnMut(f64) -> Result<usize, RefineError>,
 ) -> Result<Estimate, RefineError> {
@@ -127,7 +161,7 @@ fn approached(
         if times == 1.0 {
             return Ok(of(triangles, true));
         }
-        if triangles > COUNTED && triangles > before {
+        if triangles > counted && triangles > before {
             let growth = (triangles as f64 / before as f64).min(MOST_GROWTH);
             return Ok(of((triangles as f64 * growth.powf(times.log2())) as usize, false));
         }
