@@ -54,6 +54,10 @@ impl Nearness {
             .tolerance(Some(refining))
             .max_triangles(Some(arguments.max_triangles()));
         let found = within_observed(mesh, arguments.scheme()?, &options, &mut progress.observer())?;
+        if found.sharpened > 0 {
+            let edges = counted(found.sharpened, "edge stays", "edges stay");
+            progress.note(format!("{edges} sharp: nothing smoother is within --within there"));
+        }
         Ok((found.control, found.parts))
     }
 
