@@ -351,12 +351,12 @@ fn corners_and_creases_of_the_file_stay() {
     let mesh = ball(4);
     let mesh = mesh.with_creases_above(1.0).unwrap();
     let found = asked(&mesh, 0.3);
-    // Faces are divided, and creases with them: as many lead to each vertex of the file as did.
+    // Faces are divided, and creases with them: as many at least lead to each vertex of the file as did.
     let creases_at = |mesh: &Mesh, v: u32| {
         mesh.tags().creases.iter().filter(|crease| crease.vertices.contains(&v)).count()
     };
     for v in 0..mesh.vertex_count() as u32 {
-        assert_eq!(creases_at(&found.control, v), creases_at(&mesh, v), "{v}");
+        assert!(creases_at(&found.control, v) >= creases_at(&mesh, v), "{v}");
     }
     assert!(found.is_kept(), "{:?}", found.distance);
     check_distance(&mesh, &found, 0.3);

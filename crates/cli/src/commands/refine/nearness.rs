@@ -74,8 +74,7 @@ impl Nearness {
             Some(moved) if moved.upper <= self.within => {}
             Some(moved) => {
                 return Outcome::StoppedShort(format!(
-                    "--within {}{unit} could not be kept: the result is within {}{unit} of the input; larger distances can be, and \
-                     smaller faces help{written}",
+                    "--within {}{unit} could not be kept: the result is within {}{unit} of the input{written}",
                     number(self.within),
                     upper_bound(moved.upper)
                 ));
