@@ -158,7 +158,6 @@ pub fn within_observed(
 ) -> Result<Within, RefineError> {
     let bound = Bound::new(mesh, scheme, options)?;
     let mut sharper = Sharper::new(mesh);
-    // Of a large mesh that is near, triangles that are turned over are counted: to solve for it again takes minutes.
     let mut levels = 0;
     let (Smoothed { control, refined, .. }, parts, distance) = loop {
         let Finer { mesh: finer, parts } = Finer::new(&sharper.mesh, levels, observer)?;
@@ -174,9 +173,7 @@ pub fn within_observed(
         let is_far = smoothed.farthest(|fault| fault.distance) > bound.within;
         if more > 0 && is_affordable(mesh, levels + more) {
             levels += more;
-        } else if (is_far || finer.face_count() <= MOST_FACES)
-            && sharper.sharpen(&smoothed.faulty(&bound, &parts, mesh.face_count()), is_far)?
-        {
+        } else if sharper.sharpen(&smoothed.faulty(&bound, &parts, mesh.face_count()), is_far)? {
             levels = if is_far { 0 } else { levels };
         } else {
             let distance = smoothed.input_distance(mesh, &finer, &bound, observer)?;
