@@ -27,8 +27,8 @@ pub(crate) struct ExactArguments {
     ///
     /// For scans and voxels, whose vertices are no more exact than that: steps are smoothed away, and closed parts keep their volume. A
     /// length in the mesh's unit, with a unit where --unit tells the mesh's, or with % in per cent of the diagonal of its bounding box. Takes the
-    /// place of --tolerance and --interpolate. The exit code is 3 where it cannot be kept, as where faces are large beside it, and with --strict where triangles
-    /// are turned over.
+    /// place of --tolerance and --interpolate. Where no smooth surface is so near, as where faces are large beside it, edges stay sharp. The exit
+    /// code is 3 where it cannot be kept, and with --strict where triangles are turned over.
     #[arg(long, value_name = "T", value_parser = values::tolerance, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["tolerance", "interpolate", "interpolate_within", "no_input_distance"])]
     pub(crate) within: Option<Extent>,

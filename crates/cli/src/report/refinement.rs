@@ -549,7 +549,7 @@ pub(crate) struct OutputReport {
     pub(crate) components: usize,
     /// Vertices inside an edge of another triangle.
     pub(crate) t_junctions: usize,
-    /// Triangles whose normal is more than 90° from the limit normal at one of their corners; null for the stepwise methods.
+    /// Triangles whose normal is more than 90° from the limit normal at one of their corners, or with --within from all faces around; null for the stepwise methods.
     pub(crate) inverted_triangles: Option<usize>,
     /// The least angle of a triangle.
     pub(crate) min_angle_degrees: f64,

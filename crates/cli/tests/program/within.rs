@@ -123,20 +123,26 @@ fn assets_packages_batches_and_dry_runs_have_it_too() {
 }
 
 #[test]
-fn what_cannot_be_kept_ends_with_3() {
+fn what_cannot_be_smooth_stays_sharp_and_what_cannot_be_kept_ends_with_3() {
     let folder = folder();
     let input = file(&folder, "ball.off", &ball(3).0);
     let output = folder.path().join("out.ply");
-    run("refine {} -o {} --within 1e-7 --max-triangles 20k", &[&input, &output]).expect(3);
+    // A tiny distance neither takes many triangles nor is it missed.
+    run("refine {} -o {} --within 1e-7 --max-triangles 20k --strict", &[&input, &output])
+        .expect(0)
+        .saying("edges stay sharp");
     // A box of twelve triangles has no smooth surface so near.
     let corners: String =
         (0..8).map(|c| format!("v {} {} {}\n", 40 * (c & 1), 20 * (c >> 1 & 1), 5 * (c >> 2))).collect();
     let sides = "f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
     let box_of_twelve = file(&folder, "box.obj", &(corners + sides));
-    run("refine {} -o {} --within 0.04", &[&box_of_twelve, &output])
-        .expect(3)
-        .saying("--within 0.04 could not be kept");
-    assert!(!soup(&output).positions.is_empty());
+    run("refine {} -o {} --within 0.04", &[&box_of_twelve, &output]).expect(0).saying("12 edges stay sharp");
+    let positions = soup(&output).positions;
+    let is_on_box = |p: &[f64; 3]| {
+        let beyond = [40.0, 20.0, 5.0].iter().zip(p).map(|(size, x)| (-x).max(x - size));
+        beyond.fold(f64::MIN, f64::max).abs() <= 0.04
+    };
+    assert!(positions.len() >= 8 && positions.iter().all(is_on_box));
     // With few triangles it is not near, either.
     run("refine {} -o {} --within 0.5 --max-triangles 300", &[&input, &output]).expect(3);
 }

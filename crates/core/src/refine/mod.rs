@@ -45,7 +45,7 @@ pub use uniform::{
     UniformOptions, UniformTriangles, uniform, uniform_observed, uniform_triangles,
     uniform_triangles_observed,
 };
-pub use within::{Within, WithinOptions, within, within_observed};
+pub use within::{Within, WithinOptions, turned_over_triangles, within, within_observed};
 
 use core::time::Duration;
 

@@ -234,30 +234,116 @@ fn each_component_keeps_its_own_volume() {
     }
 }
 
-#[test]
-fn what_cannot_be_kept_is_told() {
-    // A flat box of twelve triangles: no smooth surface with its faces stays within a thousandth of them.
-    let box_of = |x: f64, y: f64, z: f64| {
-        let mut soup = PolygonSoup::default();
-        let side = |bit: u32, size: f64| if bit == 0 { 0.0 } else { size };
-        soup.positions = (0..8u32).map(|c| [side(c & 1, x), side(c >> 1 & 1, y), side(c >> 2, z)]).collect();
-        for face in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
-            soup.faces.push(&face);
+/// A box at the origin, each of its sides of two triangles.
+fn box_of(sizes: Point) -> Mesh {
+    let mut soup = PolygonSoup::default();
+    let side = |c: u32, axis: usize| if c >> axis & 1 == 0 { 0.0 } else { sizes[axis] };
+    soup.positions = (0..8u32).map(|c| [0, 1, 2].map(|axis| side(c, axis))).collect();
+    for face in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
+        soup.faces.push(&face);
+    }
+    Mesh::from_soup(&soup, &Default::default()).unwrap().0
+}
+
+/// A prism, or a cone, of the radius 1 over a polygon with so many sides, closed by fans.
+fn column(sides: u32, height: f64, is_cone: bool) -> Mesh {
+    let angle = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(sides);
+    let ring = |z: f64| (0..sides).map(move |i| [angle(i).cos(), angle(i).sin(), z]);
+    let mut positions = vec![[0.0, 0.0, 0.0], [0.0, 0.0, height]];
+    positions.extend(ring(0.0));
+    if !is_cone {
+        positions.extend(ring(height));
+    }
+    let mut triangles = Vec::new();
+    for i in 0..sides {
+        let [a, b] = [2 + i, 2 + (i + 1) % sides];
+        let [c, d] = [a + sides, b + sides];
+        triangles.push([0, b, a]);
+        match is_cone {
+            true => triangles.push([1, a, b]),
+            false => triangles.extend([[1, c, d], [a, b, c], [b, d, c]]),
         }
-        Mesh::from_soup(&soup, &Default::default()).unwrap().0
+    }
+    Mesh::from_triangles(positions, triangles).unwrap()
+}
+
+/// Triangles of a surface whose normal is more than 90° from those of all faces of a mesh that are that near their middle.
+fn looking_away(mesh: &Mesh, surface: Triangles<'_>, near: f64) -> usize {
+    let normal = |[a, b, c]: [Point; 3]| cross(minus(b, a), minus(c, a));
+    let input = mesh.as_triangles();
+    let faces: Vec<_> = (0..input.triangles.len()).map(|face| input.corners(face)).collect();
+    let looks_away = |own: [Point; 3]| {
+        let middle = [0, 1, 2].map(|i| (own[0][i] + own[1][i] + own[2][i]) / 3.0);
+        let close = faces.iter().filter(|&&face| distance_to_triangle(middle, face) <= near);
+        close.map(|&face| dot(normal(own), normal(face))).fold(f64::MIN, f64::max) < 0.0
     };
-    let mesh = box_of(40.0, 20.0, 5.0);
+    (0..surface.triangles.len()).filter(|&face| looks_away(surface.corners(face))).count()
+}
+
+/// Parts, cages and needles, coarse beside the distance: what cannot be round stays as sharp as it was.
+#[test]
+fn parts_and_cages_stay_within_any_distance() {
+    let meshes = [
+        box_of([40.0, 20.0, 5.0]),
+        box_of([1.0, 1.0, 1e-3]),
+        octahedron(),
+        column(32, 4.0, false),
+        column(6, 40.0, true),
+        voxels(2, |[x, y, z]| z == 0 && x.abs() < 2 && y.abs() < 2 && !(x > 0 && y > 0)),
+    ];
+    for (number, mesh) in meshes.iter().enumerate() {
+        for part in [1e-3, 1e-2] {
+            let most = part * mesh.diagonal();
+            let found = asked(mesh, most);
+            assert!(found.is_kept(), "{number} within {most}: {:?}", found.distance);
+            check_distance(mesh, &found, most);
+            assert_eq!(
+                looking_away(mesh, found.refined.mesh.as_triangles(), most),
+                0,
+                "{number} within {most}"
+            );
+            is_inverted_nowhere(&found);
+        }
+    }
+}
+
+#[test]
+fn a_box_that_no_smooth_surface_is_near_stays_a_box() {
+    let mesh = box_of([40.0, 20.0, 5.0]);
     let found = asked(&mesh, 0.04);
-    assert!(!found.is_kept() && found.distance.upper > 0.04, "{:?}", found.distance);
-    // Witness: some point of the one is that far from the other.
-    let output = found.refined.mesh.as_triangles();
-    let there = greatest_distance(&points(output, 3), mesh.as_triangles(), 20.0);
-    let back = greatest_distance(&points(mesh.as_triangles(), 40), output, 20.0);
-    assert!(there.max(back) > 0.04, "{there} and {back}");
-    // Farther than it is large, all is kept.
+    assert!(found.is_kept() && found.sharpened == 12, "{:?}, {}", found.distance, found.sharpened);
+    check_distance(&mesh, &found, 0.04);
+    assert!((volume(&found.refined.mesh) - 4000.0).abs() < 1e-6);
+    // Round where there is room.
     let found = asked(&mesh, 1.5 * mesh.diagonal());
-    assert!(found.is_kept());
+    assert!(found.is_kept() && found.sharpened == 0);
     check_distance(&mesh, &found, 1.5 * mesh.diagonal());
+}
+
+/// The round side of a prism over a polygon with 64 sides, between sharp rims.
+#[test]
+fn only_what_has_to_be_sharp_is() {
+    let mesh = column(64, 4.0, false);
+    let found = asked(&mesh, 0.01);
+    assert!(found.is_kept() && found.sharpened == 128, "{:?}, {}", found.distance, found.sharpened);
+    check_distance(&mesh, &found, 0.01);
+    // Rounder than the polygon, whose sides are 1.2e-3 nearer to the axis in their middle.
+    let radius = |p: &Point| p[0].hypot(p[1]);
+    let side = found.refined.mesh.positions().iter().filter(|p| p[2] > 0.1 && p[2] < 3.9);
+    let off = side.map(|p| (radius(p) - 1.0).abs()).fold(0.0, f64::max);
+    assert!(off < 4e-4, "{off}");
+}
+
+#[test]
+fn a_tiny_distance_does_not_take_millions_of_triangles() {
+    for mesh in [lumpy(500, 3), ball(4)] {
+        let most = 1e-7 * mesh.diagonal();
+        let found = asked(&mesh, most);
+        assert!(found.is_kept(), "{:?}", found.distance);
+        let triangles = found.refined.mesh.face_count();
+        assert!(triangles <= 4 * mesh.face_count(), "{triangles} of {}", mesh.face_count());
+        check_distance(&mesh, &found, most);
+    }
 }
 
 #[test]
@@ -265,12 +351,12 @@ fn corners_and_creases_of_the_file_stay() {
     let mesh = ball(4);
     let mesh = mesh.with_creases_above(1.0).unwrap();
     let found = asked(&mesh, 0.3);
-    // Faces are divided, and creases with them: as many lead to each vertex of the file as did.
+    // Faces are divided, and creases with them: as many at least lead to each vertex of the file as did.
     let creases_at = |mesh: &Mesh, v: u32| {
         mesh.tags().creases.iter().filter(|crease| crease.vertices.contains(&v)).count()
     };
     for v in 0..mesh.vertex_count() as u32 {
-        assert_eq!(creases_at(&found.control, v), creases_at(&mesh, v), "{v}");
+        assert!(creases_at(&found.control, v) >= creases_at(&mesh, v), "{v}");
     }
     assert!(found.is_kept(), "{:?}", found.distance);
     check_distance(&mesh, &found, 0.3);

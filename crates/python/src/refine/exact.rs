@@ -27,6 +27,7 @@ pub(super) fn refined(
     let found = exact_observed(&control.mesh, recipe.scheme, &options, observer)?;
     let distance =
         near.as_ref().map(|near| near.distance(&found, &control.tables.parts, observer)).transpose()?;
+    let inverted = near.as_ref().map(|near| near.inverted(&found, &control.tables.parts));
     let channels = match control.channels.is_empty() {
         true => Vec::new(),
         false => carried(&control.channels, &control.mesh, recipe.scheme, &found)?,
@@ -34,6 +35,7 @@ pub(super) fn refined(
     let mut refined = Refined::of_exact(found, control.tables).with_channels(channels);
     if let (Some(near), Some(distance)) = (near, distance) {
         near.tell(distance, &mut refined);
+        refined.inverted = inverted;
     }
     Ok(refined)
 }

@@ -3,7 +3,9 @@
 use limitmesh::Mesh;
 use limitmesh::mesh::FaceParts;
 use limitmesh::progress::Observer;
-use limitmesh::refine::{Exact, ExactOptions, InputDistance, Origin, WithinOptions, within_observed};
+use limitmesh::refine::{
+    Exact, ExactOptions, InputDistance, Origin, WithinOptions, turned_over_triangles, within_observed,
+};
 
 use super::Refined;
 use crate::control::{Control, Recipe};
@@ -71,6 +73,11 @@ impl Near {
             }
             None => Err(Failure::Option("triangles reach over several faces of the input".to_owned())),
         }
+    }
+
+    /// How many triangles of a result are turned over.
+    pub(super) fn inverted(&self, found: &Exact, parts: &FaceParts) -> usize {
+        turned_over_triangles(self.input.as_triangles(), found, parts)
     }
 
     /// Puts down how far it is, and where that is too far.

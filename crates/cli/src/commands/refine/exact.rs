@@ -1,13 +1,13 @@
 //! Exact refinement: from the goals on the command line to the mesh, its certified distance, and what is said of it.
 
-use limitmesh::Mesh;
 use limitmesh::progress::Stage;
-use limitmesh::refine::{Exact, ExactStop, InputDistance, exact_observed};
+use limitmesh::refine::{Exact, ExactStop, InputDistance, exact_observed, turned_over_triangles};
+use limitmesh::{Mesh, Triangles};
 
 use super::super::channels::Channels;
 use super::super::normals::Normals;
 use super::carried::Trail;
-use super::control::Before;
+use super::control::{Before, BeforeSurface};
 use super::goals::{Goals, unit_in_words, written};
 use super::input_distance;
 use super::provenance::Provenance;
@@ -72,7 +72,12 @@ pub(super) fn run(
         }
         (None, _) => {}
     }
-    let inverted = found.inverted_triangles();
+    let inverted = match &before.surface {
+        Some(BeforeSurface { positions, triangles }) if goals.near.is_some() => {
+            turned_over_triangles(Triangles { positions, triangles }, &found, &concave.parts)
+        }
+        _ => found.inverted_triangles(),
+    };
     let outcome = match outcome(&found, control, goals, arguments) {
         Outcome::Done => {
             goals.near.map_or(Outcome::Done, |near| near.outcome(moved.as_ref(), inverted, arguments))

@@ -54,6 +54,10 @@ impl Nearness {
             .tolerance(Some(refining))
             .max_triangles(Some(arguments.max_triangles()));
         let found = within_observed(mesh, arguments.scheme()?, &options, &mut progress.observer())?;
+        if found.sharpened > 0 {
+            let edges = counted(found.sharpened, "edge stays", "edges stay");
+            progress.note(format!("{edges} sharp: nothing smoother is within --within there"));
+        }
         Ok((found.control, found.parts))
     }
 
@@ -70,8 +74,7 @@ impl Nearness {
             Some(moved) if moved.upper <= self.within => {}
             Some(moved) => {
                 return Outcome::StoppedShort(format!(
-                    "--within {}{unit} could not be kept: the result is within {}{unit} of the input; larger distances can be, and \
-                     smaller faces help{written}",
+                    "--within {}{unit} could not be kept: the result is within {}{unit} of the input{written}",
                     number(self.within),
                     upper_bound(moved.upper)
                 ));

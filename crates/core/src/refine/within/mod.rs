@@ -7,7 +7,12 @@
 //! there. So the bound costs smoothness where it has to, and nowhere else.
 //!
 //! A surface through all vertices leaves large faces by some part of their size. Where that is more than it may be, faces are divided in four
-//! where they lie (`finer.rs`), which halves it, as often as it takes.
+//! where they lie (`finer.rs`), which halves it. Where that would have to be done too often, or does not help, edges become sharp
+//! (`sharper.rs`), and at worst faces stay the flat triangles that they are: the mesh itself is within any distance. So a box of twelve triangles
+//! gets round edges within a tenth of its size, and stays a box within a hundredth.
+//!
+//! **Coarse first.** What is far too far off shows on a coarse result as well. Results get finer as long as nothing is too far off, so that
+//! a tiny distance does not take millions of triangles before it is given up.
 //!
 //! **Near and fair.** A plate's energy alone is least where a surface is least curved: it would take the whole reach, close thin tubes and
 //! swell thick ones. So how far limits are from their vertices counts, too, ε|y|² beside |Bx|² on edges of the length h. Waves of the length ℓ
@@ -28,10 +33,15 @@
 //! ```
 
 mod finer;
+mod sharper;
+mod turned;
 mod volume;
+
+pub use turned::turned_over_triangles;
 
 use super::input_distance::{InputDistance, place};
 use super::{Exact, ExactOptions, RefineError, exact_observed, is_certified};
+use crate::geometry::closest_to_origin;
 use crate::interpolate::NearVertices;
 use crate::mesh::{FaceParts, Mesh, MeshError};
 use crate::options::options;
@@ -41,6 +51,8 @@ use crate::scheme::Scheme;
 use crate::vector::{DVec3, vector};
 use core::f64::consts::PI;
 use finer::Finer;
+use sharper::Sharper;
+use turned::turned_over;
 use volume::Shift;
 
 /// The part of the distance that refining may take, and the part of the mesh's diagonal: facets are hardly seen then.
@@ -65,8 +77,13 @@ const NEARER: f64 = 1.5;
 const UNFOLDED: f64 = 0.5;
 const LEAST_REACH: f64 = 0.05;
 
-/// Faces of the control mesh at most, where these are divided.
-const MOST_FACES: usize = 1 << 19;
+/// How often faces are divided at most, and how many there are then; more where they are divided once.
+const MOST_LEVELS: usize = 5;
+const MOST_FACES: usize = 1 << 16;
+const MOST_ONCE: usize = 1 << 18;
+
+/// How much finer results get, from one to the next.
+const FINER: f64 = 8.0;
 
 /// How often faces are divided at most where triangles are turned over though all is near.
 const MOST_UNFOLDING: usize = 2;
@@ -107,13 +124,14 @@ pub struct Within {
     pub distance: InputDistance,
     /// What was asked for.
     pub within: f64,
-    /// Triangles of the result that are turned over ([`Exact::inverted_triangles`]).
+    /// Triangles of the result that are turned over ([`turned_over_triangles`]).
     pub inverted: usize,
+    /// Edges of the mesh that was given that became sharp, because no smooth surface stays near there.
+    pub sharpened: usize,
 }
 
 impl Within {
-    /// Whether the result is proven to be as near as was asked for. Where it is not, faces are so large beside the distance that dividing them
-    /// would take more than half a million.
+    /// Whether the result is proven to be as near as was asked for: unless triangles are capped, or rounding is more than the distance.
     pub fn is_kept(&self) -> bool {
         self.distance.upper <= self.within
     }
@@ -139,24 +157,38 @@ pub fn within_observed(
     observer: &mut Observer<'_>,
 ) -> Result<Within, RefineError> {
     let bound = Bound::new(mesh, scheme, options)?;
+    let mut sharper = Sharper::new(mesh);
     let mut levels = 0;
-    let (Finer { mesh, parts }, smoothed) = loop {
-        let finer = Finer::new(mesh, levels, observer)?;
-        let smoothed = smoothed(&finer.mesh, scheme, &bound, observer)?;
-        let more = smoothed.missing_levels(&bound, levels);
-        let faces = finer.mesh.face_count();
-        if more == 0 || MOST_FACES >> (2 * more).min(30) < faces {
-            break (finer, smoothed);
+    let (Smoothed { control, refined, .. }, parts, distance) = loop {
+        let Finer { mesh: finer, parts } = Finer::new(&sharper.mesh, levels, observer)?;
+        let smoothed = smoothed(&finer, scheme, &bound, observer)?;
+        let is_wrong = smoothed.is_wrong(&bound);
+        if !is_wrong {
+            let distance = smoothed.input_distance(mesh, &finer, &bound, observer)?;
+            if distance.upper <= bound.within {
+                break (smoothed, parts, distance);
+            }
         }
-        levels += more;
+        let more = smoothed.missing_levels(&bound, levels);
+        let is_far = smoothed.farthest(|fault| fault.distance) > bound.within;
+        if more > 0 && is_affordable(mesh, levels + more) {
+            levels += more;
+        } else if sharper.sharpen(&smoothed.faulty(&bound, &parts, mesh.face_count()), is_far)? {
+            levels = if is_far { 0 } else { levels };
+        } else {
+            let distance = smoothed.input_distance(mesh, &finer, &bound, observer)?;
+            break (smoothed, parts, distance);
+        }
     };
-    let Smoothed { control, refined, inverted, .. } = smoothed;
-    let (input, found) = (mesh.as_triangles(), refined.mesh.as_triangles());
-    let distance = match InputDistance::new(input, &refined, &refined.origins, 0.0)? {
-        Some(distance) => distance.decided([input, found], bound.within, observer)?,
-        None => InputDistance { lower: 0.0, upper: f64::INFINITY },
-    };
-    Ok(Within { control, parts, refined, distance, within: bound.within, inverted })
+    let inverted = turned_over_triangles(mesh.as_triangles(), &refined, &parts);
+    let sharpened = sharper.edges;
+    Ok(Within { control, parts, refined, distance, within: bound.within, inverted, sharpened })
+}
+
+/// Whether the faces of a mesh may be divided so often.
+fn is_affordable(mesh: &Mesh, levels: usize) -> bool {
+    let most = if levels == 1 { MOST_ONCE } else { MOST_FACES };
+    levels <= MOST_LEVELS && mesh.face_count() <= most >> (2 * levels)
 }
 
 /// How near the result has to be.
@@ -195,18 +227,54 @@ impl Bound {
 struct Smoothed {
     control: Mesh,
     refined: Exact,
-    inverted: usize,
-    /// How far triangles are from their partners at most.
-    farthest: f64,
+    /// By face.
+    faults: Vec<Fault>,
 }
 
 impl Smoothed {
-    /// How much more often than `levels` times faces have to be divided, as it looks.
+    fn farthest(&self, distance: impl Fn(&Fault) -> f64) -> f64 {
+        self.faults.iter().map(distance).fold(0.0, f64::max)
+    }
+
+    /// Whether something is turned over, or farther from its face than it may be: not only beside its partner.
+    fn is_wrong(&self, bound: &Bound) -> bool {
+        self.farthest(|fault| fault.off) > bound.within || self.faults.iter().any(|fault| fault.is_inverted)
+    }
+
+    /// How much more often than `levels` times faces have to be divided, as it looks: not at all where that does not help.
     fn missing_levels(&self, bound: &Bound, levels: usize) -> usize {
-        if self.farthest > bound.within {
-            return (self.farthest / bound.room()).log2().ceil() as usize;
+        let off = self.farthest(|fault| fault.off);
+        let farthest = if off > bound.within { off } else { self.farthest(|fault| fault.distance) };
+        match farthest > bound.within {
+            true => (farthest / bound.room()).log2().ceil() as usize,
+            false => usize::from(levels < MOST_UNFOLDING),
         }
-        usize::from(self.inverted > 0 && levels < MOST_UNFOLDING)
+    }
+
+    /// Over which of the faces of the mesh that was given something is wrong.
+    fn faulty(&self, bound: &Bound, parts: &FaceParts, faces: usize) -> Vec<bool> {
+        let mut is_faulty = vec![false; faces];
+        let is_wrong = self.is_wrong(bound);
+        for (face, fault) in (0..).zip(&self.faults) {
+            let distance = if is_wrong { fault.off } else { fault.distance };
+            is_faulty[parts.whole(face) as usize] |= distance > bound.within || fault.is_inverted;
+        }
+        is_faulty
+    }
+
+    /// How far the result is from the mesh that was given.
+    fn input_distance(
+        &self,
+        mesh: &Mesh,
+        finer: &Mesh,
+        bound: &Bound,
+        observer: &mut Observer<'_>,
+    ) -> Result<InputDistance, RefineError> {
+        let meshes = [mesh.as_triangles(), self.refined.mesh.as_triangles()];
+        Ok(match InputDistance::new(finer.as_triangles(), &self.refined, &self.refined.origins, 0.0)? {
+            Some(distance) => distance.decided(meshes, bound.within, observer)?,
+            None => InputDistance { lower: 0.0, upper: f64::INFINITY },
+        })
     }
 }
 
@@ -216,10 +284,7 @@ fn smoothed(
     bound: &Bound,
     observer: &mut Observer<'_>,
 ) -> Result<Smoothed, RefineError> {
-    let exact = ExactOptions::default()
-        .tolerance(bound.tolerance)
-        .flat_regions(false)
-        .max_triangles(bound.max_triangles);
+    let exact = ExactOptions::default().flat_regions(false).max_triangles(bound.max_triangles);
     let mut watch = Watch::new(observer, Stage::Interpolating);
     watch.triangles(mesh.face_count());
     let mut near = NearVertices::new(mesh, scheme, &mut watch)?;
@@ -227,6 +292,7 @@ fn smoothed(
     let nearness = nearness(mesh, bound.within);
     let mut reach = vec![bound.room(); mesh.vertex_count()];
     let mut away = vec![DVec3::ZERO; mesh.vertex_count()];
+    let mut tolerance = bound.tolerance.max(OF_DIAGONAL * mesh.diagonal());
     let mut is_solved = false;
     let mut rounds = 0;
     loop {
@@ -236,14 +302,20 @@ fn smoothed(
         rounds += 1;
         let shifted = shift.applied(mesh, &away, &reach, |v| near.is_free(v));
         let control = near.control(&shifted, &mut watch)?;
-        let refined = exact_observed(&control, scheme, &exact, &mut watch.observer())?;
+        let refined =
+            exact_observed(&control, scheme, &exact.clone().tolerance(tolerance), &mut watch.observer())?;
         let poll: &mut Poll<'_> = &mut |_| watch.poll();
         let faults = faults(mesh, &refined, poll)?;
         is_solved = !reduced(mesh, &mut reach, &shifted, &faults, bound);
         let is_shifted = shift.corrected(&refined, 2.0 * bound.room(), poll)?;
-        if (is_solved && !is_shifted) || rounds == MOST_ROUNDS {
-            let farthest = faults.iter().map(|fault| fault.distance).fold(0.0, f64::max);
-            return Ok(Smoothed { inverted: refined.inverted_triangles(), control, refined, farthest });
+        let found = Smoothed { control, refined, faults };
+        let is_wrong = found.is_wrong(bound);
+        if (is_solved && (!is_shifted || is_wrong)) || rounds == MOST_ROUNDS {
+            if tolerance == bound.tolerance || is_wrong {
+                return Ok(found);
+            }
+            tolerance = bound.tolerance.max(tolerance / FINER);
+            rounds = rounds.min(MOST_ROUNDS - 1);
         }
     }
 }
@@ -264,24 +336,30 @@ fn perimeter(mesh: &Mesh, face: usize) -> f64 {
 /// What may be wrong with the triangles over a face.
 #[derive(Clone, Copy, Default)]
 struct Fault {
-    /// How far they are from their partners.
+    /// How far they are from their partners, and from the face itself.
     distance: f64,
+    off: f64,
     is_inverted: bool,
 }
 
 /// By face, what is wrong with the refined mesh.
 fn faults(mesh: &Mesh, refined: &Exact, poll: &mut Poll<'_>) -> Result<Vec<Fault>, Cancelled> {
     let (input, positions) = (mesh.as_triangles(), refined.mesh.positions());
-    let distances = parallel::map_polled(positions.len(), poll, |v| {
-        vector(positions[v]).distance(place(input, &refined.origins[v]))
-    })?;
+    let partners = parallel::map_polled(positions.len(), poll, |v| place(input, &refined.origins[v]))?;
     let mut faults = vec![Fault::default(); mesh.face_count()];
     for (triangle, &parent) in refined.mesh.triangles().iter().zip(&refined.parents) {
         let fault = &mut faults[parent as usize];
-        let distance = triangle.iter().map(|&v| distances[v as usize]).fold(0.0, f64::max);
-        fault.distance = fault.distance.max(distance);
+        for v in triangle.map(|v| v as usize) {
+            let at = vector(positions[v]);
+            let distance = at.distance(partners[v]);
+            if distance > fault.distance.min(fault.off) {
+                fault.distance = fault.distance.max(distance);
+                let [a, b, c] = input.corners(parent as usize).map(|corner| vector(corner) - at);
+                fault.off = fault.off.max(closest_to_origin(a, b, c).squared.sqrt());
+            }
+        }
     }
-    for face in refined.turned_over() {
+    for face in turned_over(mesh.as_triangles(), refined, &FaceParts::default()) {
         faults[refined.parents[face as usize] as usize].is_inverted = true;
     }
     Ok(faults)
