@@ -170,6 +170,15 @@ fn edges_are_sharp_only_where_somebody_says_so() {
     assert!(is_there(refined("--crease-angle 30")));
 }
 
+/// A mesh has no fewer triangles than it began with, and says so.
+#[test]
+fn fewer_triangles_than_there_are_end_with_3() {
+    let folder = folder();
+    let (input, output) = (file(&folder, "ball.off", &ball(4).0), folder.path().join("out.ply"));
+    let said = run("refine {} -o {} --within 0.9 --triangles 100", &[&input, &output]).expect(3);
+    said.saying("more than --triangles 100; --optimize goes below");
+}
+
 #[test]
 fn what_does_not_go_with_it_is_refused() {
     let output = Path::new("out.ply");

@@ -151,6 +151,7 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, arguments: &Refin
         && !found.is_optimized
         && found.stop == ExactStop::Met
         && goals.length.is_some()
+        && goals.near.is_none()
         && !is_exact
     {
         lines.push(
@@ -237,7 +238,7 @@ fn outcome(found: &Exact, control: &Mesh, goals: &Goals, arguments: &RefineArgum
         ExactStop::TriangleCap | ExactStop::MemoryCap | ExactStop::LevelCap => {
             format!("{cap} was reached before {}", goals.in_words(found))
         }
-        ExactStop::Triangles if goals.triangles.is_some_and(|wanted| triangles > wanted) => {
+        ExactStop::Triangles | ExactStop::Met if goals.triangles.is_some_and(|wanted| triangles > wanted) => {
             let wanted = thousands(goals.triangles.unwrap_or_default());
             if arguments.exact.optimize {
                 format!("no more edges could be collapsed before --triangles {wanted}")
