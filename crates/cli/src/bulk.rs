@@ -61,7 +61,7 @@ impl Bulk {
     pub(crate) fn as_shown(mesh: &Mesh, shown: &Shown) -> Self {
         let surface = mesh.as_triangles();
         let corner = surface.bounding_box().unwrap_or_default()[0];
-        let is_closed = mesh.topology().boundary_edge_count() == 0;
+        let is_closed = mesh.open_edge_count() == 0;
         let sums = pieces(surface.triangles.len(), |faces| {
             faces.map(|face| surface.corners(face)).fold([Sum::default(); 2], |[areas, volumes], corners| {
                 let volumes = if is_closed { volumes.with(volume(corners, corner)) } else { volumes };

@@ -216,6 +216,20 @@ fn a_bracket_with_holes_keeps_its_volume() {
     );
 }
 
+/// Two boxes that touch along an edge, as voxels do, enclose what both do.
+#[test]
+fn solids_that_touch_along_an_edge_are_closed() {
+    let folder = folder();
+    let mut boxes = Solid::cuboid([2.0, 3.0, 5.0]);
+    let moved =
+        boxes.0.iter().map(|corners| corners.map(|[x, y, z]| [x - 2.0, y - 3.0, z])).collect::<Vec<_>>();
+    boxes.0.extend(moved);
+    let input = boxes.stl(&folder, "boxes.stl");
+    let (run, found, _) = refine(&input, "");
+    assert!(run.stderr.contains(", closed (") && run.stderr.contains("volume 60 to 60"), "{}", run.stderr);
+    assert!((volume(&found) - 60.0).abs() < 1e-9);
+}
+
 /// One surface in all commands: what is refined by default is at its tolerance from the surface that others speak of by default.
 #[test]
 fn all_commands_speak_of_one_surface() {

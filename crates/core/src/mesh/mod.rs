@@ -283,6 +283,20 @@ impl Mesh {
         &self.junctions
     }
 
+    /// Number of half-edges without a partner: boundaries, but for those along cuts that go as often one way as the other. Solids that
+    /// touch along an edge have none.
+    pub fn open_edge_count(&self) -> usize {
+        let firsts = self.junctions.first_copies();
+        let first = |v: VertexId| firsts.get(&v.0).copied().unwrap_or(v.0);
+        let paired = self.junctions.edges.iter().map(|copies| {
+            let origins = || copies.iter().map(|&h| first(self.topology.origin(HalfEdgeId(h))));
+            let from = origins().next();
+            let along = origins().filter(|&origin| Some(origin) == from).count();
+            2 * along.min(copies.len() - along)
+        });
+        self.topology.boundary_edge_count() - paired.sum::<usize>()
+    }
+
     /// Vertex indices of each face, counter-clockwise seen from outside.
     #[inline]
     pub fn triangles(&self) -> &[[u32; 3]] {

@@ -6,7 +6,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::look::Bends;
+use super::look::Bend;
 use crate::geometry::DisjointSets;
 use crate::mesh::Mesh;
 
@@ -20,10 +20,10 @@ const SAME_AREA: f64 = 2.5;
 /// Where the length of edges between finer facets is this part (one in so many) of that of coarse ones, there are finer facets.
 const FINER: f64 = 4.0;
 
-/// An edge between two plane faces, seen from one of them.
+/// An edge between two facets, seen from one of them.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Side {
-    face: u32,
+    facet: u32,
     is_concave: bool,
     /// Whole degrees.
     degrees: u32,
@@ -32,59 +32,84 @@ struct Side {
 
 /// Whether most of the length of edges whose degrees are within some `degrees` is between facets of round things. Where other facets
 /// are finer, those were meant to be seen.
-pub(super) fn are_of_round_things(mesh: &Mesh, bends: &[Bends], degrees: RangeInclusive<usize>) -> bool {
-    let mut planes = DisjointSets::new(mesh.face_count());
-    let faces = |bend: &Bends| [bend.edge, bend.twin].map(|h| h.face().0);
-    bends.iter().filter(|bend| bend.degrees < FLAT).for_each(|bend| {
-        let [a, b] = faces(bend);
-        planes.unite(a, b);
-    });
-    let planes = planes.into_roots();
-    let mut areas = vec![0.0; mesh.face_count()];
-    planes.iter().enumerate().for_each(|(face, &root)| {
-        areas[root as usize] += mesh.face_normal_vector(face).length();
-    });
-    let is_as_large = |a: u32, b: u32| {
-        let [a, b] = [a, b].map(|plane| areas[plane as usize]);
-        a <= SAME_AREA * b && b <= SAME_AREA * a
-    };
-    let doubtful: Vec<&Bends> =
-        bends.iter().filter(|bend| degrees.contains(&(bend.degrees as usize))).collect();
-    let side = |bend: &Bends, [face, other]: [u32; 2]| {
-        let [face, other] = [face, other].map(|face| planes[face as usize]);
-        Side { face, is_concave: bend.is_concave, degrees: bend.degrees as u32, other }
-    };
-    let sides = |bend: &Bends| {
-        let [a, b] = faces(bend);
-        [side(bend, [a, b]), side(bend, [b, a])]
-    };
-    let mut rows: Vec<Side> = doubtful.iter().flat_map(|bend| sides(bend)).collect();
-    rows.retain(|side| is_as_large(side.face, side.other));
-    rows.sort_unstable();
-    rows.dedup();
-    let goes_on = |side: Side| {
-        let off = (SAME_ANGLE * f64::from(side.degrees)).round() as u32;
-        let first = rows.partition_point(|one| {
-            *one < Side { degrees: side.degrees.saturating_sub(off), other: 0, ..side }
-        });
-        let same = |one: &&Side| {
-            (one.face, one.is_concave) == (side.face, side.is_concave) && one.degrees <= side.degrees + off
-        };
-        rows[first..].iter().take_while(same).any(|one| one.other != side.other)
-    };
-    let is_of_row = |bend: &Bends| {
-        let [a, b] = sides(bend);
-        is_as_large(a.face, a.other) && (goes_on(a) && goes_on(b))
-    };
+pub(super) fn are_of_round_things(mesh: &Mesh, bends: &[Bend], degrees: RangeInclusive<usize>) -> bool {
+    let facets = Facets::of(mesh, bends);
+    let (coarse, others): (Vec<&Bend>, Vec<&Bend>) =
+        bends.iter().partition(|bend| degrees.contains(&(bend.degrees as usize)));
+    let rows = facets.rows(&coarse);
     let mut is_coarse = vec![false; mesh.face_count()];
-    let all_planes = |bend: &Bends| faces(bend).map(|face| planes[face as usize] as usize);
-    doubtful.iter().flat_map(|bend| all_planes(bend)).for_each(|plane| is_coarse[plane] = true);
-    let is_finer = |bend: &&Bends| {
+    coarse.iter().flat_map(|bend| facets.beside(bend)).for_each(|facet| is_coarse[facet as usize] = true);
+    let is_finer = |bend: &&&Bend| {
         (FLAT..*degrees.start() as f64).contains(&bend.degrees)
-            && !all_planes(bend).iter().any(|&plane| is_coarse[plane])
+            && !facets.beside(bend).iter().any(|&facet| is_coarse[facet as usize])
     };
-    let length = |bends: &mut dyn Iterator<Item = &Bends>| bends.map(|bend| bend.length).sum::<f64>();
-    let coarse = length(&mut doubtful.iter().copied());
-    let of_rows = length(&mut doubtful.iter().copied().filter(|bend| is_of_row(bend)));
-    2.0 * of_rows > coarse && FINER * length(&mut bends.iter().filter(is_finer)) < coarse
+    let is_of_row = |bend: &&&Bend| facets.is_of_row(bend, &rows);
+    let length = |bends: &mut dyn Iterator<Item = &&Bend>| bends.map(|bend| bend.length).sum::<f64>();
+    let all = length(&mut coarse.iter());
+    2.0 * length(&mut coarse.iter().filter(is_of_row)) > all
+        && FINER * length(&mut others.iter().filter(is_finer)) < all
+}
+
+/// Faces in one plane that hang together.
+struct Facets {
+    /// By face, the first of its facet.
+    first: Vec<u32>,
+    /// By that face.
+    areas: Vec<f64>,
+}
+
+impl Facets {
+    fn of(mesh: &Mesh, bends: &[Bend]) -> Self {
+        let mut sets = DisjointSets::new(mesh.face_count());
+        for bend in bends.iter().filter(|bend| bend.degrees < FLAT) {
+            sets.unite(bend.edge.face().0, bend.twin.face().0);
+        }
+        let first = sets.into_roots();
+        let mut areas = vec![0.0; mesh.face_count()];
+        for (face, &first) in first.iter().enumerate() {
+            areas[first as usize] += mesh.face_normal_vector(face).length();
+        }
+        Self { first, areas }
+    }
+
+    /// The facets at an edge.
+    fn beside(&self, bend: &Bend) -> [u32; 2] {
+        [bend.edge, bend.twin].map(|h| self.first[h.face().index()])
+    }
+
+    /// An edge from both sides, if the facets are about as large.
+    fn sides(&self, bend: &Bend) -> Option<[Side; 2]> {
+        let [a, b] = self.beside(bend);
+        let [own, other] = [a, b].map(|facet| self.areas[facet as usize]);
+        let side =
+            |facet, other| Side { facet, is_concave: bend.is_concave, degrees: bend.degrees as u32, other };
+        (own <= SAME_AREA * other && other <= SAME_AREA * own).then(|| [side(a, b), side(b, a)])
+    }
+
+    /// All sides of some edges, in order.
+    fn rows(&self, bends: &[&Bend]) -> Vec<Side> {
+        let mut rows: Vec<Side> = bends.iter().filter_map(|bend| self.sides(bend)).flatten().collect();
+        rows.sort_unstable();
+        rows.dedup();
+        rows
+    }
+
+    /// Whether the facets at an edge each meet a third one alike.
+    fn is_of_row(&self, bend: &Bend, rows: &[Side]) -> bool {
+        self.sides(bend).is_some_and(|sides| sides.into_iter().all(|side| side.goes_on(rows)))
+    }
+}
+
+impl Side {
+    /// Whether the facet meets another one at about the same angle.
+    fn goes_on(self, rows: &[Side]) -> bool {
+        let off = (SAME_ANGLE * f64::from(self.degrees)).round() as u32;
+        let least = Self { degrees: self.degrees.saturating_sub(off), other: 0, ..self };
+        let is_alike = |side: &&Self| {
+            (side.facet, side.is_concave) == (self.facet, self.is_concave)
+                && side.degrees <= self.degrees + off
+        };
+        let alike = rows[rows.partition_point(|side| *side < least)..].iter().take_while(is_alike);
+        alike.into_iter().any(|side| side.other != self.other)
+    }
 }

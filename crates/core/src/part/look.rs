@@ -150,7 +150,7 @@ struct Gap {
 }
 
 /// An edge between two faces, and how they meet there.
-pub(super) struct Bends {
+pub(super) struct Bend {
     pub(super) edge: HalfEdgeId,
     pub(super) twin: HalfEdgeId,
     /// Between the normals.
@@ -160,7 +160,7 @@ pub(super) struct Bends {
 }
 
 /// How faces meet at the edges between them, but for edges that lead to damaged coordinates.
-fn bends(mesh: &Mesh) -> Vec<Bends> {
+fn bends(mesh: &Mesh) -> Vec<Bend> {
     let topology = mesh.topology();
     let normals = parallel::map(mesh.face_count(), |face| mesh.unit_face_normal(face));
     let longest = FAR * middle_distance(mesh.positions());
@@ -170,7 +170,7 @@ fn bends(mesh: &Mesh) -> Vec<Bends> {
         let [a, b] = topology.ends(edge).map(|v| vector(mesh.positions()[v.index()]));
         let (degrees, length) = (m.cross(n).length().atan2(m.dot(n)).to_degrees(), (b - a).length());
         let is_one = m != DVec3::ZERO && n != DVec3::ZERO && length <= longest;
-        is_one.then(|| Bends { edge, twin, degrees, is_concave: is_concave(mesh, edge), length })
+        is_one.then(|| Bend { edge, twin, degrees, is_concave: is_concave(mesh, edge), length })
     };
     topology.half_edges().filter_map(bend).collect()
 }
@@ -182,7 +182,7 @@ struct Lengths {
 }
 
 impl Lengths {
-    fn of(bends: &[Bends]) -> Self {
+    fn of(bends: &[Bend]) -> Self {
         let mut by_degree = [0.0; 181];
         bends.iter().for_each(|bend| by_degree[(bend.degrees as usize).min(180)] += bend.length);
         Self::new(by_degree)

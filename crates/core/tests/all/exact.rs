@@ -420,6 +420,8 @@ fn cut_sheets_stay_together() {
     }
     let (control, _) = Mesh::from_soup(&soup, &Default::default()).unwrap();
     assert!(!control.junctions().edges.is_empty());
+    // Of the three copies of the edge two go opposite ways.
+    assert_eq!((control.topology().boundary_edge_count(), control.open_edge_count()), (10, 8));
     let result = exact(&control, &Loop, &ExactOptions::default().tolerance(1e-3)).unwrap();
     result.mesh.validate().unwrap();
     let edges = &result.mesh.junctions().edges;

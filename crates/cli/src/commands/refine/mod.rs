@@ -408,7 +408,7 @@ fn change_in_words(before: Bulk, after: Bulk, unit: Option<Unit>) -> String {
 /// The result in lines of at most 100 columns, names of files aside.
 fn summary(name: &str, refined: &Refined, refining: Duration) -> String {
     let Refined { mesh, achieved, how, .. } = refined;
-    let edges = match mesh.topology().boundary_edge_count() {
+    let edges = match mesh.open_edge_count() {
         0 => "closed".to_owned(),
         open => counted(open, "open edge", "open edges"),
     };
