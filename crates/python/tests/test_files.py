@@ -125,23 +125,6 @@ def test_each_side_of_a_sharp_edge_keeps_its_normals(tmp_path, extension):
     assert (np.sum(away * normals[~flat, :2], axis=1) > np.cos(np.pi / 16)).all()
 
 
-def test_parts_are_refined_as_the_program_does(tmp_path):
-    box = tmp_path / "box.stl"
-    corners = np.array([[x, y, z] for z in (0, 5) for y in (0, 20) for x in (0, 40)], float)
-    quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
-    limitmesh.save(box, corners, quads)
-
-    def extent(**options):
-        limitmesh.refine_file(box, tmp_path / "fine.ply", overwrite=True, **options)
-        return np.ptp(limitmesh.load(tmp_path / "fine.ply").vertices, axis=0)
-
-    np.testing.assert_allclose(extent(), [40, 20, 5])
-    np.testing.assert_allclose(extent(creases="auto"), [40, 20, 5])
-    assert (extent(creases="none") < [30, 18, 5]).all() and (extent(method="uniform") < [30, 18, 5]).all()
-    with pytest.raises(limitmesh.OptionError, match="overwrite"):
-        limitmesh.refine_file(box, box)
-
-
 def test_files_are_refined_as_the_program_does(tmp_path):
     mine, its = tmp_path / "mine.ply", tmp_path / "its.ply"
     report = limitmesh.refine_file("builtin:cup", mine, tolerance="0.2%", crease_angle=40, threads=2)

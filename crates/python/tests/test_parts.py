@@ -80,8 +80,13 @@ def test_files_too(tmp_path):
     assert report["size"]["after"]["volume"] == pytest.approx(4000, abs=1e-6)
     assert report["parameters"]["crease_angle_auto"]
     assert report["notes"][0].startswith("looks like a part: 12 edges")
-    plain = limitmesh.refine_file(source, target)
-    assert plain["size"]["after"]["volume"] < 2000
+    as_the_program = limitmesh.refine_file(source, target)
+    assert as_the_program["size"] == report["size"]
+    for options in ({"creases": "none"}, {"method": "uniform"}):
+        assert limitmesh.refine_file(source, target, **options)["size"]["after"]["volume"] < 2000
+    with pytest.raises(limitmesh.OptionError, match="overwrite"):
+        limitmesh.refine_file(source, source)
+    limitmesh.refine_file(source, source, overwrite=True)
 
 
 def test_what_contradicts_itself_is_refused():

@@ -242,11 +242,11 @@ def test_whatever_asarray_takes_gives_the_same(octahedron):
     assert limitmesh.refine(limitmesh.Mesh(vertices, faces), tolerance=0.05).faces.tobytes() == expected.faces.tobytes()
 
 
-def test_corners_are_no_mask():
+def test_corners_are_no_mask(octahedron):
     mask = np.zeros(6, dtype=bool)
     mask[5] = True
     with pytest.raises(limitmesh.OptionError, match="flatnonzero"):
-        limitmesh.refine(*OCTAHEDRON, corners=mask)
+        limitmesh.refine(*octahedron, corners=mask)
 
 
 def test_polygons_of_any_number_of_corners():

@@ -92,7 +92,7 @@ def _of_vertices(channel: Channel, sources: AnyIntegers) -> Channel:
     if channel.domain != "vertex":
         return channel
     rows = sources if channel.indices is None else channel.indices[sources]
-    return replace(channel, indices=rows)
+    return replace(channel, indices=rows.astype(np.int64))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
