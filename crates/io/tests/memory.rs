@@ -149,7 +149,7 @@ fn a_large_model() {
         );
         return;
     };
-    let peak = peak_of(|| read(&folder.join("gcanyon_530k.ply")).unwrap());
+    let peak = peak_of(|| read(folder.join("gcanyon_530k.ply")).unwrap());
     let each = peak as f64 / 530_450.0;
     assert!(each < 50.0, "{each} bytes a triangle");
 }

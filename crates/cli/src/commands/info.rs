@@ -120,7 +120,7 @@ fn limit_of(
 
 fn describe_file(report: &InformationReport) -> String {
     let InputReport { path, format, vertices, faces, left_out, channels } = &report.input;
-    let is_asset = ["gltf", "glb"].contains(&format.as_ref());
+    let is_asset = ["gltf", "glb"].contains(format);
     let format = if *format == "builtin" { "built-in model".to_owned() } else { format.to_uppercase() };
     let mut text = format!(
         "{path}: {format}, {}, {}",

@@ -32,7 +32,7 @@ fn files_are_within_their_tolerances_and_nested() {
     let (mut distances, mut vertices) = (Vec::new(), Vec::new());
     for (lod, (level, percent)) in levels.iter().zip([0.5, 2.0]).enumerate() {
         has_keys(level, "lod path vertices triangles tolerance lower upper parametric switching_distance");
-        let soup = read(&folder.path().join(format!("torus_LOD{lod}.ply"))).expect("a mesh");
+        let soup = read(folder.path().join(format!("torus_LOD{lod}.ply"))).expect("a mesh");
         let mesh = Mesh::from_soup(&soup, &Default::default()).expect("a mesh").0;
         assert_eq!(mesh.face_count() as u64, level["triangles"].as_u64().expect("a number"));
         assert_eq!(mesh.topology().boundary_edge_count(), 0);
@@ -55,7 +55,7 @@ fn morphs_begin_on_the_coarser_level() {
     let out = folder.path().join("cup.ply");
     run("lod builtin:cup -o {} --levels 2 --tolerance 0.5% --morph", &[&out]).expect(0);
     let [fine, coarse] =
-        [0, 1].map(|lod| read(&folder.path().join(format!("cup_LOD{lod}.ply"))).expect("a mesh"));
+        [0, 1].map(|lod| read(folder.path().join(format!("cup_LOD{lod}.ply"))).expect("a mesh"));
     let axis = |name: &str| fine.channels.iter().find(|channel| channel.name == name).expect("a property");
     let axes = ["coarse_x", "coarse_y", "coarse_z"].map(axis);
     let places: Vec<[f64; 3]> =

@@ -60,7 +60,7 @@ fn models() -> Option<String> {
 }
 
 fn build(folder: &str, name: &str, weld: Weld) -> (Mesh, Diagnosis) {
-    let soup = limitmesh_io::read(&Path::new(folder).join(name)).unwrap();
+    let soup = limitmesh_io::read(Path::new(folder).join(name)).unwrap();
     let (mesh, diagnosis) = Mesh::from_soup(&soup, &BuildOptions::default().weld(weld)).unwrap();
     mesh.validate().unwrap();
     (mesh, diagnosis)
@@ -147,7 +147,7 @@ fn shared_defects_are_found() {
     assert_eq!(findings("teapot.obj")[0], ("welded_vertices", 403));
     // Clean files, twisted polygons included, pass strict mode.
     for name in ["bunny_3674.obj", "mannequin.off", "bob_cage.obj", "fish_cage.obj", "featuretype.stl"] {
-        let soup = limitmesh_io::read(&Path::new(&folder).join(name)).unwrap();
+        let soup = limitmesh_io::read(Path::new(&folder).join(name)).unwrap();
         Mesh::from_soup(&soup, &BuildOptions::default().strict(true)).unwrap();
     }
 }
@@ -169,7 +169,7 @@ fn reversed_faces_are_turned_back() {
         mesh.triangles().iter().map(|&t| lowest_first(t)).collect()
     };
     assert_eq!(rotated(&repaired), rotated(&head));
-    let soup = limitmesh_io::read(&Path::new(&folder).join("defects/mannequin_flipped.off")).unwrap();
+    let soup = limitmesh_io::read(Path::new(&folder).join("defects/mannequin_flipped.off")).unwrap();
     let reversed = soup.faces.iter().zip(head.triangles()).filter(|(face, triangle)| {
         let next = |v: u32| face[(face.iter().position(|&w| w == v).unwrap() + 1) % 3];
         next(triangle[0]) != triangle[1]

@@ -420,7 +420,7 @@ fn content_under_another_name() {
 #[test]
 fn files_that_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
-    let message = |name: &str| read(&folder.path().join(name)).unwrap_err().to_string();
+    let message = |name: &str| read(folder.path().join(name)).unwrap_err().to_string();
     std::fs::create_dir(folder.path().join("folder.obj")).unwrap();
     std::fs::write(folder.path().join("empty.ply"), b"").unwrap();
     std::fs::write(folder.path().join("ply.obj"), b"ply\n").unwrap();

@@ -56,7 +56,7 @@ const COUNTS: [(&str, usize, usize, usize, usize); 34] = [
 fn every_model_has_the_counts_of_the_list() {
     let Some(folder) = folder() else { return };
     for (name, vertices, faces, creases, corners) in COUNTS {
-        let soup = read(&folder.join(name)).unwrap_or_else(|error| panic!("{error}"));
+        let soup = read(folder.join(name)).unwrap_or_else(|error| panic!("{error}"));
         let met = (soup.positions.len(), soup.faces.len(), soup.creases.len(), soup.corners.len());
         assert_eq!(met, (vertices, faces, creases, corners), "{name}");
     }
@@ -67,7 +67,7 @@ fn every_model_has_the_counts_of_the_list() {
 fn tags_count_vertices_from_zero() {
     let Some(folder) = folder() else { return };
     for name in ["rook_creased.obj", "mechpart_creased.obj", "loop_icos_semisharp.obj"] {
-        let mut soup = read(&folder.join(name)).unwrap();
+        let mut soup = read(folder.join(name)).unwrap();
         // What was left out has not been written.
         soup.left_out.clear();
         let is_edge = |ends: [u32; 2]| {
@@ -82,7 +82,7 @@ fn tags_count_vertices_from_zero() {
         let shifted = |tag: &limitmesh::mesh::CreaseTag| tag.vertices.map(|v| v.wrapping_sub(1));
         assert!(!soup.creases.iter().all(|tag| is_edge(shifted(tag))), "{name}");
     }
-    let icosahedra = read(&folder.join("loop_icos_semisharp.obj")).unwrap();
+    let icosahedra = read(folder.join("loop_icos_semisharp.obj")).unwrap();
     let corners: Vec<_> = icosahedra.corners.iter().map(|tag| (tag.vertex, tag.sharpness)).collect();
     assert_eq!(corners, [(4, 2.5), (16, 4.5)]);
 }
@@ -90,17 +90,17 @@ fn tags_count_vertices_from_zero() {
 #[test]
 fn polygons_keep_their_sizes() {
     let Some(folder) = folder() else { return };
-    let soup = read(&folder.join("fish_cage.obj")).unwrap();
+    let soup = read(folder.join("fish_cage.obj")).unwrap();
     let of_size = |n| soup.faces.iter().filter(|face| face.len() == n).count();
     assert_eq!([of_size(3), of_size(4), of_size(5)], [8, 100, 4]);
-    let soup = read(&folder.join("bob_cage.obj")).unwrap();
+    let soup = read(folder.join("bob_cage.obj")).unwrap();
     assert!(soup.faces.iter().all(|face| face.len() == 4));
 }
 
 #[test]
 fn damaged_files_say_where() {
     let Some(folder) = folder() else { return };
-    let message = |name: &str| read(&folder.join(name)).unwrap_err().to_string();
+    let message = |name: &str| read(folder.join(name)).unwrap_err().to_string();
     let truncated = message("defects/sphere_truncated.ply");
     assert!(truncated.contains("sphere_truncated.ply: PLY byte 4411, face "), "{truncated}");
     let not_finite = message("defects/inf_nan.obj");
@@ -116,7 +116,7 @@ fn models_survive_every_format() {
     let Some(folder) = folder() else { return };
     let target = tempfile::tempdir().unwrap();
     for name in ["skull_low.obj", "goathead_be.ply", "featuretype.stl", "mannequin.off"] {
-        let mut soup = read(&folder.join(name)).unwrap();
+        let mut soup = read(folder.join(name)).unwrap();
         // What was left out is not written here, nor what else there is beside the shape.
         soup.left_out.clear();
         soup.channels.clear();
