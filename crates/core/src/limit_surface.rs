@@ -152,7 +152,7 @@ impl<'a> LimitSurface<'a> {
 
     /// Answers for places over a face that there is. `spare` is scratch space.
     fn find<A: Answers>(&self, face: FaceId, places: &mut Vec<Place>, spare: &mut Vec<Place>, found: &mut A) {
-        let corners = self.corner_points(face).map(A::Limit::of);
+        let corners = self.corner_points(face).map(|point| A::Limit::of(point.position, || point.normal));
         take_corners(corners, places, found);
         if !places.is_empty() {
             let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);

@@ -78,10 +78,6 @@ pub(crate) struct Pieces<'a> {
     samples: Option<Samples>,
 }
 
-/// Levels below a leaf whose vertices are sampled where nothing can be certified: over an evenly curved piece the greatest
-/// height is met within 2 per cent.
-const SAMPLED_LEVELS: usize = 3;
-
 impl<'a> Pieces<'a> {
     pub(crate) fn of(patch: &'a Patch) -> Self {
         Self { patch, known: None, refined: None, net: None, samples: None }
@@ -109,7 +105,7 @@ impl<'a> Pieces<'a> {
     pub(crate) fn points(&mut self, levels: usize, rules: &'a Rules<'a>) -> Vec<DVec3> {
         let mut points = Vec::new();
         let refined = self.refined(rules);
-        points.extend((0..3).map(|edge| refined.middle(edge).position));
+        points.extend((0..3).map(|edge| refined.middle_as::<DVec3>(edge)));
         if levels > 1 {
             let parts = (0..4).map(|child| refined.part(child));
             points.extend(parts.flat_map(|part| Pieces::of(&part).points(levels - 1, rules)));
@@ -130,7 +126,7 @@ impl<'a> Pieces<'a> {
             return Deviation::alone(f64::INFINITY);
         }
         if let Patch::Mesh(local) = self.patch {
-            let samples = self.samples.get_or_insert_with(|| Samples::of(local, SAMPLED_LEVELS, rules));
+            let samples = self.samples.get_or_insert_with(|| Samples::of(local, rules));
             return samples.deviation(part, &effort.bound::<DVec3>(frame));
         }
         match effort.seen_from(frame) {

@@ -35,7 +35,7 @@ impl Sheet {
     /// Those over the four parts.
     pub(crate) fn children(&self, rules: &Rules<'_>) -> [Self; 4] {
         let refined = self.patch.refined(rules);
-        let middles = [0, 1, 2].map(|edge| refined.middle(edge).position);
+        let middles = [0, 1, 2].map(|edge| refined.middle_as::<DVec3>(edge));
         [0, 1, 2, 3].map(|child| {
             let corners = child_corners(self.corners, middles, child);
             Self { patch: refined.part(child), corners }
@@ -48,7 +48,7 @@ impl Sheet {
             return self.corners;
         }
         let refined = self.patch.refined(rules);
-        part.corners(self.corners, [0, 1, 2].map(|edge| refined.middle(edge).position))
+        part.corners(self.corners, [0, 1, 2].map(|edge| refined.middle_as::<DVec3>(edge)))
     }
 
     /// A bound of how far the function is from the linear one with its values at the corners of a part, anywhere there; tight only
@@ -158,7 +158,7 @@ impl Search<'_> {
     fn samples(&mut self, patch: &Patch, linear: [DVec3; 3], levels: usize) {
         let refined = patch.refined(self.rules);
         for (edge, middle) in middles(linear).into_iter().enumerate() {
-            self.found = greater(self.found, refined.middle(edge).position.distance(middle));
+            self.found = greater(self.found, refined.middle_as::<DVec3>(edge).distance(middle));
         }
         if levels > 1 {
             for child in 0..4 {

@@ -6,59 +6,31 @@
 use super::deviation::Deviation;
 use super::hull_points::DeviationBound;
 use super::sub_triangle::SubTriangle;
-use crate::index::{FaceId, HalfEdgeId};
-use crate::mesh::Mesh;
 use crate::patch::Rules;
-use crate::patch::mesh_patch::{MeshPatch, corners, limit_position, refined_around};
+use crate::patch::mesh_form::{Place, SAMPLED_LEVELS};
+use crate::patch::mesh_patch::MeshPatch;
 use crate::vector::DVec3;
 
-/// Barycentric coordinates, multiplied by a power of 2.
-type Place = [i32; 3];
+/// The sum of the coordinates of each place.
+const UNIT: i32 = 1 << SAMPLED_LEVELS;
 
 /// Limit points of a piece.
-pub(crate) struct Samples {
-    /// Twice the sum of the coordinates of each place, a power of 2.
-    unit: i32,
-    points: Vec<(Place, DVec3)>,
-}
+pub(crate) struct Samples(Vec<(Place, DVec3)>);
 
 fn middle(a: Place, b: Place) -> Place {
     [0, 1, 2].map(|i| (a[i] + b[i]) / 2)
 }
 
 impl Samples {
-    /// The limits of all vertices `levels` below a piece, its corners left out.
-    pub(crate) fn of(piece: &MeshPatch, levels: usize, rules: &Rules<'_>) -> Self {
-        let unit = 1 << levels;
-        let mut faces: Vec<(HalfEdgeId, [Place; 3])> =
-            vec![(piece.first(), [[unit, 0, 0], [0, unit, 0], [0, 0, unit]])];
-        let mut mesh: Option<Mesh> = None;
-        for _ in 0..levels {
-            let seeds: Vec<HalfEdgeId> = faces.iter().map(|&(first, _)| first).collect();
-            mesh = Some(refined_around(mesh.as_ref().unwrap_or(piece.mesh()), &seeds, rules));
-            faces =
-                faces.iter().flat_map(|&(_, corners)| quartered(corners)).enumerate().map(numbered).collect();
-        }
-        let mesh = mesh.as_ref().unwrap_or(piece.mesh());
-        let mut met = vec![false; mesh.vertex_count()];
-        let mut points = Vec::new();
-        for (first, places) in faces {
-            for (h, place) in corners(first).into_iter().zip(places) {
-                let vertex = mesh.topology().origin(h);
-                let is_corner = place.iter().filter(|&&x| x == 0).count() == 2;
-                if !is_corner && !core::mem::replace(&mut met[vertex.index()], true) {
-                    points.push((place, limit_position(mesh, vertex, rules)));
-                }
-            }
-        }
-        Self { unit, points }
+    pub(crate) fn of(piece: &MeshPatch, rules: &Rules<'_>) -> Self {
+        Self(piece.samples(rules))
     }
 
     /// What the points over a part show of the deviation of the triangle that stands for it.
     pub(crate) fn deviation(&self, part: SubTriangle, bound: &DeviationBound<'_>) -> Deviation {
-        let corners = places_of(part, self.unit);
+        let corners = places_of(part, UNIT);
         let mut deviation = Deviation::default();
-        for &(place, point) in &self.points {
+        for &(place, point) in &self.0 {
             let within = [0, 1, 2].map(|i| determinant([place, corners[(i + 1) % 3], corners[(i + 2) % 3]]));
             if within.iter().any(|&x| x < 0) {
                 continue;
@@ -74,16 +46,6 @@ impl Samples {
         }
         deviation
     }
-}
-
-/// The places of the corners of the four parts, as a step of refinement numbers them.
-fn quartered([a, b, c]: [Place; 3]) -> [[Place; 3]; 4] {
-    let [d, e, f] = [middle(a, b), middle(b, c), middle(c, a)];
-    [[a, d, f], [b, e, d], [c, f, e], [d, e, f]]
-}
-
-fn numbered((face, places): (usize, [Place; 3])) -> (HalfEdgeId, [Place; 3]) {
-    (HalfEdgeId::of(FaceId(face as u32), 0), places)
 }
 
 /// The places of the corners of a part.

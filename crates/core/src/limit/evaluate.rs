@@ -236,7 +236,7 @@ impl LimitTable<'_> {
     }
 
     /// The stencil of one vertex.
-    fn stencil_at(
+    pub(super) fn stencil_at(
         &self,
         mesh: &Mesh,
         sharpness: &Sharpness<'_>,
@@ -306,7 +306,7 @@ impl Stencil {
     }
 
     /// The side that the face of `corner` is on, at the vertex that it leaves.
-    fn side_of(&self, mesh: &Mesh, corner: HalfEdgeId) -> Option<Side<'_>> {
+    pub(super) fn side_of(&self, mesh: &Mesh, corner: HalfEdgeId) -> Option<Side<'_>> {
         let (slot, topology) = (slot_of(mesh, corner), mesh.topology());
         let faces = topology.outgoing_ring(topology.origin(corner)).count();
         self.sides().find(|side| (slot + faces - side.first) % faces < side.faces)

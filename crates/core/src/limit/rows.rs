@@ -6,9 +6,9 @@
 use super::evaluate::{Stencils, for_each_of_two_ring, stays};
 use super::refined::{Refined, RefinedWeights};
 use super::{LimitError, LimitTable};
-use crate::index::VertexId;
+use crate::index::{HalfEdgeId, VertexId};
 use crate::masks::Masks;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Sharpness};
 use crate::parallel::{self, Poll};
 use crate::progress::Cancelled;
 use crate::scheme::Support;
@@ -37,19 +37,7 @@ impl LimitTable<'_> {
             Ok(stencils) => stencils,
             Err(error) => return Ok(Err(error)),
         };
-        let row = |v: usize| {
-            let (vertex, weights) = (VertexId(v as u32), stencils.at(v).position());
-            match self.scheme().support() {
-                _ if stays(weights) => vec![(vertex.0, 1.0)],
-                Support::OneRing => one_ring_row(mesh, vertex, weights),
-                Support::TwoRing => two_ring_row(
-                    mesh,
-                    vertex,
-                    weights,
-                    &RefinedWeights(Masks::on_demand(mesh, self.scheme())),
-                ),
-            }
-        };
+        let row = |v: usize| self.row(mesh, VertexId(v as u32), stencils.at(v).position());
         let nowhere = &mut |_| poll(0);
         let pieces = parallel::pieces_polled(mesh.vertex_count(), PIECE, nowhere, |piece| {
             let (mut lengths, mut entries) = (Vec::with_capacity(piece.len()), Vec::new());
@@ -70,6 +58,45 @@ impl LimitTable<'_> {
             rows.weights.extend(entries.iter().map(|&(_, weight)| weight));
         }
         Ok(Ok(rows))
+    }
+
+    /// The weights that the limit position of one vertex has on the mesh's vertices.
+    pub(crate) fn position_row(&self, mesh: &Mesh, vertex: VertexId) -> Result<Vec<(u32, f64)>, LimitError> {
+        let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
+        Ok(self.row(mesh, vertex, stencil.position()))
+    }
+
+    /// The weights that two tangents have on the mesh's vertices at the vertex that `corner` leaves, on the side of its face: what
+    /// [`Self::normal_at`] is perpendicular to where they span a plane.
+    pub(crate) fn tangent_rows(
+        &self,
+        mesh: &Mesh,
+        corner: HalfEdgeId,
+    ) -> Result<[Vec<(u32, f64)>; 2], LimitError> {
+        let vertex = mesh.topology().origin(corner);
+        let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
+        let Some(side) = stencil.side_of(mesh, corner) else { return Ok(Default::default()) };
+        let tangents = side.tangents;
+        if tangents.is_empty() {
+            return Ok(Default::default());
+        }
+        Ok([0, 1].map(|axis| {
+            let weights = || tangents.iter().map(|weights| weights[axis]);
+            // Tangents are sums of differences to the vertex.
+            let all: Vec<f64> = core::iter::once(-weights().sum::<f64>()).chain(weights()).collect();
+            self.row(mesh, vertex, &all)
+        }))
+    }
+
+    fn row(&self, mesh: &Mesh, vertex: VertexId, weights: &[f64]) -> Vec<(u32, f64)> {
+        match self.scheme().support() {
+            _ if stays(weights) => vec![(vertex.0, 1.0)],
+            Support::OneRing => one_ring_row(mesh, vertex, weights),
+            Support::TwoRing => {
+                let refined = RefinedWeights(Masks::on_demand(mesh, self.scheme()));
+                two_ring_row(mesh, vertex, weights, &refined)
+            }
+        }
     }
 }
 

@@ -141,7 +141,7 @@ impl LimitSurface<'_> {
             return integrand.of_triangle(corners);
         }
         let refined = patch.refined(&self.rules);
-        let middles = [0, 1, 2].map(|edge| refined.middle(edge).position);
+        let middles = [0, 1, 2].map(|edge| refined.middle_as::<DVec3>(edge));
         let of_part = |part| match refined.points(part) {
             Some(points) => integrand.of_piece(&regular(&points), whole),
             None => {

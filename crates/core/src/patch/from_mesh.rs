@@ -23,7 +23,7 @@ pub(crate) fn root_patch(
 ) -> Patch {
     let corners = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
     if !rules.is_certified() {
-        return Patch::Mesh(MeshPatch::of(mesh, sharpness, face));
+        return Patch::Mesh(MeshPatch::of(mesh, sharpness, face, rules));
     }
     if let Some(points) = regular(mesh, sharpness, corners) {
         return Patch::Regular(points);

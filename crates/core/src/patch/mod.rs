@@ -11,6 +11,7 @@ pub(crate) mod characteristic;
 pub(crate) mod extraordinary;
 mod from_mesh;
 pub(crate) mod large_rings;
+pub(crate) mod mesh_form;
 pub(crate) mod mesh_patch;
 pub(crate) mod normal_net;
 mod pole;
@@ -75,7 +76,7 @@ pub(crate) trait Limit: Copy {
     fn regular(at: DVec3, ring: &[DVec3; 6]) -> Self;
 
     /// Of any.
-    fn of(point: LimitPoint) -> Self;
+    fn of(position: DVec3, normal: impl FnOnce() -> DVec3) -> Self;
 }
 
 impl Limit for LimitPoint {
@@ -88,8 +89,8 @@ impl Limit for LimitPoint {
         Self { position: DVec3::regular(at, ring), normal: unit_or_zero(along.cross(across)) }
     }
 
-    fn of(point: LimitPoint) -> Self {
-        point
+    fn of(position: DVec3, normal: impl FnOnce() -> DVec3) -> Self {
+        Self { position, normal: normal() }
     }
 }
 
@@ -101,8 +102,8 @@ impl Limit for DVec3 {
         (6.0 * at + (a + d) + (b + e) + (c + f)) / 12.0
     }
 
-    fn of(point: LimitPoint) -> Self {
-        point.position
+    fn of(position: DVec3, _: impl FnOnce() -> DVec3) -> Self {
+        position
     }
 }
 
@@ -292,8 +293,11 @@ impl RefinedPatch<'_> {
             Self::Extraordinary(refined) => regular(refined.middle(edge)),
             Self::Pole(refined) => regular(refined.middle(edge)),
             Self::Sectors(refined) => regular(refined.regular_middle(edge)),
-            Self::SemiSharp(refined) => L::of(refined.middle(edge)),
-            Self::Mesh(refined) => L::of(refined.middle(edge)),
+            Self::SemiSharp(refined) => {
+                let LimitPoint { position, normal } = refined.middle(edge);
+                L::of(position, || normal)
+            }
+            Self::Mesh(refined) => refined.middle(edge),
         }
     }
 }

@@ -4,6 +4,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::characteristic::Characteristic;
+use super::mesh_form::Forms;
 use super::settling;
 use crate::limit::{LimitError, LimitTable};
 use crate::scheme::{LoopFamily, Scheme};
@@ -24,6 +25,7 @@ pub(crate) struct Rules<'s> {
 /// What takes long to find, and depends on nothing but the scheme.
 struct Found<'s> {
     table: LimitTable<'s>,
+    forms: Forms,
     characteristics: [OnceLock<Characteristic>; KEPT],
     settling: [OnceLock<Option<f64>>; KEPT],
 }
@@ -43,6 +45,7 @@ impl<'s> Rules<'s> {
             betas: core::array::from_fn(kept),
             found: Arc::new(Found {
                 table: LimitTable::new(scheme),
+                forms: Forms::default(),
                 characteristics: [const { OnceLock::new() }; KEPT],
                 settling: [const { OnceLock::new() }; KEPT],
             }),
@@ -64,6 +67,11 @@ impl<'s> Rules<'s> {
     /// The scheme's limit stencils.
     pub(crate) fn table(&self) -> &LimitTable<'s> {
         &self.found.table
+    }
+
+    /// The forms of pieces, for schemes outside the Loop family.
+    pub(super) fn forms(&self) -> &Forms {
+        &self.found.forms
     }
 
     /// Whether the scheme is of the Loop family: what does not fade has a form of its own, and bounds hold.

@@ -103,7 +103,7 @@ impl Piece {
             }),
             Form::Irregular(patch) => {
                 let refined = patch.refined(rules);
-                let middles = [0, 1, 2].map(|edge| frame.inside(refined.middle(edge).position));
+                let middles = [0, 1, 2].map(|edge| frame.inside(refined.middle_as::<DVec3>(edge)));
                 [0, 1, 2, 3].map(|part| match refined.points(part) {
                     Some(points) => Self::of_points(frame, &points, self.spot.child(part)),
                     None => {

@@ -246,7 +246,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         if let Some(prover) = &mut self.prover {
             // Where their number stops the collapses, no triangle is to be much worse than the others.
             let goal = if goals.tolerance < f64::MAX { goals.tolerance } else { threshold * UNEVEN };
-            if cost <= self.sure {
+            if cost < self.sure {
                 prover.defer(&change, &self.surface, &self.samples);
             } else if prover.prove(&change, &self.surface, &self.samples, goal) {
                 prover.commit(&change);

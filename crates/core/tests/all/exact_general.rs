@@ -139,6 +139,32 @@ fn threads_change_nothing() {
     assert!(pool(1).install(run) == pool(3).install(run));
 }
 
+/// A triangle of 1e-29 whose sides fade over ten levels: a hundred times as long as it is wide.
+const NEEDLE: &str = "
+v 9.881072525791189e-30 0.0 0.0
+v 1.4269167202302316e-31 -5.094112858583294e-31 0.0
+v 0.0 0.0 1.6636115550843632e-31
+f 1 2 3
+t crease 2/1/0 0 1 10.0
+t crease 2/1/0 0 2 10.0
+t crease 2/1/0 1 2 10.0
+t corner 1/1/0 0 1.0
+t corner 1/1/0 2 1.0
+t corner 1/1/0 1 10.0
+";
+
+/// Pieces whose surroundings are of one kind share their weights, so that thousands of triangles come at once where nothing is certain, too.
+#[test]
+fn schemes_without_proofs_come_to_an_end() {
+    let control = tagged_obj(NEEDLE);
+    let found =
+        exact(&control, &ModifiedButterfly, &ExactOptions::default().triangles(40).optimize(true)).unwrap();
+    found.mesh.validate().unwrap();
+    assert_eq!(found.mesh.face_count(), 40);
+    let greatest = sampled(&control, &ModifiedButterfly, &found.mesh, 7);
+    assert!(greatest <= 1.1 * found.error.upper, "{greatest} {:?}", found.error);
+}
+
 #[test]
 fn shared_models_with_fading_creases_are_followed() {
     let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(std::path::PathBuf::from) else {

@@ -2,11 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
+use crate::flat::washer;
 use crate::support::tagged_obj;
 use limitmesh::Mesh;
-use limitmesh::measure::{CertifiedOptions, certified_hausdorff};
+use limitmesh::measure::{CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff};
 use limitmesh::mesh::{CreaseTag, Tags};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
 fn model(name: &str) -> Mesh {
@@ -113,6 +114,43 @@ fn estimates_come_near() {
             let ratio = expected.triangles as f64 / found as f64;
             assert!((1.0 / 1.3..1.3).contains(&ratio), "{name} at {share}: {expected:?} for {found}");
         }
+    }
+}
+
+/// The greatest distance that dense points find, either way, between a mesh and one of uniform refinement, which knows nothing of collapses.
+fn sampled(mesh: &Mesh, reference: &Mesh) -> f64 {
+    let samples = SamplingOptions::default().samples(60_000);
+    hausdorff(mesh.as_triangles(), reference.as_triangles(), &samples).unwrap().symmetric()
+}
+
+/// On flat faces collapses cost exactly nothing. They are proven like others: without a bound the result would be that of refinement alone.
+#[test]
+fn parts_lose_triangles_too() {
+    let control = washer(6, false);
+    let reference = limit_reference(&control, &Loop, 6).unwrap();
+    let chords = sampled(&limit_reference(&control, &Loop, 5).unwrap(), &reference);
+    for share in [2e-3, 1e-3, 5e-4] {
+        let tolerance = share * control.diagonal();
+        let plain = exact(&control, &Loop, &within(tolerance)).unwrap();
+        let result = simplified(&control, within(tolerance));
+        let counts = [&result, &plain].map(|found| found.mesh.face_count());
+        assert!(2 * counts[0] <= counts[1], "{share}: {counts:?}");
+        let found = sampled(&result.mesh, &reference);
+        assert!(result.stop == ExactStop::Met && result.error.upper <= tolerance, "{:?}", result.error);
+        assert!(found <= result.error.upper + chords, "{found} {:?}", result.error);
+    }
+}
+
+/// What collapses may take they take: points of the surface are nearly as far from the mesh as they may be.
+#[test]
+fn little_of_the_tolerance_is_left() {
+    for (name, share, levels) in [("bunny", 2e-3, 3), ("cup", 1e-3, 4), ("head", 3e-3, 4)] {
+        let control = model(name);
+        let reference = limit_reference(&control, &Loop, levels).unwrap();
+        let tolerance = share * control.diagonal();
+        let result = simplified(&control, within(tolerance));
+        let found = sampled(&result.mesh, &reference);
+        assert!((0.8..=1.0).contains(&(found / tolerance)), "{name}: {found} of {tolerance}");
     }
 }
 

@@ -167,6 +167,10 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, arguments: &Refin
         let regions = counted(found.unfolded, "flat region", "flat regions");
         lines.push(format!("{regions} would fold by the scheme's rules: what the rim encloses stands there"));
     }
+    let is_reached = matches!(found.stop, ExactStop::Met | ExactStop::Triangles);
+    if arguments.exact.optimize && !found.is_optimized && is_reached && found.levels > 0 {
+        lines.push("no edges collapsed: refinement alone takes no more triangles".to_owned());
+    }
     if found.refused > 0 {
         let vertices = counted(found.refused, "vertex", "vertices");
         lines.push(format!("{vertices} kept where a collapse was not proven"));

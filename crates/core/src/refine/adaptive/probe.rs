@@ -18,7 +18,8 @@ use super::quadtree::Place;
 use super::{Engine, Plan};
 use crate::certificate::TriangleFrame;
 use crate::index::VertexId;
-use crate::mesh::Mesh;
+use crate::measure::Bvh;
+use crate::mesh::{Mesh, Triangles};
 use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
@@ -40,8 +41,8 @@ const AT_ONCE: usize = 4;
 /// Levels below which edges have no length left.
 const MOST_LEVELS: usize = 64;
 
-/// Control faces whose samples are measured where nothing is certain.
-const MOST_MEASURED: usize = 2_000;
+/// Points that are measured where nothing is certain, give or take those of a control face: some seconds.
+const MOST_MEASURED: usize = 1_000_000;
 
 /// Levels that are sampled there.
 const MOST_SAMPLED_LEVELS: usize = 6;
@@ -176,7 +177,7 @@ pub(super) fn probe(
         best = loose_anew(engine, (plan, emission, &mesh), &candidates, best)?;
     }
     if !best.certified {
-        best.upper = estimated(engine, &worst, &mesh, &mut best)?;
+        best.upper = estimated(engine, &worst, emission, &mut best)?;
     }
     best.upper = best.upper.max(best.lower) + engine.rounding;
     best.lower = (best.lower - engine.rounding).max(0.0);
@@ -328,13 +329,16 @@ fn loose_anew(
 fn estimated(
     engine: &Engine<'_>,
     worst: &Worst<'_>,
-    mesh: &Nearest<'_>,
+    emission: &Emission,
     best: &mut ErrorBounds,
-) -> Result<f64, Cancelled> {
+) -> Result<f64, RefineError> {
     let control = engine.control;
+    let triangles = Triangles { positions: &emission.positions, triangles: &emission.triangles };
+    let tree = Bvh::new_observed(triangles, &mut engine.watch.observer())?;
+    let mut count = 0;
     let mut order: Vec<(f64, u32)> = worst.of_all().map(|(bound, _)| bound).zip(0..).collect();
     order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    for (count, &(bound, face)) in order.iter().enumerate() {
+    for &(bound, face) in &order {
         if bound <= best.lower || count >= MOST_MEASURED {
             return Ok(bound.max(best.lower));
         }
@@ -342,12 +346,14 @@ fn estimated(
         let levels = trees.depth(trees.root(face)) as usize + SAMPLED_LEVELS;
         let mut points = Vec::new();
         sample(control.piece(face).surface(control.rules), levels.min(MOST_SAMPLED_LEVELS), &mut points);
-        let share = parallel::share(points.len());
-        let found = engine.watch.long_pieces(points.len(), share, |some, is_stopped| {
-            let distance = |&point: &DVec3| (mesh.distance(point, face, is_stopped), point);
+        count += points.len();
+        let first = emission.triangles_of(face).start as u32;
+        let distances = engine.watch.pieces(points.len(), parallel::share(points.len()), |some| {
+            let distance = |point: &DVec3| tree.closest_from(point.to_array(), first).distance;
             points[some].iter().map(distance).collect::<Vec<_>>()
         })?;
-        found.into_iter().flatten().for_each(|(distance, point)| best.raise(distance, point));
+        let distances = distances.into_iter().flatten();
+        distances.zip(points).for_each(|(distance, point)| best.raise(distance, point));
     }
     Ok(best.lower)
 }

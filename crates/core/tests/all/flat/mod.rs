@@ -13,7 +13,7 @@ use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate, l
 use limitmesh::scheme::Loop;
 
 /// A slab with a hole through it, both round, and with vertices inside its flat sides where `has_inner`.
-fn washer(facets: u32, has_inner: bool) -> Mesh {
+pub(crate) fn washer(facets: u32, has_inner: bool) -> Mesh {
     let rings: &[(f64, f64)] = if has_inner {
         &[(2.0, 0.0), (2.0, 1.0), (1.5, 1.0), (1.0, 1.0), (1.0, 0.0), (1.5, 0.0)]
     } else {
