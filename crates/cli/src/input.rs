@@ -222,6 +222,9 @@ pub(crate) fn format_of(path: &Path, given: Option<FileFormat>) -> anyhow::Resul
         (Err(_), None) if path.as_os_str() == STANDARD_INPUT => {
             usage("standard input has no name that tells its format; it needs --from")
         }
+        (Err(_), None) if path.is_dir() => {
+            usage(format!("{} is a folder; `limitmesh batch` smooths all its files", path.display()))
+        }
         (Err(unknown), None) => Err(unknown.into()),
     }
 }

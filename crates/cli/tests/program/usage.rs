@@ -68,6 +68,19 @@ fn usage_is_shown_for_what_is_written_wrong_alone() {
     }
 }
 
+/// What a person meant who writes a unit apart, a folder for a file, or a file without a command.
+#[test]
+fn slips_are_answered_with_what_was_meant() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    for unit in ["mm", "in", "%"] {
+        let said = run(&format!("refine builtin:cup {unit} -o {{}} --tolerance 0.02"), &[&output]).expect(2);
+        said.saying(&format!("such as 0.1{unit}"));
+    }
+    run("refine {} -o {}", &[folder.path(), &output]).expect(2).saying("is a folder; `limitmesh batch`");
+    run("peg.stl", &[]).expect(2).saying("`limitmesh refine peg.stl` smooths a file");
+}
+
 #[test]
 fn options_out_of_range_are_refused_before_any_work() {
     let folder = folder();

@@ -4,8 +4,9 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf, is_separator};
 
 use anyhow::Context;
+use clap::ValueEnum;
 
-use crate::arguments::{FileFormat, RefineArguments};
+use crate::arguments::{FileFormat, RefineArguments, Unit};
 use crate::failure::{self, Outcome, usage};
 use crate::input;
 
@@ -14,6 +15,16 @@ use crate::input;
 /// # Errors
 /// Several inputs for one file, or an input without a name for a folder.
 pub(super) fn jobs(arguments: &RefineArguments) -> anyhow::Result<Vec<RefineArguments>> {
+    let is_unit = |input: &&PathBuf| {
+        let name = input.to_str().unwrap_or_default();
+        name == "%" || <Unit as ValueEnum>::from_str(name, false).is_ok()
+    };
+    if let Some(unit) = arguments.inputs.iter().find(is_unit).filter(|unit| !unit.exists()) {
+        let unit = unit.display();
+        return usage(format!(
+            "'{unit}' is no file; a length has its unit right behind the number, such as 0.1{unit}"
+        ));
+    }
     let named =
         [("--output", &arguments.output), ("--report", &arguments.report), ("--picture", &arguments.picture)];
     if arguments.inputs.len() > 1
