@@ -155,16 +155,19 @@ fn approached(
     of: impl Fn(usize, bool) -> Estimate,
     mut count: impl FnMut(f64) -> Result<usize, RefineError>,
 ) -> Result<Estimate, RefineError> {
-    let (mut times, mut before) = (coarsest, faces);
+    let (mut times, mut before, mut halvings) = (coarsest, faces, 1.0);
     loop {
         let triangles = count(times)?;
         if times == 1.0 {
             return Ok(of(triangles, true));
         }
         if triangles > counted && triangles > before {
-            let growth = (triangles as f64 / before as f64).min(MOST_GROWTH);
+            let growth = (triangles as f64 / before as f64).powf(1.0 / halvings).min(MOST_GROWTH);
             return Ok(of((triangles as f64 * growth.powf(times.log2())) as usize, false));
         }
-        (times, before) = (times / 2.0, triangles);
+        // As many as surely leave few enough, so that hardly anything is counted twice.
+        let most = (counted as f64 / triangles.max(1) as f64).log(MOST_GROWTH).floor();
+        halvings = most.clamp(1.0, times.log2());
+        (times, before) = (times / halvings.exp2(), triangles);
     }
 }
