@@ -25,26 +25,20 @@ pub(crate) fn decided(
     hints: &Hints<'_>,
     can_be_led: bool,
 ) -> Decided {
+    let as_given = |features, interpolation| Decided { features, interpolation, note: None };
+    if features.crease_angle != Some(CreaseAngle::Auto) || features.creases_from != CreasesFrom::None {
+        return as_given(features, interpolation);
+    }
     let own = hints.sharpness(mesh);
-    let is_open = features.crease_angle == Some(CreaseAngle::Auto)
-        && features.creases_from == CreasesFrom::None
-        && own != OwnSharpness::Tags;
-    let look = is_open.then(|| Look::of(mesh, faces));
-    let Some(Look::Part(part)) = look else { return Decided { features, interpolation, note: None } };
+    let look = (own != OwnSharpness::Tags).then(|| Look::of(mesh, faces));
+    let Some(Look::Part(part)) = look else { return as_given(features, interpolation) };
     interpolation.is_of_part = can_be_led && interpolation.given().is_none();
-    let (edges, tips) = match own {
-        OwnSharpness::Normals(edges) => {
-            features.creases_from = CreasesFrom::Normals;
-            (edges, 0)
-        }
-        _ => {
-            features.crease_angle = Some(CreaseAngle::Found(part.degrees));
-            (part.creases.edges.len(), part.tips.len())
-        }
-    };
-    let which = match own {
-        OwnSharpness::Normals(_) => "that have different normals on both sides".to_owned(),
-        _ => format!("sharper than {}°", number(part.degrees)),
+    let (edges, which, tips) = if let OwnSharpness::Normals(edges) = own {
+        features.creases_from = CreasesFrom::Normals;
+        (edges, "that have different normals on both sides".to_owned(), 0)
+    } else {
+        features.crease_angle = Some(CreaseAngle::Found(part.degrees));
+        (part.creases.edges.len(), format!("sharper than {}°", number(part.degrees)), part.tips.len())
     };
     let tips = if tips > 0 { format!(" and {}", counted(tips, "tip", "tips")) } else { String::new() };
     let led = if interpolation.is_of_part { ", surface led through the vertices" } else { "" };

@@ -192,7 +192,7 @@ impl FeatureArguments {
                 (mesh.with_creases(&found.edges), found.along_needles)
             }
             Some(CreaseAngle::Found(degrees)) => {
-                let part = Part::beyond(degrees, &mesh)?;
+                let part = Part::at_angle(degrees, &mesh)?;
                 (part.on(mesh), part.creases.along_needles)
             }
             Some(CreaseAngle::Auto | CreaseAngle::None) | None => (mesh, 0),

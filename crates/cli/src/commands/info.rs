@@ -141,8 +141,8 @@ fn describe_file(report: &InformationReport) -> String {
         text.push_str(&format!("carries: {}\n", all.join("; ")));
     }
     if !left_out.is_empty() {
-        // An asset that is edited keeps them.
-        let are = if is_asset { "kept by `refine`, not looked at" } else { "left out" };
+        // Assets that are edited keep them.
+        let are = if is_asset { "not looked at, kept from glTF to glTF" } else { "left out" };
         text.push_str(&format!("{are}: {}\n", left_out.join("; ")));
     }
     let TagCounts { creases, corners } = report.tags;

@@ -1,4 +1,4 @@
-//! Whether edges of 30° to 52° are those between the facets of something round, as on a peg of eight, or edges that are meant, as where a
+//! Whether edges of 31° to 52° are those between the facets of something round, as on a peg of eight, or edges that are meant, as where a
 //! roof lies on a wall.
 //!
 //! Facets of round things come in rows: a facet meets the next at about the angle at which it meets the one before, on the same side, and
@@ -39,15 +39,18 @@ pub(super) fn are_of_round_things(mesh: &Mesh, bends: &[Bend], degrees: RangeInc
     let rows = facets.rows(&coarse);
     let mut is_coarse = vec![false; mesh.face_count()];
     coarse.iter().flat_map(|bend| facets.beside(bend)).for_each(|facet| is_coarse[facet as usize] = true);
-    let is_finer = |bend: &&&Bend| {
+    let is_finer = |bend: &Bend| {
         (FLAT..*degrees.start() as f64).contains(&bend.degrees)
             && !facets.beside(bend).iter().any(|&facet| is_coarse[facet as usize])
     };
-    let is_of_row = |bend: &&&Bend| facets.is_of_row(bend, &rows);
-    let length = |bends: &mut dyn Iterator<Item = &&Bend>| bends.map(|bend| bend.length).sum::<f64>();
-    let all = length(&mut coarse.iter());
-    2.0 * length(&mut coarse.iter().filter(is_of_row)) > all
-        && FINER * length(&mut others.iter().filter(is_finer)) < all
+    let all = length(&coarse, |_| true);
+    2.0 * length(&coarse, |bend| facets.is_of_row(bend, &rows)) > all
+        && FINER * length(&others, is_finer) < all
+}
+
+/// The length of those edges that are as asked.
+fn length(bends: &[&Bend], is_own: impl Fn(&Bend) -> bool) -> f64 {
+    bends.iter().filter(|bend| is_own(bend)).map(|bend| bend.length).sum()
 }
 
 /// Faces in one plane that hang together.
@@ -109,7 +112,7 @@ impl Side {
             (side.facet, side.is_concave) == (self.facet, self.is_concave)
                 && side.degrees <= self.degrees + off
         };
-        let alike = rows[rows.partition_point(|side| *side < least)..].iter().take_while(is_alike);
-        alike.into_iter().any(|side| side.other != self.other)
+        let mut alike = rows[rows.partition_point(|side| *side < least)..].iter().take_while(is_alike);
+        alike.any(|side| side.other != self.other)
     }
 }

@@ -111,13 +111,13 @@ impl Look {
             _ => gap.map(|gap| lengths.angle(gap)),
         };
         let is_rough = gap.is_none_or(|gap| gap.end < NEARLY_SQUARE);
-        degrees.map_or(Self::Smooth, |degrees| Self::beyond(degrees, is_rough, mesh))
+        degrees.map_or(Self::Smooth, |degrees| Self::of_edges_beyond(degrees, is_rough, mesh))
     }
 
     /// A part with the edges beyond an angle, unless these are no lines or lead up and down stairs: of voxels, or of the facets at 35° and
     /// more that marching cubes make of these, where edges that are not nearly square look sharp.
-    fn beyond(degrees: f64, is_rough: bool, mesh: &Mesh) -> Self {
-        let Ok(part) = Part::beyond(degrees, mesh) else { return Self::Smooth };
+    fn of_edges_beyond(degrees: f64, is_rough: bool, mesh: &Mesh) -> Self {
+        let Ok(part) = Part::at_angle(degrees, mesh) else { return Self::Smooth };
         let edges = &part.creases.edges;
         let lines = Lines::of(mesh, edges);
         if LOOSE_ENDS * lines.loose_ends() > edges.len() || edges.is_empty() {

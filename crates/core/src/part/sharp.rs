@@ -26,7 +26,7 @@ impl Part {
     ///
     /// # Errors
     /// The angle is not within 0 … 180.
-    pub fn beyond(degrees: f64, mesh: &Mesh) -> Result<Self, MeshError> {
+    pub fn at_angle(degrees: f64, mesh: &Mesh) -> Result<Self, MeshError> {
         let creases = mesh.creases_above(degrees.to_radians())?;
         let tips = tips(mesh, &creases.edges, degrees.to_radians());
         Ok(Self { degrees, creases, tips })

@@ -87,7 +87,7 @@ pub fn exact_estimate_observed(
         let around = submesh(control, &Sharpness::of(control), &seeds, rings);
         let weight = faces as f64 / seeds.len() as f64;
         let counted = (weight * COUNTED as f64) as usize;
-        let found = approached((faces, coarsest, counted), of, |times| {
+        let found = approached(faces, coarsest, counted, of, |times| {
             let over = adaptive::count_over_first(
                 &around,
                 scheme,
@@ -100,7 +100,7 @@ pub fn exact_estimate_observed(
         })?;
         return Ok(Estimate { is_counted: false, ..found });
     }
-    approached((faces, coarsest, COUNTED), of, |times| {
+    approached(faces, coarsest, COUNTED, of, |times| {
         adaptive::count(control, scheme, options, times, observer)
     })
 }
@@ -151,7 +151,9 @@ fn optimised(
 
 /// Counts triangles for goals that are so many times too coarse until they are many or the goals the right ones.
 fn approached(
-    (faces, coarsest, counted): (usize, f64, usize),
+    faces: usize,
+    coarsest: f64,
+    counted: usize,
     of: impl Fn(usize, bool) -> Estimate,
     mut count: impl FnMut(f64) -> Result<usize, RefineError>,
 ) -> Result<Estimate, RefineError> {

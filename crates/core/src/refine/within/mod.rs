@@ -162,12 +162,12 @@ pub fn within_observed(
     let (Smoothed { control, refined, .. }, parts, distance) = loop {
         let Finer { mesh: finer, parts } = Finer::new(&sharper.mesh, levels, observer)?;
         let smoothed = smoothed(&finer, scheme, &bound, observer)?;
-        let is_wrong = smoothed.is_wrong(&bound);
-        if !is_wrong {
-            let distance = smoothed.input_distance(mesh, &finer, &bound, observer)?;
-            if distance.upper <= bound.within {
-                break (smoothed, parts, distance);
-            }
+        let known = match smoothed.is_wrong(&bound) {
+            true => None,
+            false => Some(smoothed.input_distance(mesh, &finer, &bound, observer)?),
+        };
+        if let Some(distance) = known.filter(|distance| distance.upper <= bound.within) {
+            break (smoothed, parts, distance);
         }
         let more = smoothed.missing_levels(&bound, levels);
         let is_far = smoothed.farthest(|fault| fault.distance) > bound.within;
@@ -176,7 +176,10 @@ pub fn within_observed(
         } else if sharper.sharpen(&smoothed.faulty(&bound, &parts, mesh.face_count()), is_far)? {
             levels = if is_far { 0 } else { levels };
         } else {
-            let distance = smoothed.input_distance(mesh, &finer, &bound, observer)?;
+            let distance = match known {
+                Some(distance) => distance,
+                None => smoothed.input_distance(mesh, &finer, &bound, observer)?,
+            };
             break (smoothed, parts, distance);
         }
     };
