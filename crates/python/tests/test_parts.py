@@ -84,6 +84,10 @@ def test_files_too(tmp_path):
     assert as_the_program["size"] == report["size"]
     for options in ({"creases": "none"}, {"method": "uniform"}):
         assert limitmesh.refine_file(source, target, **options)["size"]["after"]["volume"] < 2000
+    with pytest.raises(limitmesh.OptionError, match="interpolate=False"):
+        limitmesh.refine_file(source, target, interpolate=False)
+    plain = limitmesh.refine_file(source, target, interpolate=False, creases="none")
+    assert plain["size"]["after"]["volume"] < 2000
     with pytest.raises(limitmesh.OptionError, match="overwrite"):
         limitmesh.refine_file(source, source)
     limitmesh.refine_file(source, source, overwrite=True)

@@ -192,7 +192,7 @@ fn tips_of_cones_are_sharp() {
         let outside = fine.positions().iter().map(|p| p[0].hypot(p[1]) - 3.0 * (1.0 - p[2] / 4.0));
         assert!(outside.fold(0.0, f64::max) < 0.05, "{n}");
     }
-    // The pole of a ball is none, nor the end of a rod.
+    // The side of a rod has none, with a ring of vertices on it or without.
     for heights in [vec![0.0, 8.0], vec![0.0, 1.0, 8.0]] {
         let Look::Part(found) = Look::of(&peg(&facets(16), &heights, 5.0), &[]) else { panic!() };
         assert!(found.tips.is_empty());

@@ -134,8 +134,11 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
     ('met', True)
     """
     _options.one_of(creases, "creases", (None, "auto", "none"))
-    if creases == "auto" and interpolate is False:
-        raise OptionError("interpolate=False does not go with creases='auto' for files; crease_angle keeps edges sharp alone")
+    are_found = creases == "auto" or (creases is None and method == "exact" and within is None)
+    if are_found and crease_angle is None and interpolate is False:
+        raise OptionError(
+            "interpolate=False does not go with creases='auto' for files, the default; crease_angle keeps edges sharp alone, creases='none' none"
+        )
     _options.control_of(
         interpolate=interpolate,
         auto_creases=creases == "auto",

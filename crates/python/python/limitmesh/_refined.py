@@ -86,7 +86,6 @@ class Diagnosis:
 _NOTHING = dict.fromkeys(_limitmesh.FINDINGS, Finding(0, ()))
 
 
-
 def _of_vertices(channel: Channel, sources: AnyIntegers) -> Channel:
     """A channel where vertices stand for others, which they are made of."""
     if channel.domain != "vertex":
