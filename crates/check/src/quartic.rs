@@ -1,0 +1,95 @@
+//! Triangular polynomials of degree 4 by their Bézier points: made from twelve control points of Loop's scheme,
+//! divided, and restricted to sub-triangles.
+//!
+//! Point (j, k) has the weights (4 − j − k, j, k) of the corners 0, 1, 2; they stand in the order of j, then k.
+
+use crate::vector::{Vector, add, middle, scale};
+
+/// The Bézier points of a piece.
+pub type Net = [Vector; 15];
+
+/// The corners of a net, and the points over its side from each corner to the next.
+pub const CORNERS: [usize; 3] = [0, 14, 4];
+pub const SIDES: [[usize; 5]; 3] = [[0, 5, 9, 12, 14], [14, 13, 11, 8, 4], [4, 3, 2, 1, 0]];
+
+/// Twenty-fourths of the control points that each Bézier point takes: the three corners; of corner 0's ring, counted from
+/// corner 1, the neighbours 2 to 5; of corner 1's, counted from corner 2, 3 to 5; of corner 2's, counted from corner 0, 3 and 4.
+#[rustfmt::skip]
+const FROM_CONTROL: [[u8; 12]; 15] = [
+    [12, 2, 2, 2, 2, 2, 2, 0, 0, 0, 0, 0], [12, 3, 4, 3, 1, 0, 1, 0, 0, 0, 0, 0], [8, 4, 8, 4, 0, 0, 0, 0, 0, 0, 0, 0],
+    [4, 3, 12, 3, 0, 0, 0, 0, 0, 1, 0, 1], [2, 2, 12, 2, 0, 0, 0, 0, 0, 2, 2, 2], [12, 4, 3, 1, 0, 1, 3, 0, 0, 0, 0, 0],
+    [10, 6, 6, 1, 0, 0, 1, 0, 0, 0, 0, 0], [6, 6, 10, 1, 0, 0, 0, 0, 0, 1, 0, 0], [3, 4, 12, 1, 0, 0, 0, 0, 0, 3, 1, 0],
+    [8, 8, 4, 0, 0, 0, 4, 0, 0, 0, 0, 0], [6, 10, 6, 0, 0, 0, 1, 0, 0, 1, 0, 0], [4, 8, 8, 0, 0, 0, 0, 0, 0, 4, 0, 0],
+    [4, 12, 3, 0, 0, 0, 3, 1, 0, 1, 0, 0], [3, 12, 4, 0, 0, 0, 1, 0, 1, 3, 0, 0], [2, 12, 2, 0, 0, 0, 2, 2, 2, 2, 0, 0],
+];
+
+/// Where point (j, k) of a net of the degree `n` stands.
+const fn at(n: usize, j: usize, k: usize) -> usize {
+    j * (2 * n + 3 - j) / 2 + k
+}
+
+/// The net of a regular piece, from its corners and their six neighbours each, counted from the next corner.
+pub fn regular(corners: [Vector; 3], rings: &[[Vector; 6]; 3]) -> Net {
+    let [a, b, c] = rings;
+    let control = [corners[0], corners[1], corners[2], a[2], a[3], a[4], a[5], b[3], b[4], b[5], c[3], c[4]];
+    FROM_CONTROL.map(|weights| {
+        let sum = |sum, (&p, w)| add(sum, scale(p, f64::from(w)));
+        scale(control.iter().zip(weights).fold([0.0; 3], sum), 1.0 / 24.0)
+    })
+}
+
+/// The parts on both sides of the line from the middle of the side 0 1 to corner 2, which stays corner 2 of both.
+pub fn halves(net: &Net) -> [Net; 2] {
+    let (mut work, mut first, mut second) = (*net, *net, *net);
+    for step in 1..5 {
+        for k in 0..5 - step {
+            for j in 0..5 - step - k {
+                work[at(4, j, k)] = middle(work[at(4, j, k)], work[at(4, j + 1, k)]);
+            }
+            first[at(4, step, k)] = work[at(4, 0, k)];
+            second[at(4, 4 - step - k, k)] = work[at(4, 4 - step - k, k)];
+        }
+    }
+    [first, second]
+}
+
+/// The same piece, its corners counted from the next one.
+pub fn turned(net: &Net) -> Net {
+    let mut out = *net;
+    for j in 0..5 {
+        for k in 0..5 - j {
+            out[at(4, j, k)] = net[at(4, 4 - j - k, j)];
+        }
+    }
+    out
+}
+
+/// The net over the triangle with the given barycentric coordinates of its corners: its points are the blossom's values.
+pub fn over(net: &Net, corners: &[Vector; 3]) -> Net {
+    let (mut out, mut at_2) = (*net, *net);
+    for k in 0..5 {
+        let mut at_1 = at_2;
+        for j in 0..5 - k {
+            let mut at_0 = at_1;
+            (1..5 - k - j).rev().for_each(|n| step(&mut at_0, n, corners[0]));
+            out[at(4, j, k)] = at_0[0];
+            if j + k < 4 {
+                step(&mut at_1, 4 - k - j, corners[1]);
+            }
+        }
+        if k < 4 {
+            step(&mut at_2, 4 - k, corners[2]);
+        }
+    }
+    out
+}
+
+/// One step of de Casteljau's algorithm, in place: degree `n` becomes `n − 1`.
+fn step(net: &mut Net, n: usize, weights: Vector) {
+    for j in 0..n {
+        for k in 0..n - j {
+            let [p, q, r] = [net[at(n, j, k)], net[at(n, j + 1, k)], net[at(n, j, k + 1)]];
+            net[at(n - 1, j, k)] = add(add(scale(p, weights[0]), scale(q, weights[1])), scale(r, weights[2]));
+        }
+    }
+}
