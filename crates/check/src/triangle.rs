@@ -8,7 +8,8 @@ use crate::vector::{Vector, add, cross, dot, length, middle, scale, sub};
 /// Unit roundoff.
 pub const ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
-/// Base angles of flaps are by this part smaller than they may be, for rounding; and the least tangent of one.
+/// Base angles of flaps are at most so large, and by this part smaller than they may be, for rounding; and the least tangent of one.
+const MOST_ANGLE: f64 = 80.0 / 180.0 * PI;
 const SHRINK: f64 = 1e-4;
 const LEAST_TAN: f64 = 1.0 / 256.0;
 
@@ -53,7 +54,9 @@ struct Edge {
 struct Fold {
     normal: Vector,
     outwards: Vector,
-    tan: f64,
+    /// The tangents of the base angles, at the start and the end of the edge: of this triangle's flap, and of the other's.
+    out: [f64; 2],
+    back: [f64; 2],
     sigma: f64,
     /// cos(θ/2).
     half_cos: f64,
@@ -98,7 +101,8 @@ impl Frames<'_> {
             let joined = plane.as_ref().and_then(|plane| self.fold(3 * t + i, plane, way));
             flaps.push(from);
             if let Some(fold) = &joined {
-                flaps.push(add(from, scale(add(along, scale(outwards, fold.tan)), length(way) / 2.0)));
+                let tip = length(way) * fold.out[1] / (fold.out[0] + fold.out[1]);
+                flaps.push(add(from, scale(add(along, scale(outwards, fold.out[0])), tip)));
             }
             Edge { length: length(way), along, outwards, joined }
         });
@@ -113,19 +117,26 @@ impl Frames<'_> {
         let twin = Some(self.twins[h as usize]).filter(|&twin| twin != NONE)?;
         let Plane { normal, rounding } = self.plane(self.corners(twin / 3))?;
         let cos = dot(plane.normal, normal);
-        let angles = [h, next(h), twin, next(twin)].map(|h| self.angle(h));
-        let base = angles.iter().fold(PI, |least, &x| least.min(x).min((PI - x) / 2.0));
-        let tan = (base * (1.0 - SHRINK)).tan();
+        let angles = [h, next(h), next(twin), twin].map(|h| self.angle(h));
+        let tan = |i: usize| {
+            let (own, others) = (angles[i], angles[(i + 2) % 4]);
+            (others.min((PI - own) / 2.0).min(MOST_ANGLE) * (1.0 - SHRINK)).tan()
+        };
+        let (out, back) = ([tan(0), tan(1)], [tan(2), tan(3)]);
+        let least = out[0].min(out[1]).min(back[0]).min(back[1]);
+        let most = out[0].max(out[1]).max(back[0]).max(back[1]);
         let rounding = rounding.max(plane.rounding);
-        let slack = 2.0 * (self.rounding + rounding) * (1.0 + tan);
-        (cos > 0.0 && tan >= LEAST_TAN && length(way) * base * SHRINK >= 8.0 * slack).then(|| Fold {
+        let slack = 2.0 * (self.rounding + rounding) * (1.0 + most);
+        let is_wide = least >= LEAST_TAN && length(way) * least * SHRINK >= 8.0 * slack;
+        (cos > 0.0 && is_wide).then(|| Fold {
             normal,
             outwards: cross(normal, scale(way, 1.0 / length(way))),
-            tan,
+            out,
+            back,
             sigma: length(sub(normal, plane.normal)),
             half_cos: (0.5 + 0.5 * cos).sqrt(),
             rounding,
-            within: self.within - self.rounding - rounding - slack / tan,
+            within: self.within - self.rounding - rounding - slack / least,
             slack,
         })
     }
@@ -198,14 +209,16 @@ impl Triangle {
     fn is_across(&self, edge: usize, fold: &Fold, p: Vector) -> bool {
         let (from, edge, plane) = (sub(p, self.corners[edge]), &self.edges[edge], self.plane.as_ref());
         let along = dot(from, edge.along);
-        let wide = fold.tan * along.min(edge.length - along) + fold.slack;
-        let is_good = |normal: Vector, outwards: Vector| {
+        let wide = |tan: [f64; 2]| (tan[0] * along).min(tan[1] * (edge.length - along)) + fold.slack;
+        let is_good = |normal: Vector, outwards: Vector, out: [f64; 2], back: [f64; 2]| {
             let (height, beyond) = (dot(from, normal).abs(), dot(from, outwards));
-            beyond.abs() <= wide
+            beyond <= wide(out)
+                && -beyond <= wide(back)
                 && height + fold.sigma * beyond.max(0.0) <= fold.within
                 && height <= fold.within * fold.half_cos
         };
-        plane.is_some_and(|plane| is_good(plane.normal, edge.outwards)) && is_good(fold.normal, fold.outwards)
+        plane.is_some_and(|plane| is_good(plane.normal, edge.outwards, fold.out, fold.back))
+            && is_good(fold.normal, fold.outwards, fold.back, fold.out)
     }
 
     /// Whether a corner is near enough to where the surface has it.

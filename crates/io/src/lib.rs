@@ -37,6 +37,7 @@ mod format;
 pub mod gltf;
 mod mtl;
 mod names;
+mod proof;
 mod read;
 mod scan;
 pub mod threemf;
@@ -47,6 +48,7 @@ pub use error::{Flaw, Place, ReadError, WriteError};
 pub use format::{Format, UnknownFormat};
 pub use gltf::Asset;
 pub use mtl::{Material, MaterialLibraries, Picture, Problem};
+pub use proof::{Proof, ProofError};
 pub use read::{read, read_as, read_bytes};
 pub use threemf::Package;
 pub use write::{

@@ -251,6 +251,13 @@ pub(crate) struct RefineArguments {
     #[arg(long, value_name = "FILE.png")]
     pub(crate) picture: Option<PathBuf>,
 
+    /// Write a proof of the distance, which limitmesh-check confirms (or FOLDER/)
+    ///
+    /// limitmesh-check is a small program that shares nothing with limitmesh: it recomputes the limit surface and checks that each point of the
+    /// result is within the distance of it, and each point of it of the result. The proof is checked before it is written. For OBJ, OFF and PLY files.
+    #[arg(long, value_name = "FILE.proof")]
+    pub(crate) proof: Option<PathBuf>,
+
     #[command(flatten)]
     pub(crate) exact: ExactArguments,
 

@@ -440,6 +440,9 @@ pub(crate) struct ErrorReport {
     pub(crate) at: [f64; 3],
     /// Whether `upper` is proven.
     pub(crate) certified: bool,
+    /// The distance that the proof (`--proof`) confirms, where it is not `upper`: what the triangles prove one by one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) proven: Option<f64>,
 }
 
 /// A lower bound is told where the upper one is at most so many times as far.
@@ -469,7 +472,14 @@ impl ErrorReport {
             diagonal,
             at,
             certified: is_proven && upper.is_some(),
+            proven: None,
         }
+    }
+
+    /// With the distance that a proof confirms.
+    pub(crate) fn proven(self, within: Option<f64>) -> Self {
+        let proven = within.filter(|_| within != self.upper);
+        Self { proven, ..self }
     }
 
     /// `within 0.0998 % of the diagonal (0.0123) of the limit surface, certified; at least 0.0962 %`, with a unit after

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use limitmesh_io::Format;
 
-use super::picture;
+use super::{picture, proof};
 use crate::arguments::{Method, MorphTolerance, RefineArguments, Way};
 use crate::failure::usage;
 use crate::file_identity::FileIdentity;
@@ -55,6 +55,7 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
             arguments.output_name()
         ));
     }
+    proof::check(arguments, format)?;
     if arguments.split_normals && format.is_some_and(|format| format != Format::Ply) {
         return usage("--split-normals is for PLY files: OBJ holds normals by corner, and the others none");
     }
@@ -255,7 +256,7 @@ fn uniform(arguments: &RefineArguments) -> anyhow::Result<()> {
 
 /// Checks that what is to be written can be, replaces no input, and is written once.
 pub(super) fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
-    let mut written: Vec<&Path> = Vec::with_capacity(3);
+    let mut written: Vec<&Path> = Vec::with_capacity(4);
     if let Some(output) = arguments.output.as_deref() {
         output::check_writable(output)?;
         let binary = match arguments.format()? {
@@ -273,6 +274,10 @@ pub(super) fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
     if let Some(picture) = &arguments.picture {
         picture::check_name(picture)?;
         written.push(picture);
+    }
+    if let Some(proof) = &arguments.proof {
+        output::check_writable(proof)?;
+        written.push(proof);
     }
     if let Some(report) = &arguments.report {
         output::check_writable(report)?;

@@ -94,7 +94,11 @@ pub(super) fn run(
     let places = (&before.faces[..], &concave.parts);
     let provenance = arguments.exact.provenance.then(|| Provenance::new(&origins, parents.clone(), places));
     let sides = is_optimized.then_some(side_origins);
-    let trail = if goals.keeps_origins { Trail { origins, parents, sides } } else { Trail::default() };
+    let trail = if goals.keeps_origins || arguments.proof.is_some() {
+        Trail { origins, parents, sides }
+    } else {
+        Trail::default()
+    };
     Ok(Refined {
         mesh,
         normals,

@@ -167,6 +167,7 @@ fn refuse(arguments: &RefineArguments) -> anyhow::Result<()> {
         ("--dry-run", arguments.exact.dry_run),
         ("--provenance", arguments.exact.provenance),
         ("--split-normals", arguments.split_normals),
+        ("--proof", arguments.proof.is_some()),
         ("--picture", arguments.picture.is_some()),
     ];
     if let Some((option, _)) = given.into_iter().find(|&(_, given)| given) {

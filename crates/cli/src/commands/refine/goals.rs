@@ -125,6 +125,7 @@ impl Goals {
             .unfold(arguments.features.concave_corners() == ConcaveCorners::Divided)
             .origins(
                 arguments.exact.provenance
+                    || arguments.proof.is_some()
                     || !arguments.exact.no_input_distance
                     || self.tells_faces_apart
                     || self.keeps_origins,

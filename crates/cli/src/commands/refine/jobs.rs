@@ -25,8 +25,8 @@ pub(super) fn jobs(arguments: &RefineArguments) -> anyhow::Result<Vec<RefineArgu
             "'{unit}' is no file; a length has its unit right behind the number, such as 0.1{unit}"
         ));
     }
-    let named =
-        [("--output", &arguments.output), ("--report", &arguments.report), ("--picture", &arguments.picture)];
+    let RefineArguments { output, report, picture, proof, .. } = arguments;
+    let named = [("--output", output), ("--report", report), ("--picture", picture), ("--proof", proof)];
     if arguments.inputs.len() > 1
         && let Some((option, _)) =
             named.iter().find(|(_, path)| path.as_deref().is_some_and(|path| !is_folder(path)))
@@ -58,6 +58,7 @@ fn job(arguments: &RefineArguments, input: &Path) -> anyhow::Result<RefineArgume
         output,
         report: place(&arguments.report, &|| Ok("json")).transpose()?,
         picture: place(&arguments.picture, &|| Ok("png")).transpose()?,
+        proof: place(&arguments.proof, &|| Ok("proof")).transpose()?,
         ..arguments.clone()
     })
 }
@@ -110,7 +111,8 @@ fn stem(input: &Path) -> anyhow::Result<&OsStr> {
 /// One cannot be made.
 pub(super) fn make_folders(arguments: &RefineArguments) -> anyhow::Result<()> {
     let mesh = arguments.output.as_ref().filter(|_| !arguments.exact.dry_run);
-    for folder in [mesh, arguments.report.as_ref(), arguments.picture.as_ref()].into_iter().flatten() {
+    let RefineArguments { report, picture, proof, .. } = arguments;
+    for folder in [mesh, report.as_ref(), picture.as_ref(), proof.as_ref()].into_iter().flatten() {
         if ends_with_separator(folder) {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("the folder {} cannot be made", folder.display()))?;

@@ -14,6 +14,7 @@ mod input_distance;
 mod jobs;
 mod nearness;
 mod package;
+mod proof;
 mod provenance;
 mod put_back;
 mod restricted;
@@ -146,6 +147,7 @@ fn refine(
         ..
     } = control;
     channels.on_parts(&control.concave.parts, &control.mesh);
+    let proven = arguments.proof.as_deref().map(|path| (path, control.mesh.clone()));
     let way = Prepared::new(arguments, (&control.mesh, &channels), diagonal)?;
     let parameters = ParametersReport {
         interpolate_within: arguments.interpolation.within(diagonal, arguments.build.unit)?,
@@ -174,6 +176,15 @@ fn refine(
 
     if let Some(note) = refined.inverted.and_then(turned_over) {
         progress.note(note);
+    }
+    if let Some((path, control)) = proven {
+        progress.stage("checking the proof");
+        let proven = proof::write(path, &control, &refined, arguments)?;
+        proven.note.into_iter().for_each(|note| progress.note(note));
+        refined.report.error = refined.report.error.map(|error| error.proven(proven.within));
+        if let Outcome::Done = refined.outcome {
+            refined.outcome = proven.outcome;
+        }
     }
     let Refined { mesh, normals, inverted, report, outcome, .. } = refined;
     if let Some(report_path) = &arguments.report {
