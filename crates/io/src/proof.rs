@@ -38,9 +38,7 @@ pub struct Proof<'a> {
 #[non_exhaustive]
 pub enum ProofError {
     /// A triangle is not over one control face alone.
-    #[error(
-        "triangle {0} reaches over several control faces, as triangles in flat regions, in strips and after collapses do"
-    )]
+    #[error("triangle {0} reaches over several control faces")]
     SeveralFaces(usize),
     /// A vertex is not where 30 levels of refinement could put it.
     #[error("a corner of triangle {0} is in the control face where more than 30 levels would put it")]

@@ -254,7 +254,8 @@ pub(crate) struct RefineArguments {
     /// Write a proof of the distance, which limitmesh-check confirms (or FOLDER/)
     ///
     /// limitmesh-check is a small program that shares nothing with limitmesh: it recomputes the limit surface and checks that each point of the
-    /// result is within the distance of it, and each point of it of the result. The proof is checked before it is written. For OBJ, OFF and PLY files.
+    /// result is within the distance of it, and each point of it of the result. The proof is checked before it is written. It needs triangles over one
+    /// control face each: --divide-flat is implied, and --optimize does not go with it. For OBJ, OFF and PLY files.
     #[arg(long, value_name = "FILE.proof")]
     pub(crate) proof: Option<PathBuf>,
 

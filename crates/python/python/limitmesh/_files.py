@@ -77,6 +77,7 @@ def refine_file(
     repair: bool = True,
     split_normals: bool = False,
     provenance: bool = False,
+    proof: str | os.PathLike[str] | None = None,
     ascii: bool = False,
     overwrite: bool = False,
     max_triangles: Count | None = None,
@@ -102,6 +103,8 @@ def refine_file(
         "corners-plus2", or "linear".
     split_normals, provenance
         In PLY files: a vertex for each side of sharp edges, and where vertices and triangles came from.
+    proof
+        A file for a proof of the distance, which the program ``limitmesh-check`` confirms. OBJ, PLY and OFF; flat regions stay divided.
     ascii
         PLY and STL as text.
     creases
@@ -162,6 +165,7 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
     for name, value in (
         ("tolerance", tolerance),
         ("within", within),
+        ("proof", None if proof is None else _name(proof, "proof")),
         ("crease-angle", creases if crease_angle is None else crease_angle),
         ("angle", angle),
         ("concave-corners", concave_corners),

@@ -20,8 +20,8 @@ pub(super) struct Job {
     pub(super) input: String,
     /// None for a dry run.
     pub(super) output: Option<String>,
-    /// What else it writes.
-    pub(super) picture: Option<String>,
+    /// What else it writes: a picture, a proof.
+    pub(super) others: Vec<String>,
     /// Files that options name and that decide on the result.
     pub(super) option_files: Vec<String>,
     /// Its options, sorted by their names.
@@ -40,7 +40,7 @@ impl Job {
 
     /// The files that it writes.
     pub(super) fn written(&self) -> impl Iterator<Item = &Path> {
-        self.output.iter().chain(&self.picture).map(Path::new)
+        self.output.iter().chain(&self.others).map(Path::new)
     }
 }
 
@@ -68,7 +68,7 @@ impl Reader {
         let fields: BTreeMap<String, Box<RawValue>> = serde_json::from_str(line)
             .map_err(|why| format!("it is no JSON object of a job: {}", without_line(&why)))?;
         let mut job =
-            Job { input: String::new(), output: None, picture: None, option_files: vec![], options: vec![] };
+            Job { input: String::new(), output: None, others: vec![], option_files: vec![], options: vec![] };
         let (mut is_dry, mut has_input) = (false, false);
         for (name, value) in &fields {
             let name = name.replace('_', "-");
@@ -81,8 +81,8 @@ impl Reader {
                     if known == "camera-path" {
                         job.option_files.extend(value.texts());
                     }
-                    if known == "picture" {
-                        job.picture = value.texts().into_iter().next();
+                    if ["picture", "proof"].contains(&known) {
+                        job.others.extend(value.texts());
                     }
                     job.options.extend(value.words(known));
                 }
@@ -284,7 +284,7 @@ mod tests {
         let job = |input: &str, output: &str| Job {
             input: at(input).display().to_string(),
             output: Some(at(output).display().to_string()),
-            picture: None,
+            others: Vec::new(),
             option_files: Vec::new(),
             options: Vec::new(),
         };

@@ -84,7 +84,7 @@ mod tests {
         let job = |input: &str, output: &str, options: &[&str]| Job {
             input: input.to_owned(),
             output: Some(output.to_owned()),
-            picture: None,
+            others: Vec::new(),
             option_files: Vec::new(),
             options: options.iter().map(|&own| own.to_owned()).collect(),
         };
@@ -114,7 +114,7 @@ mod tests {
             std::fs::write(folder.path().join("a b.bin"), bytes).unwrap();
             let input = folder.path().join("a.gltf").display().to_string();
             let none = Vec::new;
-            key(&Job { input, output: None, picture: None, option_files: none(), options: none() }).unwrap()
+            key(&Job { input, output: None, others: none(), option_files: none(), options: none() }).unwrap()
         };
         assert_ne!(of("abc"), of("abd"));
         assert_eq!(of("abc"), of("abc"));

@@ -16,8 +16,9 @@ use crate::format::{counted, upper_bound};
 use crate::input;
 use crate::output;
 
-/// What is tried, as multiples of what refinement certifies. Where that came from a search, triangles prove a little less.
-const TRIED: [f64; 5] = [1.0, 1.1, 1.25, 1.6, 2.0];
+/// What is tried, as multiples of what refinement certifies. Where that came from a search, or is next to nothing, triangles prove a little less.
+const TRIED: [f64; 18] =
+    [1.0, 1.1, 1.25, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0, 16.0, 32.0, 64.0];
 
 /// Refuses options of which there is no proof.
 pub(super) fn check(arguments: &RefineArguments, format: Option<Format>) -> anyhow::Result<()> {
@@ -95,7 +96,7 @@ pub(super) fn write(
     for within in TRIED.map(|times| times * upper) {
         let bytes = match proof.to_bytes(within) {
             Ok(bytes) => bytes,
-            Err(why) => return none(format!("{why}; --divide-flat keeps flat regions and strips divided")),
+            Err(why) => return none(why.to_string()),
         };
         let claim = Claim::read(&bytes).map_err(anyhow::Error::msg)?;
         refused = verdict::refused(&own, &result, &claim, within).map_err(anyhow::Error::msg)?;
@@ -108,7 +109,7 @@ pub(super) fn write(
     }
     let count = counted(refused.len(), "triangle is", "triangles are");
     let example = refused.first().map(|(t, what)| format!(": triangle {t} {what}")).unwrap_or_default();
-    none(format!("{count} not proven within {}{example}", upper_bound(TRIED[4] * upper)))
+    none(format!("{count} not proven within {}{example}", upper_bound(TRIED[TRIED.len() - 1] * upper)))
 }
 
 /// A mesh as the checker reads it.
