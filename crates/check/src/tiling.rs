@@ -11,9 +11,12 @@ pub fn check(control: &Control, result: &Mesh, origins: &Origins) -> Result<Vec<
     let triangles = &control.mesh.triangles;
     let (mut refused, mut areas) = (Vec::new(), vec![0i128; triangles.len()]);
     for (t, &parent) in (0..).zip(&origins.parents) {
-        match part(result, origins, triangles, t).map(area) {
-            Some(area) if area > 0 => areas[parent as usize] += i128::from(area),
-            Some(_) => refused.push((t, "is turned over, or has no area, on the control mesh")),
+        match part(result, origins, triangles, t) {
+            Some([a, b, c]) if a == b || b == c || c == a => {
+                refused.push((t, "has two corners in one place"))
+            }
+            Some(part) if area(part) < 0 => refused.push((t, "is turned over on the control mesh")),
+            Some(part) => areas[parent as usize] += i128::from(area(part)),
             None => refused.push((t, "reaches beyond its face of the control mesh")),
         }
     }
@@ -49,8 +52,8 @@ pub fn part(result: &Mesh, origins: &Origins, triangles: &[[u32; 3]], t: u32) ->
     Some([a?, b?, c?])
 }
 
-/// Twice the area; that of a face is `WHOLE²`.
-fn area([a, b, c]: [[i64; 2]; 3]) -> i64 {
+/// Twice the area, zero where a part is a line; that of a face is `WHOLE²`.
+pub fn area([a, b, c]: [[i64; 2]; 3]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 

@@ -6,7 +6,7 @@ use crate::proof::{Place, Proof, WHOLE};
 use crate::quartic::{self, CORNERS, Net, SIDES};
 use crate::tiling::{self, Refusal};
 use crate::triangle::{Frames, ROUNDOFF, Triangle};
-use crate::vector::{Vector, add, scale, sub};
+use crate::vector::{Vector, add, length, scale, sub};
 
 /// How often rings are refined and polynomials halved at most.
 const MOST_LEVELS: usize = 48;
@@ -48,7 +48,8 @@ pub fn refused(control: &Mesh, result: &Mesh, proof: &Proof, within: f64) -> Res
                 // One of the two triangles at an edge looks at it.
                 side: Some(i).filter(|_| twins[3 * t as usize + i] > 3 * t + i as u32),
             };
-            let look = Look { triangle: frames.triangle(t), scheme: proof.scheme };
+            let look =
+                Look { triangle: frames.triangle(t), scheme: proof.scheme, has_area: tiling::area(part) > 0 };
             if let Err(what) = look.at_piece(&mut piece, &[0, 1, 2].map(spot), 0) {
                 refused.push((t, what));
             }
@@ -73,13 +74,15 @@ struct Spot {
 struct Look {
     triangle: Triangle,
     scheme: Scheme,
+    /// Whether its part is more than a line.
+    has_area: bool,
 }
 
 impl Look {
     /// Looks at a piece over a convex polygon of it.
     fn at_piece(&self, piece: &mut Piece, polygon: &[Spot], level: usize) -> Result<(), &'static str> {
         match piece {
-            _ if is_flat(polygon) => Ok(()),
+            _ if is_empty(polygon, self.has_area) => Ok(()),
             Piece::Net(net) => (1..polygon.len() - 1).try_for_each(|i| {
                 let mut corners = [polygon[0], polygon[i], polygon[i + 1]];
                 corners[0].side = corners[0].side.filter(|_| i == 1);
@@ -136,13 +139,16 @@ impl Look {
     }
 }
 
-/// Whether there is nothing in a polygon.
-fn is_flat(polygon: &[Spot]) -> bool {
-    let area = |i: usize| {
+/// Whether there is nothing in a polygon, or on a line.
+fn is_empty(polygon: &[Spot], has_area: bool) -> bool {
+    let is_little = |i: usize| {
         let [a, b, c] = [0, i, i + 1].map(|i| polygon[i].weights);
-        ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
+        match has_area {
+            true => ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs() < NO_WEIGHT,
+            false => length(sub(b, a)).max(length(sub(c, a))) < NO_WEIGHT,
+        }
     };
-    polygon.len() < 3 || (1..polygon.len() - 1).all(|i| area(i) < NO_WEIGHT)
+    polygon.len() < 3 || (1..polygon.len() - 1).all(is_little)
 }
 
 /// What of a polygon is in a quarter, with coordinates there.

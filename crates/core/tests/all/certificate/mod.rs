@@ -8,6 +8,7 @@
 mod cages;
 mod extremes;
 mod liars;
+mod proofs;
 use limitmesh::Mesh;
 use limitmesh::measure::{Bvh, CertifiedOptions, certified_hausdorff};
 use limitmesh::refine::limit_reference;
@@ -104,6 +105,7 @@ fn attack(seed: u64) -> Result<(), String> {
     let result = exact(&control, scheme, &options).map_err(|error| about(error.to_string()))?;
     check_form(&control, &result, &options).map_err(about)?;
     check_samples(&control, scheme, &result, &mut random).map_err(about)?;
+    proofs::check(&control, scheme, &result).map_err(about)?;
     if seed.is_multiple_of(8) {
         let threads = if seed.is_multiple_of(16) { 1 } else { 3 };
         check_threads(&control, scheme, &options, (&result, threads)).map_err(about)?;
