@@ -126,7 +126,9 @@ fn ply(bytes: &[u8]) -> Result<Mesh, String> {
         }
     }
     let mut mesh = Mesh::default();
-    for (element, count, properties) in elements {
+    for (element, count, properties) in
+        elements.into_iter().filter(|(_, _, properties)| !properties.is_empty())
+    {
         for _ in 0..count {
             let mut at = [f64::NAN; 3];
             for (kinds, name) in &properties {

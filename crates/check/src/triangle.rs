@@ -164,7 +164,7 @@ impl Triangle {
     /// Whether the gauge is small enough for some z in Q.
     pub fn is_inside(&self, p: Vector) -> bool {
         let Some(Plane { normal, .. }) = self.plane else {
-            return (0..3).any(|edge| self.from_edge(edge, p) <= self.within);
+            return (0..3).any(|edge| self.distance_to_edge(edge, p) <= self.within);
         };
         let height = dot(sub(p, self.corners[0]), normal);
         let beyond = |i: usize, z: Vector| dot(sub(z, self.corners[i]), self.edges[i].outwards);
@@ -184,7 +184,7 @@ impl Triangle {
     pub fn is_along(&self, edge: usize, points: &[Vector]) -> bool {
         let fold = self.edges[edge].joined.as_ref();
         fold.is_some_and(|fold| points.iter().all(|&p| self.is_across(edge, fold, p)))
-            || points.iter().all(|&p| self.from_edge(edge, p) <= self.within)
+            || points.iter().all(|&p| self.distance_to_edge(edge, p) <= self.within)
     }
 
     /// The same for a curve by its Bézier points, halved as long as that helps.
@@ -201,7 +201,7 @@ impl Triangle {
         [first, second].iter().all(|half| self.is_curve_along(edge, half, halvings + 1))
     }
 
-    fn from_edge(&self, edge: usize, p: Vector) -> f64 {
+    fn distance_to_edge(&self, edge: usize, p: Vector) -> f64 {
         length(sub(p, on_segment(p, self.corners[edge], self.corners[(edge + 1) % 3])))
     }
 
