@@ -31,6 +31,7 @@ mod package;
 mod pages;
 mod parts;
 mod project;
+mod proof;
 mod quantities;
 mod refine;
 mod render;
