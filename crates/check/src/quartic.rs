@@ -12,15 +12,14 @@ pub type Net = [Vector; 15];
 pub const CORNERS: [usize; 3] = [0, 14, 4];
 pub const SIDES: [[usize; 5]; 3] = [[0, 5, 9, 12, 14], [14, 13, 11, 8, 4], [4, 3, 2, 1, 0]];
 
-/// Twenty-fourths of the control points that each Bézier point takes: the three corners; of corner 0's ring, counted from
-/// corner 1, the neighbours 2 to 5; of corner 1's, counted from corner 2, 3 to 5; of corner 2's, counted from corner 0, 3 and 4.
-#[rustfmt::skip]
-const FROM_CONTROL: [[u8; 12]; 15] = [
-    [12, 2, 2, 2, 2, 2, 2, 0, 0, 0, 0, 0], [12, 3, 4, 3, 1, 0, 1, 0, 0, 0, 0, 0], [8, 4, 8, 4, 0, 0, 0, 0, 0, 0, 0, 0],
-    [4, 3, 12, 3, 0, 0, 0, 0, 0, 1, 0, 1], [2, 2, 12, 2, 0, 0, 0, 0, 0, 2, 2, 2], [12, 4, 3, 1, 0, 1, 3, 0, 0, 0, 0, 0],
-    [10, 6, 6, 1, 0, 0, 1, 0, 0, 0, 0, 0], [6, 6, 10, 1, 0, 0, 0, 0, 0, 1, 0, 0], [3, 4, 12, 1, 0, 0, 0, 0, 0, 3, 1, 0],
-    [8, 8, 4, 0, 0, 0, 4, 0, 0, 0, 0, 0], [6, 10, 6, 0, 0, 0, 1, 0, 0, 1, 0, 0], [4, 8, 8, 0, 0, 0, 0, 0, 0, 4, 0, 0],
-    [4, 12, 3, 0, 0, 0, 3, 1, 0, 1, 0, 0], [3, 12, 4, 0, 0, 0, 1, 0, 1, 3, 0, 0], [2, 12, 2, 0, 0, 0, 2, 2, 2, 2, 0, 0],
+/// Bézier points near a corner: how many times it, the next and the third corner count, and twenty-fourths of it and of its six
+/// neighbours, counted from the next corner.
+const STENCILS: [([usize; 3], [f64; 7]); 5] = [
+    ([4, 0, 0], [12.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0]),
+    ([3, 1, 0], [12.0, 4.0, 3.0, 1.0, 0.0, 1.0, 3.0]),
+    ([3, 0, 1], [12.0, 3.0, 4.0, 3.0, 1.0, 0.0, 1.0]),
+    ([2, 2, 0], [8.0, 8.0, 4.0, 0.0, 0.0, 0.0, 4.0]),
+    ([2, 1, 1], [10.0, 6.0, 6.0, 1.0, 0.0, 0.0, 1.0]),
 ];
 
 /// Where point (j, k) of a net of the degree `n` stands.
@@ -30,12 +29,15 @@ const fn at(n: usize, j: usize, k: usize) -> usize {
 
 /// The net of a regular piece, from its corners and their six neighbours each, counted from the next corner.
 pub fn regular(corners: [Vector; 3], rings: &[[Vector; 6]; 3]) -> Net {
-    let [a, b, c] = rings;
-    let control = [corners[0], corners[1], corners[2], a[2], a[3], a[4], a[5], b[3], b[4], b[5], c[3], c[4]];
-    FROM_CONTROL.map(|weights| {
-        let sum = |sum, (&p, w)| add(sum, scale(p, f64::from(w)));
-        scale(control.iter().zip(weights).fold([0.0; 3], sum), 1.0 / 24.0)
-    })
+    let mut net = [[0.0; 3]; 15];
+    for i in 0..3 {
+        for (counts, weights) in STENCILS {
+            let points = [corners[i]].into_iter().chain(rings[i]);
+            let sum = points.zip(weights).fold([0.0; 3], |sum, (p, weight)| add(sum, scale(p, weight)));
+            net[at(4, counts[(4 - i) % 3], counts[(5 - i) % 3])] = scale(sum, 1.0 / 24.0);
+        }
+    }
+    net
 }
 
 /// The parts on both sides of the line from the middle of the side 0 1 to corner 2, which stays corner 2 of both.
@@ -66,6 +68,9 @@ pub fn turned(net: &Net) -> Net {
 
 /// The net over the triangle with the given barycentric coordinates of its corners: its points are the blossom's values.
 pub fn over(net: &Net, corners: &[Vector; 3]) -> Net {
+    if let Some(turn) = (0..3).find(|turn| (0..3).all(|i| corners[i][(i + turn) % 3] == 1.0)) {
+        return (0..turn).fold(*net, |net, _| turned(&net));
+    }
     let (mut out, mut at_2) = (*net, *net);
     for k in 0..5 {
         let mut at_1 = at_2;

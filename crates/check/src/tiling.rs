@@ -53,7 +53,7 @@ pub fn part(result: &Mesh, origins: &Origins, triangles: &[[u32; 3]], t: u32) ->
 }
 
 /// Twice the area, zero where a part is a line; that of a face is `WHOLE²`.
-pub fn area([a, b, c]: [[i64; 2]; 3]) -> i64 {
+fn area([a, b, c]: [[i64; 2]; 3]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 

@@ -1,15 +1,13 @@
 //! A triangle of the result among its neighbours: section 2 of docs/certificate.md, and the conditions of section 3.
 
-use std::f64::consts::PI;
-
 use crate::mesh::{Mesh, NONE, next};
 use crate::vector::{Vector, add, cross, dot, length, middle, scale, sub};
 
 /// Unit roundoff.
 pub const ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
-/// Base angles of flaps are at most so large, and by this part smaller than they may be, for rounding; and the least tangent of one.
-const MOST_ANGLE: f64 = 80.0 / 180.0 * PI;
+/// The greatest tangent of a base angle, that of 80°; by which part they are smaller than they may be, for rounding; and the least.
+const MOST_TAN: f64 = 5.67;
 const SHRINK: f64 = 1e-4;
 const LEAST_TAN: f64 = 1.0 / 256.0;
 
@@ -50,13 +48,10 @@ struct Edge {
     joined: Option<Fold>,
 }
 
-/// The other triangle at a joined edge.
+/// A joined edge.
 struct Fold {
-    normal: Vector,
-    outwards: Vector,
-    /// The tangents of the base angles, at the start and the end of the edge: of this triangle's flap, and of the other's.
-    out: [f64; 2],
-    back: [f64; 2],
+    /// As this triangle sees the edge, and the other one.
+    sides: [Side; 2],
     sigma: f64,
     /// cos(θ/2).
     half_cos: f64,
@@ -65,6 +60,14 @@ struct Fold {
     /// What points of the curve must be within as Lemma 3 sees them, and how far they may leave the lens.
     within: f64,
     slack: f64,
+}
+
+struct Side {
+    normal: Vector,
+    outwards: Vector,
+    /// The tangents of the base angles at the start and the end of the edge: of this side's flap, and of the other's.
+    out: [f64; 2],
+    back: [f64; 2],
 }
 
 impl Frames<'_> {
@@ -80,12 +83,14 @@ impl Frames<'_> {
         (rounding <= self.within / 64.0).then(|| Plane { normal: scale(normal, 1.0 / area), rounding })
     }
 
-    /// The angle at a half-edge's origin.
-    fn angle(&self, h: u32) -> f64 {
+    /// The tangents of the angle at a half-edge's origin, and of half of what it leaves of 180°.
+    fn tangents(&self, h: u32) -> [f64; 2] {
         let corners = self.corners(h / 3);
         let [v, b, c] = [h, next(h), next(next(h))].map(|h| corners[h as usize % 3]);
         let (to_b, to_c) = (sub(b, v), sub(c, v));
-        length(cross(to_b, to_c)).atan2(dot(to_b, to_c))
+        let (sine, cosine) = (length(cross(to_b, to_c)), dot(to_b, to_c));
+        let own = if cosine > 0.0 { sine / cosine } else { f64::INFINITY };
+        [own, (length(to_b) * length(to_c) + cosine) / sine]
     }
 
     /// A triangle of the result.
@@ -101,8 +106,9 @@ impl Frames<'_> {
             let joined = plane.as_ref().and_then(|plane| self.fold(3 * t + i, plane, way));
             flaps.push(from);
             if let Some(fold) = &joined {
-                let tip = length(way) * fold.out[1] / (fold.out[0] + fold.out[1]);
-                flaps.push(add(from, scale(add(along, scale(outwards, fold.out[0])), tip)));
+                let [start, end] = fold.sides[0].out;
+                let tip = add(along, scale(outwards, start));
+                flaps.push(add(from, scale(tip, length(way) * end / (start + end))));
             }
             Edge { length: length(way), along, outwards, joined }
         });
@@ -117,22 +123,18 @@ impl Frames<'_> {
         let twin = Some(self.twins[h as usize]).filter(|&twin| twin != NONE)?;
         let Plane { normal, rounding } = self.plane(self.corners(twin / 3))?;
         let cos = dot(plane.normal, normal);
-        let angles = [h, next(h), next(twin), twin].map(|h| self.angle(h));
-        let tan = |i: usize| {
-            let (own, others) = (angles[i], angles[(i + 2) % 4]);
-            (others.min((PI - own) / 2.0).min(MOST_ANGLE) * (1.0 - SHRINK)).tan()
-        };
+        let tangents = [h, next(h), next(twin), twin].map(|h| self.tangents(h));
+        let tan = |i: usize| tangents[(i + 2) % 4][0].min(tangents[i][1]).min(MOST_TAN) * (1.0 - SHRINK);
         let (out, back) = ([tan(0), tan(1)], [tan(2), tan(3)]);
-        let least = out[0].min(out[1]).min(back[0]).min(back[1]);
-        let most = out[0].max(out[1]).max(back[0]).max(back[1]);
+        let least = [1, 2, 3].iter().fold(tan(0), |least, &i| least.min(tan(i)));
+        let along = scale(way, 1.0 / length(way));
         let rounding = rounding.max(plane.rounding);
-        let slack = 2.0 * (self.rounding + rounding) * (1.0 + most);
+        let slack = 2.0 * (self.rounding + rounding) * (1.0 + MOST_TAN);
         let is_wide = least >= LEAST_TAN && length(way) * least * SHRINK >= 8.0 * slack;
+        let own = Side { normal: plane.normal, outwards: cross(along, plane.normal), out, back };
+        let other = Side { normal, outwards: cross(normal, along), out: back, back: out };
         (cos > 0.0 && is_wide).then(|| Fold {
-            normal,
-            outwards: cross(normal, scale(way, 1.0 / length(way))),
-            out,
-            back,
+            sides: [own, other],
             sigma: length(sub(normal, plane.normal)),
             half_cos: (0.5 + 0.5 * cos).sqrt(),
             rounding,
@@ -207,18 +209,16 @@ impl Triangle {
 
     /// The conditions of Lemma 3.
     fn is_across(&self, edge: usize, fold: &Fold, p: Vector) -> bool {
-        let (from, edge, plane) = (sub(p, self.corners[edge]), &self.edges[edge], self.plane.as_ref());
+        let (from, edge) = (sub(p, self.corners[edge]), &self.edges[edge]);
         let along = dot(from, edge.along);
         let wide = |tan: [f64; 2]| (tan[0] * along).min(tan[1] * (edge.length - along)) + fold.slack;
-        let is_good = |normal: Vector, outwards: Vector, out: [f64; 2], back: [f64; 2]| {
-            let (height, beyond) = (dot(from, normal).abs(), dot(from, outwards));
-            beyond <= wide(out)
-                && -beyond <= wide(back)
+        fold.sides.iter().all(|side| {
+            let (height, beyond) = (dot(from, side.normal).abs(), dot(from, side.outwards));
+            beyond <= wide(side.out)
+                && -beyond <= wide(side.back)
                 && height + fold.sigma * beyond.max(0.0) <= fold.within
                 && height <= fold.within * fold.half_cos
-        };
-        plane.is_some_and(|plane| is_good(plane.normal, edge.outwards, fold.out, fold.back))
-            && is_good(fold.normal, fold.outwards, fold.back, fold.out)
+        })
     }
 
     /// Whether a corner is near enough to where the surface has it.

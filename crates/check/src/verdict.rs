@@ -6,7 +6,7 @@ use crate::proof::{Place, Proof, WHOLE};
 use crate::quartic::{self, CORNERS, Net, SIDES};
 use crate::tiling::{self, Refusal};
 use crate::triangle::{Frames, ROUNDOFF, Triangle};
-use crate::vector::{Vector, add, length, scale, sub};
+use crate::vector::{Vector, add, scale, sub};
 
 /// How often rings are refined and polynomials halved at most.
 const MOST_LEVELS: usize = 48;
@@ -48,8 +48,7 @@ pub fn refused(control: &Mesh, result: &Mesh, proof: &Proof, within: f64) -> Res
                 // One of the two triangles at an edge looks at it.
                 side: Some(i).filter(|_| twins[3 * t as usize + i] > 3 * t + i as u32),
             };
-            let look =
-                Look { triangle: frames.triangle(t), scheme: proof.scheme, has_area: tiling::area(part) > 0 };
+            let look = Look { triangle: frames.triangle(t), scheme: proof.scheme };
             if let Err(what) = look.at_piece(&mut piece, &[0, 1, 2].map(spot), 0) {
                 refused.push((t, what));
             }
@@ -74,15 +73,13 @@ struct Spot {
 struct Look {
     triangle: Triangle,
     scheme: Scheme,
-    /// Whether its part is more than a line.
-    has_area: bool,
 }
 
 impl Look {
     /// Looks at a piece over a convex polygon of it.
     fn at_piece(&self, piece: &mut Piece, polygon: &[Spot], level: usize) -> Result<(), &'static str> {
         match piece {
-            _ if is_empty(polygon, self.has_area) => Ok(()),
+            _ if polygon.is_empty() => Ok(()),
             Piece::Net(net) => (1..polygon.len() - 1).try_for_each(|i| {
                 let mut corners = [polygon[0], polygon[i], polygon[i + 1]];
                 corners[0].side = corners[0].side.filter(|_| i == 1);
@@ -139,19 +136,7 @@ impl Look {
     }
 }
 
-/// Whether there is nothing in a polygon, or on a line.
-fn is_empty(polygon: &[Spot], has_area: bool) -> bool {
-    let is_little = |i: usize| {
-        let [a, b, c] = [0, i, i + 1].map(|i| polygon[i].weights);
-        match has_area {
-            true => ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs() < NO_WEIGHT,
-            false => length(sub(b, a)).max(length(sub(c, a))) < NO_WEIGHT,
-        }
-    };
-    polygon.len() < 3 || (1..polygon.len() - 1).all(is_little)
-}
-
-/// What of a polygon is in a quarter, with coordinates there.
+/// What of a polygon is in a quarter, with coordinates there; nothing where it only touches it, as the other side has that.
 fn clipped(polygon: &[Spot], part: usize) -> Vec<Spot> {
     let in_part = |weights: Vector| match part {
         3 => weights.map(|weight| 1.0 - 2.0 * weight),
@@ -161,6 +146,10 @@ fn clipped(polygon: &[Spot], part: usize) -> Vec<Spot> {
         polygon.iter().map(|spot| Spot { weights: in_part(spot.weights), ..*spot }).collect();
     for line in if part == 3 { 0..3 } else { part..part + 1 } {
         let all = std::mem::take(&mut inside);
+        let is_beyond = |sign: f64| all.iter().any(|spot| sign * spot.weights[line] > NO_WEIGHT);
+        if is_beyond(-1.0) && !is_beyond(1.0) {
+            return Vec::new();
+        }
         for (i, &p) in all.iter().enumerate() {
             let q = all[(i + 1) % all.len()];
             let [a, b] = [p, q].map(|spot| spot.weights[line]);
