@@ -112,3 +112,27 @@ fn folds_are_not_taken_for_flat() {
         assert!(cage.refused(2.0).unwrap().is_empty(), "{degrees}");
     }
 }
+
+/// A place that is beyond a line where the piece is divided by next to nothing is looked at all the same.
+#[test]
+fn corners_a_little_beyond_a_line_count() {
+    let good = Cage::new(octahedron()).refined().refined().settled(5);
+    let within = 0.1;
+    assert!(good.refused(within).unwrap().is_empty());
+    for v in 6..good.mesh.positions.len() {
+        for nudge in [[1, -1, 0], [0, 1, -1], [-1, 0, 1], [2, -1, -1]] {
+            let mut cage = good.clone();
+            for (triangle, (_, part)) in cage.mesh.triangles.iter().zip(&mut cage.parts) {
+                for (&corner, weights) in triangle.iter().zip(part) {
+                    if corner as usize == v && weights.iter().all(|&weight| weight > 0) {
+                        *weights = [0, 1, 2].map(|i| weights[i].wrapping_add_signed(nudge[i]));
+                    }
+                }
+            }
+            assert!(cage.refused(1.1 * within).unwrap().is_empty(), "{v} {nudge:?}");
+            let up = cage.mesh.positions[v];
+            cage.mesh.positions[v] = add(up, scale(up, 2.0 * within / length(up)));
+            assert!(!cage.refused(1.1 * within).unwrap().is_empty(), "{v} {nudge:?}, moved");
+        }
+    }
+}

@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use limitmesh::criterion::{View, Viewpoint};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, Frame, exact, exact_frames};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Frame, exact_frames};
+
+use crate::support::exact;
 use limitmesh::scheme::Loop;
 use limitmesh::{FaceId, HalfEdgeId, Mesh};
 

@@ -3,10 +3,10 @@
 
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use crate::support::{Point, Random, cross, dot, minus};
+use crate::support::{Point, Random, cross, dot, exact, minus};
 use limitmesh::criterion::{Camera, View, Viewpoint};
 use limitmesh::measure::distances_to;
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, limit_reference};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, limit_reference};
 use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{FaceId, LimitSurface, Mesh};
 

@@ -8,10 +8,10 @@ use limitmesh::criterion::{Camera, View, Viewpoint};
 use limitmesh::measure::{Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff_between};
 use limitmesh::progress::Progress;
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_observed};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_observed};
 use limitmesh::scheme::Loop;
 
-use crate::support::torus;
+use crate::support::{exact, torus};
 
 fn model(name: &str) -> Mesh {
     Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0

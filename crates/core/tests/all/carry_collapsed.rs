@@ -7,7 +7,9 @@ use std::f64::consts::TAU;
 use crate::support::*;
 use limitmesh::carry::{borders, carried};
 use limitmesh::mesh::{Channel, Domain, Interpolation, Semantic};
-use limitmesh::refine::{Exact, ExactOptions, exact};
+use limitmesh::refine::{Exact, ExactOptions};
+
+use crate::support::exact;
 use limitmesh::scheme::Loop;
 use limitmesh::{FaceId, HalfEdgeId, Mesh};
 

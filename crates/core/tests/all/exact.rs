@@ -4,13 +4,13 @@
 
 use std::ops::ControlFlow;
 
-use crate::support::{Random, tagged_obj, vertices_are_of_uniform_refinement};
+use crate::support::{Random, exact, tagged_obj, vertices_are_of_uniform_refinement};
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
 use limitmesh::measure::{Bvh, SamplingOptions, hausdorff, hausdorff_between};
 use limitmesh::progress::{Progress, Stage};
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{ExactOptions, ExactStop, exact, exact_estimate, exact_observed};
+use limitmesh::refine::{ExactOptions, ExactStop, exact_estimate, exact_observed};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 
 fn model(name: &str) -> Mesh {

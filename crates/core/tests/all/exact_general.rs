@@ -2,12 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
-use crate::support::{Random, octahedron, tagged_obj, vertices_are_of_uniform_refinement};
+use crate::support::{Random, exact, octahedron, tagged_obj, vertices_are_of_uniform_refinement};
 use limitmesh::Mesh;
 use limitmesh::measure::{SamplingOptions, hausdorff};
 use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{ExactOptions, ExactStop, exact};
+use limitmesh::refine::{ExactOptions, ExactStop};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 
 fn model(name: &str) -> Mesh {

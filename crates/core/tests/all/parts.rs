@@ -8,7 +8,9 @@ use std::f64::consts::{PI, TAU};
 
 use limitmesh::interpolate::InterpolateOptions;
 use limitmesh::part::{Look, Part, Unfolded, interpolate_unfolded};
-use limitmesh::refine::{ExactOptions, exact, limit_reference};
+use limitmesh::refine::{ExactOptions, limit_reference};
+
+use crate::support::exact;
 use limitmesh::scheme::Loop;
 use limitmesh::{Mesh, PolygonSoup, VertexId};
 

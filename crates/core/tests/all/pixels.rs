@@ -6,12 +6,12 @@
 
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use crate::support::{Point, Random, cross, dot};
+use crate::support::{Point, Random, cross, dot, exact};
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
 use limitmesh::measure::{Bvh, distances_to};
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, Frame, exact, exact_frames};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Frame, exact_frames};
 use limitmesh::scheme::Loop;
 
 fn plus(a: Point, b: Point, weight: f64) -> Point {

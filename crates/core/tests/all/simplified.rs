@@ -3,11 +3,11 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::flat::washer;
-use crate::support::tagged_obj;
+use crate::support::{exact, tagged_obj};
 use limitmesh::Mesh;
 use limitmesh::measure::{CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff};
 use limitmesh::mesh::{CreaseTag, Tags};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate, limit_reference};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
 fn model(name: &str) -> Mesh {

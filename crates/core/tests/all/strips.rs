@@ -3,11 +3,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use crate::support::{Point, Random, creased, cross, distance, dot, minus, peg};
+use crate::support::{Point, Random, creased, cross, distance, dot, exact, minus, peg};
 use limitmesh::Mesh;
 use limitmesh::measure::{SamplingOptions, hausdorff};
 use limitmesh::mesh::{BoundaryRule, PolygonSoup};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate, limit_reference};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
 fn within(tolerance: f64) -> ExactOptions {

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use limitmesh::Mesh;
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
-use limitmesh::refine::Exact;
 use limitmesh::refine::limit_reference;
+use limitmesh::refine::{Exact, ExactOptions, RefineError};
 use limitmesh::scheme::Scheme;
 
 pub type Point = [f64; 3];
@@ -330,4 +330,17 @@ pub fn peg(facets: u32) -> Mesh {
         triangles.extend([[0, i + 1, i], [facets, facets + i, facets + i + 1]]);
     }
     creased(positions, triangles)
+}
+
+/// Triangles of results that are checked: more would take long.
+const MOST_CHECKED: usize = 20_000;
+
+/// [`limitmesh::refine::exact`], what is certified being checked by the program that shares nothing with the library.
+pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions) -> Result<Exact, RefineError> {
+    let found = limitmesh::refine::exact(control, scheme, options)?;
+    let has_places = !found.origins.is_empty() && found.error.certified && found.error.upper.is_finite();
+    if has_places && found.mesh.face_count() <= MOST_CHECKED {
+        crate::certificate::proofs::check(control, scheme, &found).unwrap();
+    }
+    Ok(found)
 }

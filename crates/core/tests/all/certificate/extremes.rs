@@ -3,10 +3,10 @@
 use std::time::{Duration, Instant};
 
 use limitmesh::mesh::Mesh;
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop};
 use limitmesh::scheme::Loop;
 
-use crate::support::{Point, octahedron, sheet};
+use crate::support::{Point, exact, octahedron, sheet};
 
 /// More than enough for each of these, for an unoptimised build on a busy machine too.
 const PATIENCE: Duration = Duration::from_secs(20);

@@ -2,12 +2,12 @@
 //! reported for them as proven. Dense refinement by their own masks is the judge.
 
 use limitmesh::measure::{SamplingOptions, hausdorff};
-use limitmesh::refine::{ExactOptions, UniformOptions, exact, is_certified, uniform};
+use limitmesh::refine::{ExactOptions, UniformOptions, is_certified, uniform};
 use limitmesh::ring::{EdgeShape, RingShape};
 use limitmesh::scheme::{EdgeMask, Loop, LoopFamily, LoopWarren, Scheme, Support, VertexMask};
 use limitmesh::{Mesh, Triangles};
 
-use crate::support::{octahedron, sheet};
+use crate::support::{exact, octahedron, sheet};
 
 /// Where a scheme departs from Loop's.
 #[derive(Clone, Copy, Debug)]

@@ -8,7 +8,7 @@
 mod cages;
 mod extremes;
 mod liars;
-mod proofs;
+pub(crate) mod proofs;
 use limitmesh::Mesh;
 use limitmesh::measure::{Bvh, CertifiedOptions, certified_hausdorff};
 use limitmesh::refine::limit_reference;

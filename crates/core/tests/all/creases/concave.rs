@@ -7,7 +7,9 @@ use limitmesh::PolygonSoup;
 use limitmesh::VertexId;
 use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{BoundaryRule, BuildOptions, ConcaveCorners, CornerTag, CreaseTag, PolygonFaces, Tags};
-use limitmesh::refine::{Exact, ExactOptions, UniformOptions, exact, uniform};
+use limitmesh::refine::{Exact, ExactOptions, UniformOptions, uniform};
+
+use crate::support::exact;
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 
 use crate::support::*;

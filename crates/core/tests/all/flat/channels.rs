@@ -6,11 +6,11 @@ use std::f64::consts::TAU;
 use limitmesh::Mesh;
 use limitmesh::carry::{borders, carried};
 use limitmesh::mesh::{Channel, Domain, Semantic};
-use limitmesh::refine::{Exact, exact};
+use limitmesh::refine::Exact;
 use limitmesh::scheme::Loop;
 
 use super::within;
-use crate::support::{creased, cross, dot};
+use crate::support::{creased, cross, dot, exact};
 
 const FACETS: u32 = 24;
 const TOLERANCE: f64 = 1e-4;

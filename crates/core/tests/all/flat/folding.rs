@@ -7,11 +7,11 @@ use limitmesh::Mesh;
 use limitmesh::index::FaceId;
 use limitmesh::measure::{CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff};
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate, limit_reference};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
 use super::within;
-use crate::support::{Random, creased, distance, dot, grid, minus};
+use crate::support::{Random, creased, distance, dot, exact, grid, minus};
 
 /// A plate with a round hole whose triangles are slivers, as programs for design write them: the rules turn some over where two
 /// fans meet. The hole's vertices are those from the seventh on.

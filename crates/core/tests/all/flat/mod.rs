@@ -6,10 +6,10 @@ mod channels;
 mod folding;
 use std::f64::consts::TAU;
 
-use crate::support::{creased, cross, dot, peg};
+use crate::support::{creased, cross, dot, exact, peg};
 use limitmesh::Mesh;
 use limitmesh::measure::{SamplingOptions, hausdorff};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact, exact_estimate, limit_reference};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
 /// A slab with a hole through it, both round, and with vertices inside its flat sides where `has_inner`.

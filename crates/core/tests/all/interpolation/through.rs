@@ -6,8 +6,8 @@ use limitmesh::interpolate::{
     InterpolateOptions, Interpolated, InterpolationMethod, interpolate as interpolate_within,
 };
 use limitmesh::mesh::{BoundaryRule, CreaseTag, PolygonSoup, Tags};
+use limitmesh::refine::ExactOptions;
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{ExactOptions, exact};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 use limitmesh::{Mesh, VertexId};
 use nalgebra::DMatrix;
@@ -15,7 +15,7 @@ use nalgebra::DMatrix;
 use crate::interpolation::{
     dense, dense_solution, farthest, from_limits, interpolate, loop_beta, model, refinement_tends_to, tagged,
 };
-use crate::support::{Point, Random, distance, lumpy, octahedron, sheet, torus};
+use crate::support::{Point, Random, distance, exact, lumpy, octahedron, sheet, torus};
 
 fn warren_beta(k: f64) -> f64 {
     if k == 3.0 { 3.0 / 16.0 } else { 3.0 / (8.0 * k) }

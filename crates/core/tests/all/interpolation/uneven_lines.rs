@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 
 use limitmesh::Mesh;
 use limitmesh::measure::{CertifiedOptions, certified_hausdorff};
-use limitmesh::refine::{ExactOptions, exact};
+use limitmesh::refine::ExactOptions;
 use limitmesh::scheme::Loop;
 
 use super::interpolate;
-use crate::support::creased;
+use crate::support::{creased, exact};
 
 /// A convex profile extruded, its ends fans around vertices in their middle.
 fn extruded(profile: &[[f64; 2]], height: f64) -> Mesh {
