@@ -137,6 +137,19 @@ def test_files_are_refined_as_the_program_does(tmp_path):
     np.testing.assert_array_equal(arrays.vertices, limitmesh.load(mine).vertices)
 
 
+def test_a_proof_is_confirmed_by_the_checker_in_python(tmp_path):
+    check = Path(__file__).parents[2] / "check/tests/check.py"
+    result, proof = tmp_path / "a.ply", tmp_path / "a.proof"
+    report = limitmesh.refine_file("builtin:tetrahedron", result, tolerance="1%", proof=proof)
+    assert any("proves" in note for note in report["notes"])
+    run = lambda *more: subprocess.run([sys.executable, check, "-", result, proof, *more], capture_output=True, text=True)
+    assert run().stdout.startswith("confirmed")
+    below = run("--at", repr(0.99 * report["error"]["lower"]))
+    assert below.returncode == 1 and "refused" in below.stdout
+    with pytest.raises(limitmesh.OptionError, match="--optimize"):
+        limitmesh.refine_file("builtin:tetrahedron", result, optimize=True, proof=proof)
+
+
 def test_the_program_is_there():
     done = subprocess.run([sys.executable, "-m", "limitmesh", "--version"], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0 and limitmesh.__version__ in done.stdout
