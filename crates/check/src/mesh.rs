@@ -49,15 +49,24 @@ impl Mesh {
     pub fn twins(&self) -> Result<Vec<u32>, u32> {
         let ends = |h: u32| [self.origin(h), self.origin(next(h))];
         let all = 0..3 * self.triangles.len() as u32;
-        let mut by_ends = HashMap::with_capacity(all.len());
-        for h in all.clone() {
-            if by_ends.insert(ends(h), h).is_some() {
-                return Err(h);
+        let mut twins = vec![NONE; all.len()];
+        let mut edges: Vec<([u32; 2], u32)> = all.map(|h| (sorted(ends(h)), h)).collect();
+        edges.sort_unstable();
+        for edge in edges.chunk_by(|a, b| a.0 == b.0) {
+            match *edge {
+                [] | [_] => {}
+                [(_, g), (_, h)] if self.origin(g) != self.origin(h) => {
+                    (twins[g as usize], twins[h as usize]) = (h, g);
+                }
+                [(_, h), ..] => return Err(h),
             }
         }
-        let twin = |[a, b]: [u32; 2]| by_ends.get(&[b, a]).copied().unwrap_or(NONE);
-        Ok(all.map(|h| twin(ends(h))).collect())
+        Ok(twins)
     }
+}
+
+fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// The next half-edge of the same triangle.
@@ -84,8 +93,8 @@ impl Control {
         if sharpness.any(|s| s.is_nan() || s < 0.0) {
             return Err("a sharpness is no number of at least zero".into());
         }
-        let sides = creases.iter().flat_map(|&([a, b], s)| [([a, b], s), ([b, a], s)]);
-        Ok(Self { twins, creases: sharpest(sides), corners: sharpest(corners.iter().copied()), mesh })
+        let creases = creases.iter().map(|&(ends, s)| (sorted(ends), s));
+        Ok(Self { twins, creases: sharpest(creases), corners: sharpest(corners.iter().copied()), mesh })
     }
 
     /// The greatest number of triangles at a vertex.
@@ -111,7 +120,7 @@ impl Control {
         spokes.splice(0..0, before.into_iter().rev());
         let ends = |spoke: u32| [spoke, next(spoke)].map(|h| mesh.origin(h));
         let sharpness = |&spoke: &u32| match twin(spoke) {
-            Some(_) => self.creases.get(&ends(spoke)).copied().unwrap_or(0.0),
+            Some(_) => self.creases.get(&sorted(ends(spoke))).copied().unwrap_or(0.0),
             None => f64::INFINITY,
         };
         let mut around: Vec<Vector> = spokes.iter().map(|&spoke| at(next(spoke))).collect();

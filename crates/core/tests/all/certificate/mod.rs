@@ -18,8 +18,10 @@ use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 use crate::support::{Point, Random};
 use cages::{Cage, cage};
 
-/// Cages where nothing else is asked for.
+/// Cages where nothing else is asked for, and how many of their results are confirmed at what is certified, not at more. Fewer are
+/// where the engine's certificate forgets the slopes, a neighbour or the angle between both: 173, 176 and 132.
 const USUAL_CAGES: u64 = 300;
+const USUALLY_CONFIRMED: usize = 179;
 
 /// Triangles that the reference has at most: finer is better, but takes its time.
 const MOST_REFERENCE_TRIANGLES: usize = 40_000;
@@ -86,17 +88,24 @@ fn no_sample_of_a_random_cage_is_beyond_its_bound() {
         Some(seed) => seed..seed + 1,
         None => 0..asked("LIMITMESH_CAGES").unwrap_or(USUAL_CAGES),
     };
-    let mut failures = Vec::new();
+    let (mut failures, mut confirmed) = (Vec::new(), 0);
+    let is_usual = seeds == (0..USUAL_CAGES);
     for seed in seeds {
-        if let Err(why) = attack(seed) {
-            eprintln!("cage {seed}: {why}");
-            failures.push(seed);
+        match attack(seed) {
+            Ok(is_confirmed) => confirmed += usize::from(is_confirmed),
+            Err(why) => {
+                eprintln!("cage {seed}: {why}");
+                failures.push(seed);
+            }
         }
     }
+    eprintln!("{confirmed} confirmed at what is certified");
     assert!(failures.is_empty(), "{} cages failed: {failures:?}", failures.len());
+    assert!(!is_usual || confirmed >= USUALLY_CONFIRMED, "{confirmed} confirmed");
 }
 
-fn attack(seed: u64) -> Result<(), String> {
+/// Whether the result is confirmed at what is certified.
+fn attack(seed: u64) -> Result<bool, String> {
     let Cage { mesh: control, what } = cage(seed);
     let mut random = Random::new(seed ^ 0x5eed);
     let scheme: &dyn Scheme = if random.below(4) == 0 { &LoopWarren } else { &Loop };
@@ -105,13 +114,13 @@ fn attack(seed: u64) -> Result<(), String> {
     let result = exact(&control, scheme, &options).map_err(|error| about(error.to_string()))?;
     check_form(&control, &result, &options).map_err(about)?;
     check_samples(&control, scheme, &result, &mut random).map_err(about)?;
-    proofs::check(&control, scheme, &result).map_err(about)?;
+    let is_confirmed = proofs::check(&control, scheme, &result).map_err(about)?;
     if seed.is_multiple_of(8) {
         let threads = if seed.is_multiple_of(16) { 1 } else { 3 };
         check_threads(&control, scheme, &options, (&result, threads)).map_err(about)?;
         check_independently(&control, scheme, &result).map_err(about)?;
     }
-    Ok(())
+    Ok(is_confirmed)
 }
 
 fn ensure(holds: bool, why: impl FnOnce() -> String) -> Result<(), String> {

@@ -40,13 +40,13 @@ pub(crate) fn refused(
     verdict::refused(&plain(control), &plain(&result.mesh), &claim, within).map(Some)
 }
 
-/// Confirmed at what is certified, or at some multiple; refused below what was found.
-pub(crate) fn check(control: &Mesh, scheme: &dyn Scheme, result: &Exact) -> Result<(), String> {
+/// Confirmed at what is certified, or at some multiple, and refused below what was found; whether it is the former.
+pub(crate) fn check(control: &Mesh, scheme: &dyn Scheme, result: &Exact) -> Result<bool, String> {
     let error = result.error;
     let size = control.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
     // The checker squares lengths, and says so where that goes beyond its numbers.
     if !(1e-60..1e60).contains(&size) {
-        return Ok(());
+        return Ok(false);
     }
     let below = 0.999 * error.lower;
     if below > 0.0 && refused(control, scheme, result, below)?.is_some_and(|refused| refused.is_empty()) {
@@ -54,13 +54,14 @@ pub(crate) fn check(control: &Mesh, scheme: &dyn Scheme, result: &Exact) -> Resu
     }
     // Bounds that a search has tightened are not proven by the triangles one by one, which may drift along the surface; as far as the mesh is large they do not.
     let mut within = error.upper;
-    while let Some([first, ..]) = refused(control, scheme, result, within)?.as_deref() {
+    while let Some(refused) = refused(control, scheme, result, within)? {
+        let [first, ..] = refused[..] else { return Ok(within == error.upper) };
         if within > 4.0 * size {
             return Err(format!("not confirmed at {within:e}, {error:?}: {first:?}"));
         }
         within *= 2.0;
     }
-    Ok(())
+    Ok(false)
 }
 
 /// A result that somebody may have changed, with what its proof says of it.
