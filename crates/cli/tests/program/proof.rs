@@ -1,5 +1,7 @@
 //! `refine --proof`: what is written is confirmed by the checker, which shares nothing with the program.
 
+#![allow(clippy::unwrap_used, reason = "a test's helpers fail the test")]
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
