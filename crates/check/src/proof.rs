@@ -101,7 +101,8 @@ impl Bytes<'_> {
         let at = match code.into() {
             255 => {
                 let [level] = self.take()?;
-                let unit = WHOLE.checked_shr(level.into()).unwrap_or(0);
+                let unit =
+                    WHOLE.checked_shr(level.into()).filter(|&unit| unit > 0).ok_or("a place is too deep")?;
                 [self.varint()?, self.varint()?].map(|i| i64::from(i) * unit)
             }
             own if own < FIRST_BESIDE => {
@@ -147,6 +148,9 @@ impl Proof {
         };
         let within = line("within ")?.parse().map_err(|_| "claims no length")?;
         let [control, result] = [line("control ")?, line("result ")?].map(str::to_string);
+        if lines.next().is_some() {
+            return Err("has more lines than it may".into());
+        }
         let mut rest = Bytes(&bytes[end + 5..]);
         let held = rest.mesh()?;
         let (mut creases, mut corners) = (Vec::new(), Vec::new());

@@ -77,20 +77,22 @@ impl Frames<'_> {
 
     fn plane(&self, [a, b, c]: [Vector; 3]) -> Option<Plane> {
         let longest = [sub(b, a), sub(c, b), sub(a, c)].map(length).into_iter().fold(0.0, f64::max);
-        let normal = cross(sub(b, a), sub(c, b));
+        // In units of the longest edge, so that no square is too large or too small; and of no such edge.
+        let normal = cross(scale(sub(b, a), 1.0 / longest), scale(sub(c, b), 1.0 / longest));
         let area = length(normal);
-        let rounding = 64.0 * ROUNDOFF * (longest + self.within) * longest * longest / area;
-        (rounding <= self.within / 64.0).then(|| Plane { normal: scale(normal, 1.0 / area), rounding })
+        let rounding = 64.0 * ROUNDOFF * (longest + self.within) / area;
+        let is_good = (1e-120..1e120).contains(&longest) && rounding <= self.within / 64.0;
+        is_good.then(|| Plane { normal: scale(normal, 1.0 / area), rounding })
     }
 
     /// The tangents of the angle at a half-edge's origin, and of half of what it leaves of 180°.
     fn tangents(&self, h: u32) -> [f64; 2] {
         let corners = self.corners(h / 3);
         let [v, b, c] = [h, next(h), next(next(h))].map(|h| corners[h as usize % 3]);
-        let (to_b, to_c) = (sub(b, v), sub(c, v));
+        let [to_b, to_c] = [sub(b, v), sub(c, v)].map(|way| scale(way, 1.0 / length(way)));
         let (sine, cosine) = (length(cross(to_b, to_c)), dot(to_b, to_c));
         let own = if cosine > 0.0 { sine / cosine } else { f64::INFINITY };
-        [own, (length(to_b) * length(to_c) + cosine) / sine]
+        [own, (1.0 + cosine) / sine]
     }
 
     /// A triangle of the result.

@@ -32,7 +32,7 @@ pub fn refused(control: &Mesh, result: &Mesh, proof: &Proof, within: f64) -> Res
     if !(1e-90..1e90).contains(&within) || greatest > 1e90 {
         return Err("is about lengths that are too small or too large to be computed with".into());
     }
-    let rounding = (128 * control.valence() + 4096) as f64 * ROUNDOFF * (greatest + within);
+    let rounding = (128 * control.valence().max(6) + 4096) as f64 * ROUNDOFF * (greatest + within);
     let frames = Frames { result, twins: &twins, within, rounding };
     let mut by_face: Vec<u32> = (0..result.triangles.len() as u32).collect();
     by_face.sort_by_key(|&t| origins.parents[t as usize]);

@@ -136,3 +136,23 @@ fn corners_a_little_beyond_a_line_count() {
         }
     }
 }
+
+/// Whatever the unit: squares of very large and very small lengths must not make a plane of nothing.
+#[test]
+fn units_change_nothing() {
+    let good = Cage::new(octahedron()).settled(6);
+    let least = |unit: f64| {
+        let mut cage = good.clone();
+        let all = cage.control.positions.iter_mut().chain(&mut cage.mesh.positions);
+        all.for_each(|p| *p = scale(*p, unit));
+        let within = |i: i32| 0.01 * unit * 1.02f64.powi(i);
+        // Out of range is no confirmation either.
+        (0..250).find(|&i| cage.refused(within(i)).is_ok_and(|refused| refused.is_empty()))
+    };
+    let usual = least(1.0).unwrap();
+    for exponent in (-360..=360).step_by(8) {
+        let found = least(2f64.powi(exponent));
+        assert!(found.is_none_or(|found| found == usual), "2^{exponent}: {found:?}, not {usual}");
+        assert!(found.is_some() || !(-270..270).contains(&exponent), "2^{exponent}");
+    }
+}
