@@ -55,10 +55,12 @@ fn run() -> Result<(bool, String), String> {
         ),
         count => format!("refused: {count} of {triangles} triangles are not proven to be within {within}"),
     };
-    let (edges, vertices) = (proof.creases.len(), proof.corners.len());
-    text +=
-        &format!("\nby the proof: scheme {:?}, {edges} sharp edges, {vertices} sharp vertices", proof.scheme);
     refused.iter().take(NAMED).for_each(|(t, what)| text += &format!("\n  triangle {t} {what}"));
+    let (edges, vertices) = (proof.creases.len(), proof.corners.len());
+    text += &format!(
+        "\nby the proof: scheme {}, {edges} sharp edges, {vertices} sharp vertices",
+        proof.scheme.name()
+    );
     if result.digest() != proof.result {
         text += "\nnote: this result is not the one that the proof was made of";
     }

@@ -1,6 +1,6 @@
 //! Triangle meshes: which triangle is beyond an edge, and the rings of a control mesh's vertices.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 use crate::pieces::{Corner, Ring};
@@ -92,6 +92,12 @@ impl Control {
         let mut sharpness = creases.iter().map(|&(_, s)| s).chain(corners.iter().map(|&(_, s)| s));
         if sharpness.any(|s| s.is_nan() || s < 0.0) {
             return Err("a sharpness is no number of at least zero".into());
+        }
+        let edges = (0..twins.len() as u32).map(|h| sorted([h, next(h)].map(|h| mesh.origin(h))));
+        let edges: HashSet<[u32; 2]> = edges.filter(|_| !creases.is_empty()).collect();
+        let is_there = creases.iter().all(|&(ends, _)| edges.contains(&sorted(ends)));
+        if !is_there || corners.iter().any(|&(v, _)| v as usize >= mesh.positions.len()) {
+            return Err("an edge or a vertex is sharp that the control mesh does not have".into());
         }
         let creases = creases.iter().map(|&(ends, s)| (sorted(ends), s));
         Ok(Self { twins, creases: sharpest(creases), corners: sharpest(corners.iter().copied()), mesh })

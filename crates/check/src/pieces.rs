@@ -17,6 +17,14 @@ pub enum Scheme {
 }
 
 impl Scheme {
+    /// As proofs and command lines call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Loop => "loop",
+            Self::LoopWarren => "loop-warren",
+        }
+    }
+
     /// kβ, the weight of all neighbours together.
     fn of_ring(self, valence: usize) -> f64 {
         match self {

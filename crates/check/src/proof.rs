@@ -141,11 +141,9 @@ impl Proof {
                 .ok_or(format!("has no line {key} where it should be, or is of another version"))
         };
         line("limitmesh proof 1")?;
-        let scheme = match line("scheme ")? {
-            "loop" => Scheme::Loop,
-            "loop-warren" => Scheme::LoopWarren,
-            other => return Err(format!("there is no scheme {other}")),
-        };
+        let name = line("scheme ")?;
+        let scheme = [Scheme::Loop, Scheme::LoopWarren].into_iter().find(|scheme| scheme.name() == name);
+        let scheme = scheme.ok_or(format!("there is no scheme {name}"))?;
         let within = line("within ")?.parse().map_err(|_| "claims no length")?;
         let [control, result] = [line("control ")?, line("result ")?].map(str::to_string);
         if lines.next().is_some() {

@@ -194,8 +194,11 @@ impl Triangle {
     /// The same for a curve by its Bézier points, halved as long as that helps.
     pub fn is_curve_along(&self, edge: usize, points: &[Vector; 5], halvings: usize) -> bool {
         let is_end_along = |i: usize| self.is_along(edge, &points[i..=i]);
-        if self.is_along(edge, points) || halvings >= MOST_HALVINGS || !is_end_along(0) || !is_end_along(4) {
-            return self.is_along(edge, points);
+        if self.is_along(edge, points) {
+            return true;
+        }
+        if halvings >= MOST_HALVINGS || !is_end_along(0) || !is_end_along(4) {
+            return false;
         }
         let (mut work, mut first, mut second) = (*points, *points, *points);
         for step in 1..5 {

@@ -25,12 +25,12 @@ pub fn refused(control: &Mesh, result: &Mesh, proof: &Proof, within: f64) -> Res
     let control = Control::new(control.clone(), &proof.creases, &proof.corners)?;
     let twins = match tiling::check(&control, result, &origins) {
         Ok(twins) => twins,
-        Err(refused) => return Ok(refused),
+        Err(refused) => return Ok(once(refused)),
     };
     let coordinates = control.mesh.positions.iter().chain(&result.positions).flatten();
     let greatest = coordinates.fold(0.0f64, |most, x| most.max(x.abs()));
     if !(1e-90..1e90).contains(&within) || greatest > 1e90 {
-        return Err("is about lengths that are too small or too large to be computed with".into());
+        return Err("a length or a coordinate is too small or too large to be computed with".into());
     }
     let rounding = (128 * control.valence().max(6) + 4096) as f64 * ROUNDOFF * (greatest + within);
     let frames = Frames { result, twins: &twins, within, rounding };
@@ -54,8 +54,14 @@ pub fn refused(control: &Mesh, result: &Mesh, proof: &Proof, within: f64) -> Res
             }
         }
     }
+    Ok(once(refused))
+}
+
+/// Each triangle with one reason, ascending.
+fn once(mut refused: Vec<Refusal>) -> Vec<Refusal> {
     refused.sort_unstable();
-    Ok(refused)
+    refused.dedup_by_key(|&mut (t, _)| t);
+    refused
 }
 
 /// A corner of a polygon within a piece.

@@ -102,6 +102,16 @@ fn proofs_that_are_damaged_are_no_proofs() {
             let _ = read(&changed);
         }
     }
+    // An edge that is sharp, and none of the mesh: 0 and 1 are opposite corners. And a vertex that isn't there.
+    let sharp = |tags: &[u8]| {
+        let mut tagged = bytes.clone();
+        tagged.splice(end + 7..end + 9, tags.iter().copied());
+        read(&tagged).map_err(|what| what.contains("does not have"))
+    };
+    let three = 3f64.to_le_bytes();
+    assert_eq!(sharp(&[&[1, 0, 2][..], &three, &[1, 3], &three].concat()), Ok(vec![]));
+    assert_eq!(sharp(&[&[1, 0, 1][..], &three, &[0]].concat()), Err(true));
+    assert_eq!(sharp(&[&[0, 1, 99][..], &three].concat()), Err(true));
     let mut other = cage.clone();
     other.control.positions[3][0] += 1e-9;
     let proof = limitmesh_check::proof::Proof::read(&bytes).unwrap();

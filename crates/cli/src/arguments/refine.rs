@@ -311,6 +311,11 @@ impl RefineArguments {
         Ok(self.scheme.in_quarters()?.scheme())
     }
 
+    /// Whether flat regions are divided like all else, as proofs need it.
+    pub(crate) fn divides_flat(&self) -> bool {
+        self.exact.divide_flat || self.proof.is_some()
+    }
+
     /// The one input of a job: the first.
     pub(crate) fn input(&self) -> &Path {
         self.inputs.first().map_or(Path::new(""), PathBuf::as_path)

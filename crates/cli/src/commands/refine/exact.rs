@@ -212,7 +212,7 @@ pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> Paramete
             cameras: goals.cameras.iter().map(CameraReport::from).collect(),
             balance: options.balance,
             optimize: options.optimize,
-            divide_flat: arguments.exact.divide_flat,
+            divide_flat: arguments.divides_flat(),
             max_memory: options.max_memory,
             ..ExactParametersReport::new(goals.length, goals.diagonal, options.max_levels, &arguments.exact)
         }),

@@ -121,12 +121,7 @@ impl Goals {
             .optimize(arguments.exact.optimize)
             .kept_edges(self.kept_edges.clone())
             .attributes(self.attributes.options())
-            .flat_regions(
-                !arguments.exact.divide_flat
-                    && arguments.proof.is_none()
-                    && !self.tells_faces_apart
-                    && self.near.is_none(),
-            )
+            .flat_regions(!arguments.divides_flat() && !self.tells_faces_apart && self.near.is_none())
             .unfold(arguments.features.concave_corners() == ConcaveCorners::Divided)
             .origins(
                 arguments.exact.provenance
