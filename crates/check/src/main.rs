@@ -3,29 +3,54 @@
 use std::io::Write;
 use std::process::ExitCode;
 
+use limitmesh_check::mesh::Mesh;
 use limitmesh_check::proof::Proof;
 use limitmesh_check::{read, verdict};
 
 const USAGE: &str = "\
-usage: limitmesh-check [CONTROL] RESULT PROOF [--at LENGTH]
+usage: limitmesh-check [CONTROL] RESULT PROOF [--at LENGTH] [--control FILE.obj]
 
 Checks that each point of the mesh RESULT is within a length of the limit surface of the mesh CONTROL, and each point of
 that surface within it of RESULT. PROOF, as `limitmesh refine --proof` writes it, says which length, and where the
-vertices of RESULT come from. Where it holds the control mesh, CONTROL is left out.
-Meshes are OBJ, OFF or PLY files of triangles. --at checks another length than that of the proof.
+vertices of RESULT come from. Where it holds the control mesh, CONTROL may be left out.
+Meshes are OBJ, OFF or PLY files of triangles.
+
+  --at LENGTH          checks another length than that of the proof, in the unit of the meshes
+  --control FILE.obj   writes the control mesh that the proof holds, to be looked at
+  --version
 
 Exit code: 0 confirmed, 1 refused, 2 unreadable.";
 
 /// Triangles that are named where many are refused.
 const NAMED: usize = 10;
 
+/// Takes an option and its value out of the arguments.
+fn taken(words: &mut Vec<String>, option: &str) -> Result<Option<String>, String> {
+    let Some(place) = words.iter().position(|word| word == option) else { return Ok(None) };
+    let value = words.drain(place..words.len().min(place + 2)).nth(1);
+    value.map(Some).ok_or(format!("{option} lacks its value"))
+}
+
+fn obj(mesh: &Mesh) -> String {
+    let mut text = String::new();
+    mesh.positions.iter().for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
+    mesh.triangles.iter().for_each(|t| text += &format!("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1));
+    text
+}
+
 fn run() -> Result<(bool, String), String> {
     let mut words: Vec<String> = std::env::args().skip(1).collect();
-    let mut at = None;
-    if let Some(place) = words.iter().position(|word| word == "--at") {
-        let length = words.drain(place..words.len().min(place + 2)).nth(1).ok_or("--at lacks its length")?;
-        at = Some(length.parse().map_err(|_| format!("{length} is no length"))?);
+    match words.first().map(String::as_str) {
+        Some("-h" | "--help") => return Ok((true, USAGE.into())),
+        Some("-V" | "--version") => {
+            return Ok((true, concat!("limitmesh-check ", env!("CARGO_PKG_VERSION")).into()));
+        }
+        _ => {}
     }
+    let at = taken(&mut words, "--at")?;
+    let number = |at: String| at.parse().map_err(|_| format!("--at {at}: no number, which has no unit"));
+    let at = at.map(number).transpose()?;
+    let shown = taken(&mut words, "--control")?;
     let (control, [result, name]) = match &words[..] {
         [control, result, proof] => (Some(control), [result, proof]),
         [result, proof] => (None, [result, proof]),
@@ -34,17 +59,15 @@ fn run() -> Result<(bool, String), String> {
     let bytes = |name: &String| std::fs::read(name).map_err(|error| format!("{name}: {error}"));
     let mesh = |name: &String| read::mesh(name, &bytes(name)?).map_err(|what| format!("{name}: {what}"));
     let proof = Proof::read(&bytes(name)?).map_err(|what| format!("{name}: {what}"))?;
-    let (held, result) = (proof.held.clone(), mesh(result)?);
-    let control = match (held, control) {
-        (Some(held), None) => held,
-        (None, Some(control)) => mesh(control)?,
-        (Some(_), Some(control)) => {
-            return Err(format!(
-                "{name} holds the control mesh, which may not be what {control} holds: leave that out"
-            ));
-        }
+    let result = mesh(result)?;
+    let control = match (control, &proof.held) {
+        (Some(control), _) => mesh(control)?,
+        (None, Some(held)) => held.clone(),
         (None, None) => return Err(format!("{name} does not hold the control mesh: name its file first")),
     };
+    if let Some(file) = shown {
+        std::fs::write(&file, obj(&control)).map_err(|error| format!("{file}: {error}"))?;
+    }
     let within = at.unwrap_or(proof.within);
     let refused =
         verdict::refused(&control, &result, &proof, within).map_err(|what| format!("{name}: {what}"))?;
@@ -56,6 +79,9 @@ fn run() -> Result<(bool, String), String> {
         count => format!("refused: {count} of {triangles} triangles are not proven to be within {within}"),
     };
     refused.iter().take(NAMED).for_each(|(t, what)| text += &format!("\n  triangle {t} {what}"));
+    if refused.len() > NAMED {
+        text += &format!("\n  and {} more; the first triangle is triangle 0", refused.len() - NAMED);
+    }
     let (edges, vertices) = (proof.creases.len(), proof.corners.len());
     text += &format!(
         "\nby the proof: scheme {}, {edges} sharp edges, {vertices} sharp vertices",

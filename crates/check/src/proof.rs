@@ -136,9 +136,7 @@ impl Proof {
         let mut lines = head.lines();
         let mut line = |key: &str| {
             let value = lines.next().and_then(|line| line.strip_prefix(key));
-            value
-                .map(str::trim)
-                .ok_or(format!("has no line {key} where it should be, or is of another version"))
+            value.map(str::trim).ok_or(format!("lacks its line \"{}\", or is of another version", key.trim()))
         };
         line("limitmesh proof 1")?;
         let name = line("scheme ")?;
@@ -164,7 +162,9 @@ impl Proof {
     /// Where triangles and vertices come from. An error where the proof is about another control mesh, or has no places for the result.
     pub fn origins(&self, control: &Mesh, result: &Mesh) -> Result<Origins, String> {
         if control.digest() != self.control {
-            return Err("is about another control mesh".into());
+            return Err(
+                "is about another control mesh than this one (the order is CONTROL RESULT PROOF)".into()
+            );
         }
         let mut rest = Bytes(&self.rest);
         let parents = rest.parents(control.triangles.len(), result.triangles.len())?;

@@ -135,13 +135,13 @@ fn ply(bytes: &[u8]) -> Result<Mesh, String> {
                 match kinds[..] {
                     ["list", length, kind] => {
                         let length = numbers.next(length)? as u32;
-                        let vertex = |value: f64| match value as u32 {
-                            vertex if f64::from(vertex) == value => Ok(vertex),
-                            _ => Err(format!("{value} is no vertex")),
-                        };
-                        let list = (0..length).map(|_| numbers.next(kind).and_then(vertex));
-                        let list = list.collect::<Result<Vec<_>, String>>()?;
+                        let list = (0..length).map(|_| numbers.next(kind)).collect::<Result<Vec<_>, _>>()?;
                         if element == "face" && name.starts_with("vertex_ind") {
+                            let vertex = |&value: &f64| match value as u32 {
+                                vertex if f64::from(vertex) == value => Ok(vertex),
+                                _ => Err(format!("{value} is no vertex")),
+                            };
+                            let list = list.iter().map(vertex).collect::<Result<Vec<_>, _>>()?;
                             mesh.triangles.push(triangle(&list)?);
                         }
                     }

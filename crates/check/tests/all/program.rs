@@ -55,11 +55,22 @@ fn three_files_are_confirmed_or_refused() {
         (&["control.obj", "result.obj", "control.obj"], "is no proof"),
         (&["none.obj", "result.obj", "result.proof"], "none.obj"),
         (&["control.obj"], "usage"),
-        (&["control.obj", "result.obj", "result.proof", "--at", "x"], "no length"),
+        (&["control.obj", "result.obj", "result.proof", "--at", "x"], "no number"),
         (&["control.obj", "result.obj", "result.proof", "--at", "0"], "too small"),
+        (&["control.obj", "result.obj", "result.proof", "--at"], "lacks its value"),
+        (&["result.obj", "control.obj", "result.proof"], "the order is"),
     ] {
         let (code, said) = run(&folder, words);
         assert!(code == Some(2) && said.contains(what), "{words:?}: {code:?}, {said}");
+    }
+    // The control mesh can be looked at, and is the same then.
+    let (code, said) = run(&folder, &[&files[..], &["--control", "shown.obj"]].concat());
+    assert_eq!(code, Some(0), "{said}");
+    let shown = limitmesh_check::read::mesh("shown.obj", &std::fs::read(folder.join("shown.obj")).unwrap());
+    assert_eq!(shown.unwrap(), cage.control);
+    for (word, what) in [("--help", "usage"), ("--version", env!("CARGO_PKG_VERSION"))] {
+        let (code, said) = run(&folder, &[word]);
+        assert!(code == Some(0) && said.contains(what), "{said}");
     }
     std::fs::remove_dir_all(&folder).unwrap();
 }

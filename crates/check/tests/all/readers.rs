@@ -4,8 +4,8 @@ use limitmesh_check::read::mesh;
 use limitmesh_check::sha256::digest;
 
 const TEXT_PLY: &str = "ply\nformat ascii 1.0\ncomment a\nelement vertex 3\nproperty float x\nproperty uchar red\nproperty double y\n\
-    property double z\nelement face 1\nproperty list uchar int vertex_indices\nproperty int n\nend_header\n\
-    0 9 0 0\n1 9 0 0\n0 9 1.5 0\n3 0 1 2 7\n";
+    property double z\nelement face 1\nproperty list uchar int vertex_indices\nproperty int n\n\
+    property list uchar float texcoord\nend_header\n0 9 0 0\n1 9 0 0\n0 9 1.5 0\n3 0 1 2 7 2 0.5 -1\n";
 
 #[test]
 fn all_formats_give_the_same_mesh() {
@@ -34,6 +34,8 @@ fn all_formats_give_the_same_mesh() {
         }
         push(&[3]);
         [0i32, 1, 2, 7].iter().for_each(|v| push(&v.to_le_bytes()));
+        push(&[2]);
+        [0.5f32, -1.0].iter().for_each(|x| push(&x.to_le_bytes()));
         assert_eq!(mesh("d.ply", &bytes).unwrap(), expected);
     }
 }

@@ -40,7 +40,7 @@ pub(super) fn check(arguments: &RefineArguments, format: Option<Format>) -> anyh
     }
     let is_read = matches!(format, Some(Format::Obj | Format::Off | Format::Ply));
     if !is_read || arguments.output.as_deref().is_some_and(output::is_standard_output) {
-        return usage("--proof needs a result that limitmesh-check reads: a file .obj, .off or .ply");
+        return usage("--proof needs a result in a file that limitmesh-check reads: -o NAME.ply, NAME.obj or NAME.off");
     }
     Ok(())
 }
@@ -102,8 +102,15 @@ pub(super) fn write(
         refused = verdict::refused(&own, &result, &claim, within).map_err(anyhow::Error::msg)?;
         if refused.is_empty() {
             output::write_file(path, &bytes)?;
-            let note =
-                format!("{}: proves {}, as limitmesh-check confirms", path.display(), upper_bound(within));
+            let why = match within > upper {
+                true => ": more than is certified, since a search over several triangles is in no proof",
+                false => "",
+            };
+            let note = format!(
+                "{}: proves {}{why}, as limitmesh-check confirms",
+                path.display(),
+                upper_bound(within)
+            );
             return Ok(Proven { within: Some(within), note: Some(note), outcome: Outcome::Done });
         }
     }
